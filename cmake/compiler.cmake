@@ -1,0 +1,16 @@
+# Warnings and sanitizers as one interface target that every target of ours links privately.
+add_library(imgmesh_compiler INTERFACE)
+target_compile_options(imgmesh_compiler INTERFACE -Wall -Wextra -Wshadow -Wconversion)
+if(CMAKE_CXX_COMPILER_ID MATCHES Clang)
+  # Eigen's and the standard library's sizes are signed and unsigned; g++ does not ask for this either.
+  target_compile_options(imgmesh_compiler INTERFACE -Wno-sign-conversion)
+endif()
+# Results are the same bytes on any machine of one architecture: no contraction of a*b+c that depends on flags.
+target_compile_options(imgmesh_compiler INTERFACE -ffp-contract=off)
+if(IMGMESH_WERROR)
+  target_compile_options(imgmesh_compiler INTERFACE -Werror)
+endif()
+if(IMGMESH_SANITIZE)
+  target_compile_options(imgmesh_compiler INTERFACE -fsanitize=${IMGMESH_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
+  target_link_options(imgmesh_compiler INTERFACE -fsanitize=${IMGMESH_SANITIZE})
+endif()

@@ -1,0 +1,32 @@
+#include "libcore/base/parallel.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/global_control.h>
+#include <tbb/info.h>
+#include <tbb/parallel_for.h>
+
+namespace imgmesh {
+
+struct ThreadLimit::Control {
+    tbb::global_control limit;
+};
+
+ThreadLimit::ThreadLimit(int threads)
+    : control_(new Control{tbb::global_control(tbb::global_control::max_allowed_parallelism,
+                                               static_cast<std::size_t>(std::max(1, threads)))}) {}
+ThreadLimit::~ThreadLimit() = default;
+
+int hardware_threads() {
+    return std::max(1, tbb::info::default_concurrency());
+}
+
+void parallel_blocks(int begin, int end, int grain, const std::function<void(int, int)>& body) {
+    if (begin >= end) return;
+    const int blocks = (end - begin + grain - 1) / grain;
+    tbb::parallel_for(0, blocks, [&](int b) {
+        const int first = begin + b * grain;
+        body(first, std::min(first + grain, end));
+    });
+}
+
+}  // namespace imgmesh

@@ -1,0 +1,167 @@
+// Sources: IEC 61966-2-1 (sRGB), ITU-R BT.709, Adobe RGB (1998), SMPTE EG 432-1 (P3); CIE 15 for L*u*v*.
+#include "libcore/image/color.h"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <utility>
+
+#include "libcore/base/error.h"
+#include "libcore/base/parallel.h"
+
+namespace imgmesh {
+namespace {
+
+constexpr std::pair<ColorSpace, std::string_view> kNames[] = {
+    {ColorSpace::kSrgb, "sRGB"},         {ColorSpace::kLinear, "linear"},
+    {ColorSpace::kRec709, "Rec709"},     {ColorSpace::kGamma22, "Gamma2.2"},
+    {ColorSpace::kAdobeRgb, "AdobeRGB"}, {ColorSpace::kDisplayP3, "DisplayP3"}};
+
+// Both curves are applied to |x| and keep the sign, so values below black survive a round trip.
+double decode_curve(ColorSpace space, double x) {
+    switch (space) {
+        case ColorSpace::kLinear:
+            return x;
+        case ColorSpace::kSrgb:
+        case ColorSpace::kDisplayP3:
+            return x <= 0.04045 ? x / 12.92 : std::pow((x + 0.055) / 1.055, 2.4);
+        case ColorSpace::kRec709:
+            return x < 0.081 ? x / 4.5 : std::pow((x + 0.099) / 1.099, 1 / 0.45);
+        case ColorSpace::kGamma22:
+            return std::pow(x, 2.2);
+        case ColorSpace::kAdobeRgb:
+            return std::pow(x, 563.0 / 256.0);
+    }
+    return x;
+}
+
+double encode_curve(ColorSpace space, double x) {
+    switch (space) {
+        case ColorSpace::kLinear:
+            return x;
+        case ColorSpace::kSrgb:
+        case ColorSpace::kDisplayP3:
+            return x <= 0.0031308 ? x * 12.92 : 1.055 * std::pow(x, 1 / 2.4) - 0.055;
+        case ColorSpace::kRec709:
+            return x < 0.018 ? x * 4.5 : 1.099 * std::pow(x, 0.45) - 0.099;
+        case ColorSpace::kGamma22:
+            return std::pow(x, 1 / 2.2);
+        case ColorSpace::kAdobeRgb:
+            return std::pow(x, 256.0 / 563.0);
+    }
+    return x;
+}
+
+using Matrix = Eigen::Matrix3d;
+
+// Linear RGB of the space's primaries -> XYZ, white D65 (0.9505, 1, 1.089) at RGB = 1.
+Matrix xyz_matrix(double rx, double ry, double gx, double gy, double bx, double by) {
+    Matrix m;
+    m << rx / ry, gx / gy, bx / by, 1, 1, 1, (1 - rx - ry) / ry, (1 - gx - gy) / gy, (1 - bx - by) / by;
+    const Vec3d white(0.3127 / 0.3290, 1.0, (1 - 0.3127 - 0.3290) / 0.3290);
+    const Vec3d scale = m.inverse() * white;
+    return m * scale.asDiagonal();
+}
+
+struct Matrices {
+    Matrix srgb_to_xyz = xyz_matrix(0.64, 0.33, 0.30, 0.60, 0.15, 0.06);
+    Matrix xyz_to_srgb = srgb_to_xyz.inverse();
+    Matrix adobe_to_srgb = xyz_to_srgb * xyz_matrix(0.64, 0.33, 0.21, 0.71, 0.15, 0.06);
+    Matrix srgb_to_adobe = adobe_to_srgb.inverse();
+    Matrix p3_to_srgb = xyz_to_srgb * xyz_matrix(0.680, 0.320, 0.265, 0.690, 0.150, 0.060);
+    Matrix srgb_to_p3 = p3_to_srgb.inverse();
+};
+const Matrices& matrices() {
+    static const Matrices kMatrices;
+    return kMatrices;
+}
+
+constexpr double kLinearSlope = 24389.0 / 27.0;   // L* per Y in the linear branch
+constexpr double kLinearLimit = 216.0 / 24389.0;  // Y where the branches meet
+constexpr double kWhiteU = 4 * 0.3127 / (-2 * 0.3127 + 12 * 0.3290 + 3);
+constexpr double kWhiteV = 9 * 0.3290 / (-2 * 0.3127 + 12 * 0.3290 + 3);
+
+}  // namespace
+
+std::string_view color_space_name(ColorSpace space) {
+    for (const auto& [value, name] : kNames)
+        if (value == space) return name;
+    return "sRGB";
+}
+
+std::optional<ColorSpace> parse_color_space(std::string_view name) {
+    const auto same = [](char a, char b) {
+        return std::tolower(static_cast<unsigned char>(a)) == std::tolower(static_cast<unsigned char>(b));
+    };
+    for (const auto& [value, known] : kNames)
+        if (std::equal(name.begin(), name.end(), known.begin(), known.end(), same)) return value;
+    return std::nullopt;
+}
+
+Vec3f linear_from_encoded(ColorSpace space, const Vec3f& encoded) {
+    Vec3d linear;
+    for (int c = 0; c < 3; ++c)
+        linear[c] = std::copysign(decode_curve(space, std::abs(double(encoded[c]))), double(encoded[c]));
+    if (space == ColorSpace::kAdobeRgb) linear = matrices().adobe_to_srgb * linear;
+    if (space == ColorSpace::kDisplayP3) linear = matrices().p3_to_srgb * linear;
+    return linear.cast<float>();
+}
+
+Vec3f encoded_from_linear(ColorSpace space, const Vec3f& linear) {
+    Vec3d x = linear.cast<double>();
+    if (space == ColorSpace::kAdobeRgb) x = matrices().srgb_to_adobe * x;
+    if (space == ColorSpace::kDisplayP3) x = matrices().srgb_to_p3 * x;
+    Vec3f encoded;
+    for (int c = 0; c < 3; ++c)
+        encoded[c] = static_cast<float>(std::copysign(encode_curve(space, std::abs(x[c])), x[c]));
+    return encoded;
+}
+
+Vec3f luv_from_linear(const Vec3f& linear) {
+    const Vec3d xyz = matrices().srgb_to_xyz * linear.cast<double>();
+    const double y = xyz[1];
+    const double lightness = y > kLinearLimit ? 116 * std::cbrt(y) - 16 : kLinearSlope * y;
+    const double sum = xyz[0] + 15 * y + 3 * xyz[2];
+    if (sum <= 0) return {static_cast<float>(lightness), 0, 0};
+    return {static_cast<float>(lightness), static_cast<float>(13 * lightness * (4 * xyz[0] / sum - kWhiteU)),
+            static_cast<float>(13 * lightness * (9 * y / sum - kWhiteV))};
+}
+
+Vec3f linear_from_luv(const Vec3f& luv) {
+    const double lightness = luv[0];
+    const double y = lightness > kLinearSlope * kLinearLimit ? std::pow((lightness + 16) / 116, 3)
+                                                             : lightness / kLinearSlope;
+    double u = kWhiteU, v = kWhiteV;
+    if (lightness > 0) {
+        u += luv[1] / (13 * lightness);
+        v += luv[2] / (13 * lightness);
+    }
+    // Far outside any gamut v' can reach 0 or less, where X and Z have no value; stay just above.
+    v = std::max(v, 1e-3);
+    const Vec3d xyz(y * 9 * u / (4 * v), y, y * (12 - 3 * u - 20 * v) / (4 * v));
+    return (matrices().xyz_to_srgb * xyz).cast<float>();
+}
+
+FeatureImage luv_image(const Image& image) {
+    const int r = image.channel("R"), g = image.channel("G"), b = image.channel("B"),
+              grey = image.channel("Y");
+    const bool color = r >= 0 && g >= 0 && b >= 0;
+    if (!color && grey < 0)
+        throw Error(ErrorCode::kUnsupported, "the picture has no colour: neither channels R, G, B nor Y");
+    FeatureImage out{image.width, image.height, 3, std::vector<float>(image.pixel_count() * 3)};
+    parallel_blocks(0, image.height, 16, [&](int first, int last) {
+        for (int y = first; y < last; ++y) {
+            const float* in = image.row(y).data();
+            float* dst = out.pixel(static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width));
+            for (int x = 0; x < image.width; ++x, in += image.channels, dst += 3) {
+                const Vec3f encoded = color ? Vec3f(in[r], in[g], in[b]) : Vec3f::Constant(in[grey]);
+                const Vec3f luv = luv_from_linear(linear_from_encoded(image.color_space, encoded));
+                std::copy(luv.data(), luv.data() + 3, dst);
+            }
+        }
+    });
+    return out;
+}
+
+}  // namespace imgmesh

@@ -1,0 +1,33 @@
+// Colour: encoded samples <-> linear light (sRGB primaries, D65) <-> CIE 1976 L*u*v*.
+#pragma once
+
+#include <optional>
+#include <string_view>
+
+#include "libcore/base/types.h"
+#include "libcore/image/image.h"
+
+namespace imgmesh {
+
+/// The name by which options, containers and reports call a colour space, e.g. "sRGB".
+std::string_view color_space_name(ColorSpace space);
+/// The inverse of color_space_name (case is ignored); nothing for an unknown name.
+std::optional<ColorSpace> parse_color_space(std::string_view name);
+
+/// Encoded RGB of `space` -> linear light with sRGB primaries. Any finite values; the curves are odd
+/// functions.
+Vec3f linear_from_encoded(ColorSpace space, const Vec3f& encoded);
+/// The inverse of linear_from_encoded.
+Vec3f encoded_from_linear(ColorSpace space, const Vec3f& linear);
+
+/// Linear RGB (sRGB primaries, white = 1,1,1) -> L*u*v* under D65. Defined and continuous for every finite
+/// input: L* follows its linear branch below black, and chroma is zero where X + 15 Y + 3 Z <= 0.
+Vec3f luv_from_linear(const Vec3f& linear);
+/// The inverse of luv_from_linear for L* > 0; black for L* <= 0 chroma-free.
+Vec3f linear_from_luv(const Vec3f& luv);
+
+/// Colour of every pixel as L*u*v*. One channel (grey) counts as R = G = B; alpha is ignored.
+/// Throws Error(kUnsupported) where the picture has neither R, G, B nor Y.
+FeatureImage luv_image(const Image& image);
+
+}  // namespace imgmesh

@@ -1,0 +1,87 @@
+// Pictures as values. Said once, for all of imgmesh: pixel (0, 0) is the *centre* of the top-left pixel, x
+// grows to the right and y grows *down*; a picture of W x H pixels spans [0, W-1] x [0, H-1].
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "libcore/base/types.h"
+
+namespace imgmesh {
+
+/// How samples were stored in the file that a picture came from, so that results can be stored alike.
+enum class SampleType { kUint8, kUint16, kHalf, kFloat };
+
+/// What the numbers of a colour picture mean: primaries and transfer curve.
+enum class ColorSpace {
+    kSrgb,      ///< "sRGB": IEC 61966-2-1, the default for integer pictures
+    kLinear,    ///< "linear": sRGB/Rec.709 primaries, linear light; the default for half and float pictures
+    kRec709,    ///< "Rec709": Rec.709 primaries and its camera transfer curve
+    kGamma22,   ///< "Gamma2.2": sRGB primaries, pure power 2.2
+    kAdobeRgb,  ///< "AdobeRGB": Adobe RGB (1998), power 563/256
+    kDisplayP3  ///< "DisplayP3": P3 primaries, D65, sRGB curve
+};
+
+/// A picture: `channels` interleaved floats a pixel, rows from top to bottom. Integer samples are scaled to
+/// [0, 1]; values are as encoded in `color_space`, not linearised. Alpha is not premultiplied.
+struct Image {
+    int width = 0;
+    int height = 0;
+    int channels = 0;
+    std::vector<float> data;  ///< size width * height * channels
+    std::vector<std::string>
+        channel_names;  ///< size channels: "R","G","B" / "Y" / with "A"; or a file's own names
+    SampleType sample_type = SampleType::kUint8;
+    ColorSpace color_space = ColorSpace::kSrgb;
+
+    std::size_t pixel_count() const {
+        return static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+    }
+    std::size_t row_size() const {
+        return static_cast<std::size_t>(width) * static_cast<std::size_t>(channels);
+    }
+    std::span<float> row(int y) {
+        return {data.data() + static_cast<std::size_t>(y) * row_size(), row_size()};
+    }
+    std::span<const float> row(int y) const {
+        return {data.data() + static_cast<std::size_t>(y) * row_size(), row_size()};
+    }
+    /// First of the `channels` samples of pixel (x, y).
+    const float* pixel(int x, int y) const {
+        return data.data() + static_cast<std::size_t>(y) * row_size() +
+               static_cast<std::size_t>(x * channels);
+    }
+    float* pixel(int x, int y) { return const_cast<float*>(std::as_const(*this).pixel(x, y)); }
+    /// Index of the named channel, or -1.
+    int channel(const std::string& name) const;
+};
+
+/// An all-zero picture of that shape. channels 1, 2, 3, 4 are named Y / Y A / R G B / R G B A; others C0, C1,
+/// ...
+Image make_image(int width, int height, int channels);
+
+/// A picture in feature space: per pixel `channels` floats, for colour L*, u*, v* (L* in 0..100). This is
+/// what errors are measured in.
+struct FeatureImage {
+    int width = 0;
+    int height = 0;
+    int channels = 0;
+    std::vector<float> data;  ///< size width * height * channels, interleaved
+
+    std::size_t pixel_count() const {
+        return static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+    }
+    const float* pixel(int x, int y) const {
+        return pixel(static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
+                     static_cast<std::size_t>(x));
+    }
+    const float* pixel(std::size_t index) const {
+        return data.data() + index * static_cast<std::size_t>(channels);
+    }
+    float* pixel(std::size_t index) { return data.data() + index * static_cast<std::size_t>(channels); }
+};
+
+}  // namespace imgmesh

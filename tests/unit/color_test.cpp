@@ -1,0 +1,42 @@
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <random>
+
+#include "libcore/image/color.h"
+
+using namespace imgmesh;
+
+// Reference values: sRGB primaries in L*u*v* under D65, as tabulated by Lindbloom's calculator.
+TEST_CASE("luv: white, black and the primaries have their known values") {
+    CHECK((luv_from_linear({1, 1, 1}) - Vec3f(100, 0, 0)).norm() < 1e-3);
+    CHECK(luv_from_linear({0, 0, 0}).norm() == 0);
+    CHECK((luv_from_linear({1, 0, 0}) - Vec3f(53.24f, 175.01f, 37.76f)).norm() < 0.1);
+    CHECK((luv_from_linear({0, 1, 0}) - Vec3f(87.74f, -83.07f, 107.39f)).norm() < 0.1);
+    CHECK((luv_from_linear({0, 0, 1}) - Vec3f(32.30f, -9.40f, -130.34f)).norm() < 0.1);
+}
+
+TEST_CASE("luv: the inverse gives linear colour back, dark, bright and beyond white") {
+    std::mt19937 random(1);
+    for (int i = 0; i < 2000; ++i) {
+        const float scale = std::pow(10.0f, std::uniform_real_distribution<float>(-4, 1)(random));
+        Vec3f linear;
+        for (int c = 0; c < 3; ++c) linear[c] = scale * std::uniform_real_distribution<float>(0, 1)(random);
+        CHECK((linear_from_luv(luv_from_linear(linear)) - linear).norm() <= 2e-5f * linear.norm() + 1e-9f);
+    }
+}
+
+TEST_CASE("colour spaces: encode inverts decode, and names parse back") {
+    for (const ColorSpace space : {ColorSpace::kSrgb, ColorSpace::kLinear, ColorSpace::kRec709,
+                                   ColorSpace::kGamma22, ColorSpace::kAdobeRgb, ColorSpace::kDisplayP3}) {
+        CHECK(parse_color_space(color_space_name(space)) == space);
+        for (const float x : {-0.2f, 0.0f, 0.001f, 0.03f, 0.0405f, 0.2f, 0.7f, 1.0f, 1.5f}) {
+            const Vec3f encoded(x, 0.5f * x, 0.25f);
+            const Vec3f back = encoded_from_linear(space, linear_from_encoded(space, encoded));
+            CHECK((back - encoded).norm() < 1e-4);
+        }
+        CHECK((linear_from_encoded(space, {1, 1, 1}) - Vec3f(1, 1, 1)).norm() <
+              1e-5);  // white is white everywhere
+    }
+    CHECK_FALSE(parse_color_space("sRGBx").has_value());
+}
