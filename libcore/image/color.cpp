@@ -143,6 +143,23 @@ Vec3f linear_from_luv(const Vec3f& luv) {
     return (matrices().xyz_to_srgb * xyz).cast<float>();
 }
 
+std::array<std::uint16_t, 3> color_codes(const Vec3f& luv) {
+    const Vec3f linear = linear_from_luv(luv);
+    std::array<std::uint16_t, 3> codes;
+    for (int c = 0; c < 3; ++c)
+        codes[static_cast<std::size_t>(c)] =
+            static_cast<std::uint16_t>(std::lround(std::clamp(linear[c], 0.0f, 1.0f) * 65535.0f));
+    return codes;
+}
+
+Vec3f color_from_codes(const std::array<std::uint16_t, 3>& codes) {
+    return luv_from_linear(Vec3f(codes[0], codes[1], codes[2]) / 65535.0f);
+}
+
+Vec3f storable_color(const Vec3f& luv) {
+    return color_from_codes(color_codes(luv));
+}
+
 FeatureImage luv_image(const Image& image) {
     const int r = image.channel("R"), g = image.channel("G"), b = image.channel("B"),
               grey = image.channel("Y");

@@ -26,6 +26,13 @@ Vec3f luv_from_linear(const Vec3f& linear);
 /// The inverse of luv_from_linear for L* > 0; black for L* <= 0 chroma-free.
 Vec3f linear_from_luv(const Vec3f& luv);
 
+/// The L*u*v* colour nearest to `luv` that a container's COLOR_0 holds: linear RGB clamped to [0, 1] and
+/// rounded to 16 bits. storable_color(storable_color(x)) == storable_color(x), bit for bit.
+Vec3f storable_color(const Vec3f& luv);
+/// Linear RGB of a storable colour as its 16-bit codes, and back.
+std::array<std::uint16_t, 3> color_codes(const Vec3f& luv);
+Vec3f color_from_codes(const std::array<std::uint16_t, 3>& codes);
+
 /// Colour of every pixel as L*u*v*. One channel (grey) counts as R = G = B; alpha is ignored.
 /// Throws Error(kUnsupported) where the picture has neither R, G, B nor Y.
 FeatureImage luv_image(const Image& image);

@@ -40,3 +40,14 @@ TEST_CASE("colour spaces: encode inverts decode, and names parse back") {
     }
     CHECK_FALSE(parse_color_space("sRGBx").has_value());
 }
+
+// The container's colours must survive any number of reads and writes unchanged.
+TEST_CASE("storable colours: every stored code reads back as itself") {
+    std::mt19937 random(2);
+    for (int i = 0; i < 5000; ++i) {
+        std::array<std::uint16_t, 3> codes;
+        for (auto& code : codes) code = static_cast<std::uint16_t>(random() >> (16 + random() % 16));
+        CHECK(color_codes(color_from_codes(codes)) == codes);
+    }
+    CHECK(color_codes(luv_from_linear({2, -1, 0.25f})) == std::array<std::uint16_t, 3>{65535, 0, 16384});
+}

@@ -1,0 +1,39 @@
+// Files that appear whole or not at all.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace imgmesh {
+
+/// A file being written under a temporary name in the target's folder. commit() flushes it to disk and
+/// renames it to `path`; destruction without commit() removes it. A run that is killed leaves at most the
+/// temporary file, never a partial `path`. Throws Error(kIo) with the system's reason when the folder cannot
+/// be written or the disk is full.
+class AtomicFile {
+  public:
+    /// `overwrite` false: throws Error(kIo) where `path` exists, here and again at commit().
+    AtomicFile(std::string path, bool overwrite);
+    ~AtomicFile();
+    AtomicFile(const AtomicFile&) = delete;
+    AtomicFile& operator=(const AtomicFile&) = delete;
+
+    /// Where to write. Libraries that want a file name get this one; it ends with the extension of `path`.
+    const std::string& temporary_path() const { return temporary_path_; }
+    /// Replaces the temporary file's content.
+    void write(std::span<const std::uint8_t> bytes);
+    void commit();
+
+  private:
+    std::string path_;
+    std::string temporary_path_;
+    bool overwrite_;
+    bool committed_ = false;
+};
+
+/// The whole file. Throws Error(kIo) when it cannot be read, Error(kBadFile) when longer than `max_bytes`.
+std::vector<std::uint8_t> read_file(const std::string& path, std::uint64_t max_bytes);
+
+}  // namespace imgmesh

@@ -1,0 +1,57 @@
+// The container: a glTF asset (.glb or .gltf) with the base meshes and an EXR with the pixel maps; see
+// docs/format.md.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "libcore/param/mesh_image.h"
+
+namespace imgmesh {
+
+enum class DracoMode { kEdgebreaker, kSequential, kNone };
+
+struct ContainerOptions {
+    DracoMode draco = DracoMode::kEdgebreaker;
+    bool overwrite = true;
+};
+
+/// Writes `mesh_image`; the extension of `path` (.glb or .gltf) decides the spelling.
+///
+/// Loses nothing of a MeshImage whose positions lie on kPositionStep, whose colours are 16-bit linear codes
+/// (storable_color, libcore/image/color.h) and whose weights lie on the map's precision grid: read_container
+/// gives the same mesh and map back, up to the order of vertices and faces and the rotation of corners, which
+/// Draco chooses. Several files are renamed to their names last, the .gltf after what it refers to. Throws
+/// Error: kUsage for another extension; kIo where a file cannot be written.
+void write_container(const std::string& path, const MeshImage& mesh_image,
+                     const ContainerOptions& options = {});
+
+/// What read_container refuses before it takes memory.
+struct ContainerLimits {
+    std::uint64_t max_bytes = std::uint64_t{8} << 30;
+    std::int64_t max_pixels = std::int64_t{1} << 28;
+    std::int64_t max_faces = std::int64_t{1} << 28;
+    int max_levels = 32;
+    int max_json_depth = 64;
+};
+
+/// Facts of the file that a MeshImage does not hold.
+struct ContainerFacts {
+    std::string version;  ///< of the extension
+    DracoMode draco = DracoMode::kNone;
+    std::uint64_t total_bytes = 0;  ///< all files together
+    std::uint64_t mesh_bytes = 0;   ///< meshes as stored, compressed
+    std::uint64_t layer_bytes = 0;  ///< the EXR
+};
+
+struct Container {
+    MeshImage mesh_image;
+    ContainerFacts facts;
+};
+
+/// Reads and checks a container: topology hash, ranges, simplex, limits; URIs stay in the container's folder.
+/// Throws Error: kIo where a file cannot be read; kBadFile for the first finding, with its code
+/// (docs/format.md), as in "x.glb: [layers.face_range] ...".
+Container read_container(const std::string& path, const ContainerLimits& limits = {});
+
+}  // namespace imgmesh
