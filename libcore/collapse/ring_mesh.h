@@ -21,9 +21,9 @@ enum FixedAxis : std::uint8_t { kFixedX = 1, kFixedY = 2 };
 
 /// One vertex: 64 bytes.
 struct alignas(64) Ring {
-    float x = 0, y = 0;        ///< position [pixels]
-    Id neighbor[kMaxValence];  ///< counter-clockwise on screen; on the border from the one along the border
-                               ///< to the other, with no face between last and first
+    float x = 0, y = 0;         ///< position [pixels]
+    Id neighbor[kMaxValence];   ///< counter-clockwise on screen; on the border from the one along the border
+                                ///< to the other, with no face between last and first
     std::uint8_t valence = 0;   ///< 0: the vertex is gone
     std::uint8_t fixed = 0;     ///< FixedAxis bits; not 0 exactly for border vertices
     std::uint16_t version = 0;  ///< rises whenever the vertex merges or goes

@@ -21,7 +21,8 @@ std::vector<FaceField> face_fields(const BaseMesh& mesh) {
             field.vx = static_cast<float>(-ab.y() / det);
             field.vy = static_cast<float>(ab.x() / det);
             for (int k = 0; k < 3; ++k) {
-                const float fa = mesh.feature_of(a)[k], fb = mesh.feature_of(b)[k], fc = mesh.feature_of(c)[k];
+                const float fa = mesh.feature_of(a)[k], fb = mesh.feature_of(b)[k],
+                            fc = mesh.feature_of(c)[k];
                 field.f[k] = fa;
                 field.fx[k] = field.ux * (fb - fa) + field.vx * (fc - fa);
                 field.fy[k] = field.uy * (fb - fa) + field.vy * (fc - fa);
@@ -55,6 +56,21 @@ std::vector<Face> face_neighbors(const BaseMesh& mesh) {
         neighbors[b.face][b.corner] = a.face;
     }
     return neighbors;
+}
+
+Id walk_to(const Vec2f& p, Id face, const std::vector<FaceField>& fields,
+           const std::vector<Face>& neighbors) {
+    // The bound only guards against rounding in circles: in a convex domain the walk arrives.
+    for (std::size_t step = 0; step < fields.size() + 8; ++step) {
+        const FaceField& field = fields[face];
+        const float u = field.u(p.x(), p.y()), v = field.v(p.x(), p.y()), w = 1 - u - v;
+        const float least = std::min({u, v, w});
+        if (least >= 0) return face;
+        const Id next = neighbors[face][least == w ? 0 : least == u ? 1 : 2];
+        if (next == kNone) return face;
+        face = next;
+    }
+    return face;
 }
 
 }  // namespace imgmesh

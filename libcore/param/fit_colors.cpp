@@ -13,7 +13,8 @@ struct FaceSums {
     double rhs[3][C] = {};
 };
 
-std::vector<FaceSums> sum_over_pixels(const BaseMesh& mesh, const FeatureImage& feature, const std::vector<FitTerm>& terms) {
+std::vector<FaceSums> sum_over_pixels(const BaseMesh& mesh, const FeatureImage& feature,
+                                      const std::vector<FitTerm>& terms) {
     std::vector<FaceSums> sums(mesh.faces.size());
     for (const FitTerm& term : terms)
         for (std::size_t i = 0; i < term.map->coords.size(); ++i) {
@@ -37,7 +38,8 @@ Vector multiply(const BaseMesh& mesh, const std::vector<FaceSums>& sums, const V
     Vector y = Vector::Zero(x.rows(), C);
     for (std::size_t f = 0; f < sums.size(); ++f)
         for (std::size_t a = 0; a < 3; ++a)
-            for (std::size_t b = 0; b < 3; ++b) y.row(mesh.faces[f][a]) += sums[f].gram[a][b] * x.row(mesh.faces[f][b]);
+            for (std::size_t b = 0; b < 3; ++b)
+                y.row(mesh.faces[f][a]) += sums[f].gram[a][b] * x.row(mesh.faces[f][b]);
     return y;
 }
 
@@ -57,7 +59,8 @@ void fit_colors(BaseMesh& mesh, const FeatureImage& feature, const std::vector<F
     for (Eigen::Index v = 0; v < vertices; ++v)
         for (int c = 0; c < C; ++c) x(v, c) = mesh.feature_of(static_cast<Id>(v))[c];
 
-    // A vertex that only pixels with tiny weights touch would be free to run away: pull it weakly to where it is.
+    // A vertex that only pixels with tiny weights touch would be free to run away: pull it weakly to where it
+    // is.
     const double pull = 1e-3;
     rhs += pull * x;
     diagonal.array() += pull;

@@ -1,4 +1,5 @@
-// Source: docs/decisions/0002-relaxed-map.md. The paper tracks pixels through every collapse instead (sec. 3.3).
+// Source: docs/decisions/0002-relaxed-map.md. The paper tracks pixels through every collapse instead
+// (sec. 3.3).
 #include "libcore/param/relax.h"
 
 #include <algorithm>
@@ -38,22 +39,8 @@ struct Neighborhood {
 constexpr int kStepX[8] = {1, 1, 0, -1, -1, -1, 0, 1};
 constexpr int kStepY[8] = {0, 1, 1, 1, 0, -1, -1, -1};
 
-// The face that holds p, walking from `face` across the edge that p lies farthest beyond. The domain is convex, so the
-// walk arrives; the bound only guards against rounding in circles.
-Id walk(Id face, const Vec2f& p, const std::vector<FaceField>& fields, const std::vector<Face>& neighbors) {
-    for (int step = 0; step < 1000; ++step) {
-        const FaceField& field = fields[face];
-        const float u = field.u(p.x(), p.y()), v = field.v(p.x(), p.y()), w = 1 - u - v;
-        const float least = std::min({u, v, w});
-        if (least >= 0) return face;
-        const Id next = neighbors[face][least == w ? 0 : least == u ? 1 : 2];
-        if (next == kNone) return face;
-        face = next;
-    }
-    return face;
-}
-
-Vec2f gauss_newton_step(const FaceField& field, const Vec2f& p, const float* color, const Vec2f& target, float mu) {
+Vec2f gauss_newton_step(const FaceField& field, const Vec2f& p, const float* color, const Vec2f& target,
+                        float mu) {
     float jxx = mu, jxy = 0, jyy = mu;
     float bx = mu * (target.x() - p.x()), by = mu * (target.y() - p.y());
     const float dx = p.x() - field.ax, dy = p.y() - field.ay;
@@ -102,15 +89,17 @@ void relax(MovingPixels& pixels, const std::vector<FaceField>& fields, const std
         }
         const Vec2f rest(static_cast<float>(x), static_cast<float>(y));
         const Vec2f p = rest + pixels.displacement[index];
-        Vec2f step = gauss_newton_step(fields[pixels.face[index]], p, feature.pixel(index), rest + mean / count, smoothness);
+        Vec2f step = gauss_newton_step(fields[pixels.face[index]], p, feature.pixel(index),
+                                       rest + mean / count, smoothness);
         if (x == 0 || x == w - 1) step.x() = 0;
         if (y == 0 || y == h - 1) step.y() = 0;
         step *= std::min(1.0f, kLongestStep / std::max(step.norm(), 1e-20f));
         for (int half = 0; half <= kHalvings; ++half, step *= 0.5f) {
-            const Vec2f q((p + step).cwiseMax(0.0f).cwiseMin(Vec2f(static_cast<float>(w - 1), static_cast<float>(h - 1))));
+            const Vec2f q((p + step).cwiseMax(0.0f).cwiseMin(
+                Vec2f(static_cast<float>(w - 1), static_cast<float>(h - 1))));
             if (!near.allows(q)) continue;
             pixels.displacement[index] = q - rest;
-            pixels.face[index] = walk(pixels.face[index], q, fields, neighbors);
+            pixels.face[index] = walk_to(q, pixels.face[index], fields, neighbors);
             return;
         }
     };
