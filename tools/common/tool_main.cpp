@@ -166,8 +166,9 @@ Failure current_failure() {
 
 int run_tool(const Tool& tool, int argc, char** argv) {
     hold_standard_streams();
-    // A reader that goes away is an error of write(), not the end of the process half-way through a file.
+    // A reader that goes away and a limit on file size are errors of write(), not the end of the process.
     std::signal(SIGPIPE, SIG_IGN);
+    std::signal(SIGXFSZ, SIG_IGN);
     try {
         return static_cast<int>(parse_and_run(tool, argc, argv));
     } catch (...) {
