@@ -118,6 +118,13 @@ Vec3f encoded_from_linear(ColorSpace space, const Vec3f& linear) {
     return encoded;
 }
 
+Eigen::Matrix3d rgb_from_xyz(ColorSpace space) {
+    const Matrices& m = matrices();
+    if (space == ColorSpace::kAdobeRgb) return m.srgb_to_adobe * m.xyz_to_srgb;
+    if (space == ColorSpace::kDisplayP3) return m.srgb_to_p3 * m.xyz_to_srgb;
+    return m.xyz_to_srgb;
+}
+
 Vec3f luv_from_linear(const Vec3f& linear) {
     const Vec3d xyz = matrices().srgb_to_xyz * linear.cast<double>();
     const double y = xyz[1];

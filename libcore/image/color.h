@@ -20,6 +20,9 @@ Vec3f linear_from_encoded(ColorSpace space, const Vec3f& encoded);
 /// The inverse of linear_from_encoded.
 Vec3f encoded_from_linear(ColorSpace space, const Vec3f& linear);
 
+/// XYZ under D65 (white has Y = 1) -> linear RGB of the space's own primaries.
+Eigen::Matrix3d rgb_from_xyz(ColorSpace space);
+
 /// Linear RGB (sRGB primaries, white = 1,1,1) -> L*u*v* under D65. Defined and continuous for every finite
 /// input: L* follows its linear branch below black, and chroma is zero where X + 15 Y + 3 Z <= 0.
 Vec3f luv_from_linear(const Vec3f& linear);
