@@ -11,7 +11,8 @@ namespace imgmesh {
 /// A file being written under a temporary name in the target's folder. commit() flushes it to disk and
 /// renames it to `path`; destruction without commit() removes it. A run that is killed leaves at most the
 /// temporary file, never a partial `path`. Throws Error(kIo) with the system's reason when the folder cannot
-/// be written or the disk is full.
+/// be written or the disk is full, and where `path` is something else than a regular file (a device, a
+/// folder). A symbolic link is followed: the file behind it is replaced, not the link.
 class AtomicFile {
   public:
     /// `overwrite` false: throws Error(kIo) where `path` exists, here and again at commit().
@@ -27,11 +28,16 @@ class AtomicFile {
     void commit();
 
   private:
-    std::string path_;
+    std::string path_;    ///< as given: for messages
+    std::string target_;  ///< what is renamed to: `path_` with symbolic links followed
     std::string temporary_path_;
     bool overwrite_;
     bool committed_ = false;
 };
+
+/// From now on SIGINT, SIGTERM and SIGHUP remove the temporary files of living AtomicFiles before they end
+/// the process as they would have. Signals that the process ignores or handles already are left alone.
+void remove_temporaries_on_signals();
 
 /// The whole file. Throws Error(kIo) when it cannot be read, Error(kBadFile) when longer than `max_bytes`.
 std::vector<std::uint8_t> read_file(const std::string& path, std::uint64_t max_bytes);

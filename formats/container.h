@@ -10,7 +10,7 @@
 
 namespace imgmesh {
 
-enum class DracoMode { kEdgebreaker, kSequential, kNone };
+enum class DracoMode { kEdgebreaker, kSequential, kOff };
 
 struct ContainerOptions {
     DracoMode draco = DracoMode::kEdgebreaker;
@@ -42,7 +42,7 @@ struct ContainerLimits {
 /// Facts of the file that a MeshImage does not hold.
 struct ContainerFacts {
     std::string version;  ///< of the extension
-    DracoMode draco = DracoMode::kNone;
+    DracoMode draco = DracoMode::kOff;
     std::uint64_t total_bytes = 0;  ///< all files together
     std::uint64_t mesh_bytes = 0;   ///< meshes as stored, compressed
     std::uint64_t layer_bytes = 0;  ///< the EXR
