@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "libcore/param/mesh_image.h"
 
@@ -25,6 +26,9 @@ struct ContainerOptions {
 /// Error: kUsage for another extension; kIo where a file cannot be written.
 void write_container(const std::string& path, const MeshImage& mesh_image,
                      const ContainerOptions& options = {});
+
+/// The files that write_container makes for `path`, itself first: a .gltf has a .bin and a .exr beside it.
+std::vector<std::string> container_files(const std::string& path);
 
 /// What read_container refuses before it takes memory.
 struct ContainerLimits {

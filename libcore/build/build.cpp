@@ -20,16 +20,21 @@ void require(bool holds, const std::string& text) {
 
 void check(const BuildParams& p) {
     const auto positive = [](double x) { return std::isfinite(x) && x > 0; };
-    require(p.stop.faces.value_or(2) >= 2, cat("faces is ", p.stop.faces.value_or(2), ", expected 2 or more"));
-    require(p.stop.vertices.value_or(4) >= 4, cat("vertices is ", p.stop.vertices.value_or(4), ", expected 4 or more"));
+    require(p.stop.faces.value_or(2) >= 2,
+            cat("faces is ", p.stop.faces.value_or(2), ", expected 2 or more"));
+    require(p.stop.vertices.value_or(4) >= 4,
+            cat("vertices is ", p.stop.vertices.value_or(4), ", expected 4 or more"));
     require(p.stop.error.value_or(0) >= 0 && std::isfinite(p.stop.error.value_or(0)),
             cat("error is ", p.stop.error.value_or(0), ", expected a finite number, 0 or more"));
     require(positive(p.stop.density) && p.stop.density <= 100,
             cat("density is ", p.stop.density, ", expected a percentage above 0, at most 100"));
-    require(positive(p.geometry_weight), cat("geometry weight is ", p.geometry_weight, ", expected a finite number above 0"));
-    require(positive(p.color_weight), cat("color weight is ", p.color_weight, ", expected a finite number above 0"));
+    require(positive(p.geometry_weight),
+            cat("geometry weight is ", p.geometry_weight, ", expected a finite number above 0"));
+    require(positive(p.color_weight),
+            cat("color weight is ", p.color_weight, ", expected a finite number above 0"));
     require(std::isfinite(p.projection_color_weight) && p.projection_color_weight >= 0,
-            cat("projection color weight is ", p.projection_color_weight, ", expected a finite number, 0 or more"));
+            cat("projection color weight is ", p.projection_color_weight,
+                ", expected a finite number, 0 or more"));
 }
 
 // Smoother gradients pay where vertices are far apart; figures in docs/paper-map.md.
@@ -77,11 +82,15 @@ BuildResult build_mesh_image(const Image& image, const BuildParams& params, cons
     check(params);
     require(image.width >= 1 && image.height >= 1, "the picture is empty");
     const auto stage = [&](double begin, double end) {
-        return progress ? Progress([=](double f, std::string_view name) { progress(begin + f * (end - begin), name); }) : Progress();
+        return progress ? Progress([=](double f, std::string_view name) {
+            progress(begin + f * (end - begin), name);
+        })
+                        : Progress();
     };
     const FeatureImage feature = luv_image(image);
     for (const float f : feature.data)
-        if (!std::isfinite(f)) throw Error(ErrorCode::kUnsupported, "the picture has samples that are not finite");
+        if (!std::isfinite(f))
+            throw Error(ErrorCode::kUnsupported, "the picture has samples that are not finite");
 
     const CollapseParams collapse = collapse_params(params, static_cast<double>(image.pixel_count()));
     CollapseResult collapsed = collapse_edges(grid_mesh(feature), collapse, stage(0.0, 0.7));
@@ -95,8 +104,10 @@ BuildResult build_mesh_image(const Image& image, const BuildParams& params, cons
     BuildResult result;
     result.report.collapses = collapsed.collapses;
     result.report.map_rms = map_rms(level.mesh, level.map, feature);
-    result.report.gouraud_rms = map_rms(level.mesh, trivial_map(level.mesh, image.width, image.height), feature);
-    result.mesh_image.source = {image.width, image.height, image.color_space, image.sample_type, color_channels(image), false};
+    result.report.gouraud_rms =
+        map_rms(level.mesh, trivial_map(level.mesh, image.width, image.height), feature);
+    result.mesh_image.source = {image.width,       image.height,          image.color_space,
+                                image.sample_type, color_channels(image), false};
     result.mesh_image.parameters = listed(params, collapse, level.map);
     result.mesh_image.levels.push_back(std::move(level));
     if (progress) progress(1.0, "done");

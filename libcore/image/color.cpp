@@ -141,8 +141,8 @@ Vec3f luv_from_linear(const Vec3f& linear) {
 
 Vec3f linear_from_luv(const Vec3f& luv) {
     const double lightness = luv[0];
-    const double y = lightness > kLinearSlope * kLinearLimit ? cube((lightness + 16) / 116)
-                                                             : lightness / kLinearSlope;
+    const double y =
+        lightness > kLinearSlope * kLinearLimit ? cube((lightness + 16) / 116) : lightness / kLinearSlope;
     double u = kWhiteU, v = kWhiteV;
     if (lightness > 0) {
         u += luv[1] / (13 * lightness);

@@ -1,6 +1,5 @@
 #include "libcore/param/fit_colors.h"
 
-
 #include <algorithm>
 #include <vector>
 
@@ -9,8 +8,8 @@
 namespace imgmesh {
 namespace {
 
-// Source: projected block Gauss-Seidel. The features of one vertex share one weight, so its best colour is the nearest
-// one in gamut to its unconstrained best.
+// Source: projected block Gauss-Seidel. The features of one vertex share one weight, so its best colour is
+// the nearest one in gamut to its unconstrained best.
 constexpr int C = 3;
 
 // What the pixels of one face say about its three corners: sums of w w' and of w feature'.
@@ -38,7 +37,8 @@ std::vector<FaceSums> sum_over_pixels(const BaseMesh& mesh, const FeatureImage& 
     return sums;
 }
 
-// For every vertex the corners of faces that it is, as face * 3 + corner: those of v from first[v] to first[v + 1].
+// For every vertex the corners of faces that it is, as face * 3 + corner: those of v from first[v] to first[v
+// + 1].
 struct CornersOfVertices {
     std::vector<std::size_t> first, corner;
 };
@@ -61,10 +61,11 @@ CornersOfVertices corners_of_vertices(const BaseMesh& mesh) {
 void fit_colors(BaseMesh& mesh, const FeatureImage& feature, const std::vector<FitTerm>& terms) {
     const std::vector<FaceSums> sums = sum_over_pixels(mesh, feature, terms);
     const CornersOfVertices corners = corners_of_vertices(mesh);
-    // A vertex that only pixels with tiny weights touch would be free to run away: pull it weakly to where it is.
+    // A vertex that only pixels with tiny weights touch would be free to run away: pull it weakly to where it
+    // is.
     constexpr double kPull = 1e-3;
-    // The normal equations are those of a mass matrix: each pass shrinks an error to a third or less. More than 6 passes
-    // change the RMS in the fourth digit.
+    // The normal equations are those of a mass matrix: each pass shrinks an error to a third or less. More
+    // than 6 passes change the RMS in the fourth digit.
     constexpr int kPasses = 6;
     for (int pass = 0; pass < kPasses; ++pass) {
         for (Id v = 0; v < mesh.vertex_count(); ++v) {
