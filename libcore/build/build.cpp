@@ -50,7 +50,7 @@ CollapseParams collapse_params(const BuildParams& params, double pixels) {
     out.target_vertices = stop.vertices.value_or(0);
     if (stop.error) out.max_error = *stop.error / params.color_weight;
     if (!stop.faces && !stop.vertices && !stop.error)
-        out.target_vertices = std::max(std::int64_t{4}, std::llround(pixels * stop.density / 100));
+        out.target_vertices = std::max(std::int64_t{4}, static_cast<std::int64_t>(std::llround(pixels * stop.density / 100)));
     const auto vertices = static_cast<double>(std::max(out.target_vertices, out.target_faces / 2));
     // With an error alone the density is not known beforehand; the default's serves.
     out.smoothing = smoothing_passes(vertices > 0 ? pixels / vertices : 100);
