@@ -29,8 +29,9 @@ struct Neighborhood {
             const int m = (k + 2) % 8;
             if (!inside[k] || !inside[m]) continue;
             const Vec2f &a = around[k], &corner = around[k + 1], &b = around[m];
-            if (area2(p, a, b) < kLeastMovingArea || area2(p, a, corner) < kLeastMovingArea ||
-                area2(p, corner, b) < kLeastMovingArea)
+            // Not >=, rather than <: a step that overflowed is not a number, and refused.
+            if (!(area2(p, a, b) >= kLeastMovingArea && area2(p, a, corner) >= kLeastMovingArea &&
+                  area2(p, corner, b) >= kLeastMovingArea))
                 return false;
         }
         return true;
@@ -41,20 +42,22 @@ constexpr int kStepY[8] = {0, 1, 1, 1, 0, -1, -1, -1};
 
 Vec2f gauss_newton_step(const FaceField& field, const Vec2f& p, const float* color, const Vec2f& target,
                         float mu) {
-    float jxx = mu, jxy = 0, jyy = mu;
+    float gram_xx = 0, gram_xy = 0, gram_yy = 0;
     float bx = mu * (target.x() - p.x()), by = mu * (target.y() - p.y());
     const float dx = p.x() - field.ax, dy = p.y() - field.ay;
     for (int c = 0; c < 3; ++c) {
         const float gx = field.fx[c], gy = field.fy[c];
         const float e = field.f[c] + gx * dx + gy * dy - color[c];
-        jxx += gx * gx;
-        jxy += gx * gy;
-        jyy += gy * gy;
+        gram_xx += gx * gx;
+        gram_xy += gx * gy;
+        gram_yy += gy * gy;
         bx -= gx * e;
         by -= gy * e;
     }
-    const float det = jxx * jyy - jxy * jxy;  // >= mu^2
-    return {(jyy * bx - jxy * by) / det, (jxx * by - jxy * bx) / det};
+    // Sums of what is never negative. (Of J'J + mu I as one matrix, J'J steep and singular, nothing but
+    // rounding would be left.)
+    const float det = mu * (mu + gram_xx + gram_yy) + std::max(0.0f, gram_xx * gram_yy - gram_xy * gram_xy);
+    return {((gram_yy + mu) * bx - gram_xy * by) / det, ((gram_xx + mu) * by - gram_xy * bx) / det};
 }
 
 }  // namespace
