@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "formats/atomic_file.h"
 #include "formats/container.h"
@@ -180,6 +181,17 @@ TEST_CASE("refusals: IMGMESH_pixel_map") {
     CHECK(file.with([](json& d) { level(d, 0)["error"] = "x"; }) == "ext.member");
     CHECK(file.with([](json& d) { level(d, 0)["topology"] = "ab"; }) == "ext.member");
     CHECK(file.with([](json& d) { level(d, 0)["topology"] = std::string(64, '0'); }) == "mesh.topology");
+}
+
+TEST_CASE("refusals: docs/format.md lists every code, each is a code once") {
+    const Bytes bytes = read_bytes(IMGMESH_DOCS "/format.md");
+    const std::string text(bytes.begin(), bytes.end());
+    std::set<std::string_view> codes;
+    for (const Finding& f : kFindings) {
+        INFO(f.code);
+        CHECK(text.find(cat("| `", f.code, "` | ", f.meaning, " |\n")) != std::string::npos);
+        CHECK(codes.insert(f.code).second);
+    }
 }
 
 // The schemas and the reader agree on what is wrong.
