@@ -219,6 +219,73 @@ void write_exr(const std::string& path, const Imath::Box2i& shown, const Imath::
 
 }  // namespace
 
+TEST_CASE("read: CMYK, bits and palettes become RGB or grey") {
+    const TempFolder folder;
+    Image ink = make_image(4, 4, 4);
+    for (std::size_t i = 0; i < ink.data.size(); i += 4) ink.data[i] = 1;  // cyan alone
+    write_with_oiio(folder / "cmyk.tif", ink, OIIO::TypeUInt8, [](OIIO::ImageSpec& spec) {
+        spec.attribute("tiff:ColorSpace", "CMYK");
+        spec.channelnames = {"C", "M", "Y", "K"};
+        spec.attribute("oiio:ColorSpace", "CMYK");
+    });
+    const Image cyan = read_image(folder / "cmyk.tif");
+    CHECK(cyan.channel_names == Names{"R", "G", "B"});
+    CHECK(cyan.pixel(2, 2)[0] == 0);
+    CHECK(cyan.pixel(2, 2)[1] == 1);
+
+    Image bits = make_image(9, 2, 1);
+    for (std::size_t i = 0; i < bits.data.size(); i += 2) bits.data[i] = 1;
+    write_with_oiio(folder / "bits.tif", bits, OIIO::TypeUInt8,
+                    [](OIIO::ImageSpec& spec) { spec.attribute("oiio:BitsPerSample", 1); });
+    CHECK(max_difference(read_image(folder / "bits.tif"), bits) == 0);
+    CHECK(read_image(folder / "bits.tif").channel_names == Names{"Y"});
+
+    // GIF is palette all through; the first frame is the picture.
+    const auto out = OIIO::ImageOutput::create("gif");
+    const std::vector<OIIO::ImageSpec> specs(2, OIIO::ImageSpec(4, 4, 3, OIIO::TypeUInt8));
+    REQUIRE(out->open(folder / "two.gif", 2, specs.data()));
+    for (const float grey : {1.0f, 0.0f}) {
+        const std::vector<float> frame(4 * 4 * 3, grey);
+        REQUIRE(out->write_image(OIIO::TypeFloat, frame.data()));
+        if (grey == 1) REQUIRE(out->open(folder / "two.gif", specs[1], OIIO::ImageOutput::AppendSubimage));
+    }
+    REQUIRE(out->close());
+    const Image first = read_image(folder / "two.gif");
+    CHECK(first.channel_names == Names{"R", "G", "B", "A"});
+    for (const float x : first.data) CHECK(x == 1);
+}
+
+// OpenImageIO writes no such WebP, so the chunks are put together here (WebP container specification).
+TEST_CASE("read: a WebP's orientation and profile") {
+    const TempFolder folder;
+    const Image stored = random_picture(6, 3, 3);
+    write_image(folder / "w.webp", stored);
+    const std::vector<std::uint8_t> plain = load(folder / "w.webp");
+    const std::string bitstream(plain.begin() + 12, plain.end());
+    const auto number = [](std::size_t value, int count) {
+        std::string out;
+        for (int i = 0; i < count; ++i) out += static_cast<char>(value >> (8 * i) & 0xFF);
+        return out;
+    };
+    const auto chunk = [&](const std::string& name, const std::string& body) {
+        return name + number(body.size(), 4) + body + std::string(body.size() % 2, '\0');
+    };
+    const std::string exif = "II*" + number(0, 1) + number(8, 4) + number(1, 2) + number(0x0112, 2) +
+                             number(3, 2) + number(1, 4) + number(6, 4) + number(0, 4);
+    const auto icc = icc_from_color_space(ColorSpace::kDisplayP3);
+    const std::string chunks = chunk("VP8X", number(0x28, 4) + number(5, 3) + number(2, 3)) +
+                               chunk("ICCP", {icc.begin(), icc.end()}) + bitstream + chunk("EXIF", exif);
+    const std::string file = "RIFF" + number(4 + chunks.size(), 4) + "WEBP" + chunks;
+    save(folder / "w.webp", {file.begin(), file.end()});
+    const Image read = read_image(folder / "w.webp");
+    CHECK(read.color_space == ColorSpace::kDisplayP3);
+    REQUIRE(read.width == 3);
+    REQUIRE(read.height == 6);
+    // 6: the first stored row is the right side, the first column the top.
+    CHECK(read.pixel(2, 0)[1] == stored.pixel(0, 0)[1]);
+    CHECK(read.pixel(0, 5)[1] == stored.pixel(5, 2)[1]);
+}
+
 // The display window is the picture; the data window may be smaller, larger, or elsewhere.
 TEST_CASE("read: an EXR's windows, tiles and compressions") {
     const TempFolder folder;
