@@ -5,6 +5,7 @@ find_package(nlohmann_json REQUIRED)
 find_package(TinyGLTF CONFIG REQUIRED)
 find_package(draco CONFIG REQUIRED)
 find_package(OpenEXR CONFIG REQUIRED)
+find_package(OpenSSL REQUIRED COMPONENTS Crypto)
 find_package(CLI11 CONFIG REQUIRED)
 
 # Debian's OpenImageIO names include folders (/usr/include/opencv4) that its package does not bring; CMake would

@@ -4,12 +4,13 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "libcore/param/mesh_image.h"
 
 namespace imgmesh {
 
-enum class DracoMode { kEdgebreaker, kSequential, kNone };
+enum class DracoMode { kEdgebreaker, kSequential, kOff };
 
 struct ContainerOptions {
     DracoMode draco = DracoMode::kEdgebreaker;
@@ -26,6 +27,9 @@ struct ContainerOptions {
 void write_container(const std::string& path, const MeshImage& mesh_image,
                      const ContainerOptions& options = {});
 
+/// The files that write_container makes for `path`, itself first: a .gltf has a .bin and a .exr beside it.
+std::vector<std::string> container_files(const std::string& path);
+
 /// What read_container refuses before it takes memory.
 struct ContainerLimits {
     std::uint64_t max_bytes = std::uint64_t{8} << 30;
@@ -38,7 +42,7 @@ struct ContainerLimits {
 /// Facts of the file that a MeshImage does not hold.
 struct ContainerFacts {
     std::string version;  ///< of the extension
-    DracoMode draco = DracoMode::kNone;
+    DracoMode draco = DracoMode::kOff;
     std::uint64_t total_bytes = 0;  ///< all files together
     std::uint64_t mesh_bytes = 0;   ///< meshes as stored, compressed
     std::uint64_t layer_bytes = 0;  ///< the EXR

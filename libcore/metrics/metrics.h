@@ -2,57 +2,66 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 #include "libcore/image/image.h"
 #include "libcore/param/mesh_image.h"
 
 namespace imgmesh {
 
-/// Shape of the triangles of a mesh.
+/// Shape of the triangles of a mesh. Means are over the faces of positive area; the least values take 0 for
+/// every other face. All zero for an empty mesh.
 struct MeshQuality {
-    std::int64_t vertices = 0;
+    std::int64_t vertices = 0;  ///< all, also those of no face
     std::int64_t faces = 0;
     std::int64_t edges = 0;
-    std::int64_t boundary_edges = 0;
-    std::int64_t components = 0;  ///< connected components (sharing an edge)
-    std::int64_t euler = 0;       ///< V - E + F over vertices in use
-    std::int64_t nonmanifold_edges =
-        0;  ///< edges with more than two faces, or two faces running the same way
+    std::int64_t boundary_edges = 0;  ///< edges of one face
+    std::int64_t components = 0;      ///< connected components (sharing an edge)
+    std::int64_t euler = 0;           ///< V - E + F over vertices in use
+    /// Edges with more than two faces, or two faces running the same way.
+    std::int64_t nonmanifold_edges = 0;
     std::int64_t nonmanifold_vertices = 0;  ///< vertices whose faces form more than one fan
     std::int64_t flipped_faces = 0;         ///< signed_area2 <= 0
     double area = 0;                        ///< sum of signed areas [px^2]
-    double mean_valence = 0;
-    double mean_edge_ratio = 0;    ///< mean over faces of longest edge / shortest edge (1 is best)
-    double mean_radius_ratio = 0;  ///< mean of 2 inradius / circumradius (1 is best)
-    double mean_shape = 0;         ///< mean of q = 4 sqrt(3) area / sum of squared edges (1 is best)
+    double mean_valence = 0;                ///< edges at a vertex, over vertices in use
+    double mean_edge_ratio = 0;             ///< longest edge / shortest edge of a face (1 is best)
+    double mean_radius_ratio = 0;           ///< 2 inradius / circumradius (1 is best)
+    double mean_shape = 0;                  ///< q = 4 sqrt(3) area / sum of squared edges (1 is best)
     double min_shape = 0;
     double min_angle_deg = 0;
 };
+
+/// Any mesh whose face corners are < vertex_count(), manifold or not. O(F log F).
 MeshQuality mesh_quality(const BaseMesh& mesh);
 
 /// The pixel map as a mapping of the pixel grid into the plane.
 struct MapQuality {
-    std::int64_t pixels = 0;           ///< inside the mask
-    std::int64_t unmapped = 0;         ///< pixels of `inside` with face kNone or out of range
+    std::int64_t pixels = 0;           ///< inside the mask; all without one
+    std::int64_t unmapped = 0;         ///< of these, without a face of the mesh (kNone or out of range)
     std::int64_t outside_simplex = 0;  ///< a weight below 0, or not finite
-    std::int64_t flipped_triangles =
-        0;                         ///< of the four triangles of each 2x2 cell (both diagonals), area <= 0
-    double min_area2 = 0;          ///< least twice-area of those triangles [px^2]; 1 in the source
-    double max_jump = 0;           ///< largest distance between the images of two 4-neighbours [px]
-    double mean_displacement = 0;  ///< mean distance between a pixel and its image [px]
+    /// Of the four triangles of each 2x2 cell (both diagonals) whose pixels are mapped, those of area <= 0.
+    std::int64_t flipped_triangles = 0;
+    double min_area2 = 0;  ///< least twice-area of those triangles [px^2]; 1 in the source, or if none
+    double max_jump = 0;   ///< largest distance between the images of two 4-neighbours [px]
+    double mean_displacement = 0;  ///< mean distance between a mapped pixel and its image [px]
     double max_displacement = 0;
 };
-MapQuality map_quality(const BaseMesh& mesh, const PixelMap& map);
 
-/// Where each pixel lands: positions of map.coords in `mesh`, width * height; not finite outside the mask.
+/// Any map, valid or not. has_mask: pixels with face kNone are outside the picture, not unmapped.
+MapQuality map_quality(const BaseMesh& mesh, const PixelMap& map, bool has_mask = false);
+
+/// Where each pixel lands: positions of map.coords in `mesh`, width * height; NaN where the face is kNone or
+/// out of range.
 std::vector<Vec2d> mapped_positions(const BaseMesh& mesh, const PixelMap& map);
 
-/// Root mean square over pixels of the Euclidean distance in feature space; pixels with map face kNone are
-/// left out.
+/// Root mean square over pixels of the Euclidean distance in feature space between the map's interpolated
+/// features and `reference`; pixels with map face kNone are left out (0 if all are). Face ids must be valid.
+/// Throws Error(kUsage) where sizes or channels differ.
 double map_rms(const BaseMesh& mesh, const PixelMap& map, const FeatureImage& reference);
 
-/// Pictures against each other, both as encoded in their colour space, over R, G, B (or Y) of [0, 1].
-/// Throws Error(kUsage) where sizes differ.
+/// Pictures against each other, both as encoded in their colour space, over R, G, B of [0, 1]; grey counts as
+/// R = G = B, alpha is ignored. Throws Error(kUsage) where sizes differ, Error(kUnsupported) for a picture
+/// without colour.
 struct ImageDifference {
     double rms_rgb = 0;  ///< over all samples, 0..1
     double psnr = 0;     ///< 20 log10(1 / rms_rgb) [dB]; infinite when equal

@@ -1,0 +1,227 @@
+// Source: the Draco bitstream specification 2.2, sections "Decode header" and "Decode connectivity".
+#include "formats/draco_mesh.h"
+
+#include <draco/compression/expert_encode.h>
+#include <draco/compression/mesh/mesh_edgebreaker_decoder.h>
+#include <draco/compression/mesh/mesh_sequential_decoder.h>
+#include <draco/mesh/mesh.h>
+
+#include <algorithm>
+#include <bit>
+#include <memory>
+
+#include "formats/finding_codes.h"
+#include "libcore/base/error.h"
+
+namespace imgmesh {
+namespace {
+
+constexpr std::size_t kHeaderBytes = 11;  // "DRACO", major, minor, type, method, flags
+
+// Adds one attribute with a value per vertex, taken as it lies in memory.
+template <typename T, std::size_t N>
+int add_attribute(draco::Mesh& mesh, draco::GeometryAttribute::Type type, draco::DataType data_type,
+                  bool normalized, std::uint32_t unique_id, const std::vector<std::array<T, N>>& values) {
+    draco::GeometryAttribute attribute;
+    attribute.Init(type, nullptr, static_cast<std::int8_t>(N), data_type, normalized, sizeof(values[0]), 0);
+    const int id = mesh.AddAttribute(attribute, true, static_cast<std::uint32_t>(values.size()));
+    mesh.attribute(id)->set_unique_id(unique_id);
+    mesh.attribute(id)->buffer()->Write(0, values.data(), values.size() * sizeof(values[0]));
+    return id;
+}
+
+// With range = (2^bits - 1) step Draco's step is exactly kPositionStep, and origin + q step has no rounding:
+// all are multiples of the step and below 2^23 of them (kMaxCoordinate).
+void quantize_positions(draco::ExpertEncoder& encoder, int attribute, const StoredMesh& mesh) {
+    std::array<float, 3> low = mesh.position.front(), high = low;
+    for (const auto& p : mesh.position)
+        for (std::size_t i = 0; i < 3; ++i) {
+            low[i] = std::min(low[i], p[i]);
+            high[i] = std::max(high[i], p[i]);
+        }
+    const float extent = std::max(high[0] - low[0], high[1] - low[1]);
+    const int bits = std::bit_width(static_cast<std::uint32_t>(extent / kPositionStep));
+    const float range = static_cast<float>((1 << bits) - 1) * kPositionStep;
+    encoder.SetAttributeExplicitQuantization(attribute, bits, 3, low.data(), range);
+}
+
+struct Header {
+    std::uint8_t method;
+    std::uint64_t vertices;  // edgebreaker: before vertices are split at seams
+    std::uint64_t faces;
+    std::uint8_t seams;  // edgebreaker: attributes with connectivity of their own
+};
+
+class HeaderReader {
+  public:
+    explicit HeaderReader(std::span<const std::uint8_t> bytes) : bytes_(bytes) {}
+
+    std::uint8_t byte() {
+        if (at_ == bytes_.size()) refuse("draco.header", "the Draco mesh ends in its header");
+        return bytes_[at_++];
+    }
+    // LEB128, at most 32 bits.
+    std::uint64_t varint() {
+        std::uint64_t value = 0;
+        for (int shift = 0; shift < 35; shift += 7) {
+            const std::uint8_t b = byte();
+            value |= std::uint64_t{b & 127u} << shift;
+            if (b < 128) return value;
+        }
+        refuse("draco.header", "a number in the Draco mesh's header is longer than 32 bits");
+    }
+
+  private:
+    std::span<const std::uint8_t> bytes_;
+    std::size_t at_ = 0;
+};
+
+Header read_header(std::span<const std::uint8_t> bytes) {
+    if (bytes.size() < kHeaderBytes || !std::equal(bytes.begin(), bytes.begin() + 5, "DRACO"))
+        refuse("draco.header", "the mesh does not start with DRACO");
+    if (bytes[5] != draco::kDracoMeshBitstreamVersionMajor ||
+        bytes[6] != draco::kDracoMeshBitstreamVersionMinor)
+        refuse("draco.header",
+               cat("Draco bitstream version ", int{bytes[5]}, ".", int{bytes[6]}, ", expected 2.2"));
+    if (bytes[7] != draco::TRIANGULAR_MESH || bytes[8] > draco::MESH_EDGEBREAKER_ENCODING)
+        refuse("draco.header", "the Draco data is not a triangle mesh of a known method");
+    // Metadata has nested sizes of its own and nothing that a container needs.
+    if (bytes[9] != 0 || bytes[10] != 0)
+        refuse("draco.header", "the Draco mesh has metadata or unknown flags");
+
+    HeaderReader in(bytes.subspan(kHeaderBytes));
+    Header header{bytes[8], 0, 0, 0};
+    if (header.method == draco::MESH_EDGEBREAKER_ENCODING) {
+        in.byte();  // how the traversal is coded
+        header.vertices = in.varint();
+        header.faces = in.varint();
+        header.seams = in.byte();
+    } else {
+        header.faces = in.varint();
+        header.vertices = in.varint();
+    }
+    return header;
+}
+
+// A Draco decoder that looks at the attributes' shapes before it takes memory for their values: a few bytes
+// can declare thousands of attributes of 2 kB a vertex.
+template <typename Decoder>
+class GuardedDecoder : public Decoder {
+  protected:
+    bool DecodeAllAttributes() override {
+        const draco::PointCloud& cloud = *this->point_cloud();
+        if (cloud.num_attributes() != 2) refuse_attributes();
+        for (int i = 0; i < 2; ++i) {
+            const draco::PointAttribute& a = *cloud.attribute(i);
+            const bool position = a.attribute_type() == draco::GeometryAttribute::POSITION &&
+                                  a.data_type() == draco::DT_FLOAT32 && a.num_components() == 3;
+            const bool color = a.attribute_type() == draco::GeometryAttribute::COLOR &&
+                               a.data_type() == draco::DT_UINT16 && a.num_components() == 4;
+            if (!position && !color) refuse_attributes();
+        }
+        return Decoder::DecodeAllAttributes();
+    }
+
+  private:
+    [[noreturn]] static void refuse_attributes() {
+        refuse("draco.attributes",
+               "expected a float POSITION of three and a uint16 COLOR of four components");
+    }
+};
+
+template <typename Decoder>
+std::unique_ptr<draco::Mesh> decode(std::span<const std::uint8_t> bytes) {
+    draco::DecoderBuffer buffer;
+    buffer.Init(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    auto mesh = std::make_unique<draco::Mesh>();
+    const draco::Status status =
+        GuardedDecoder<Decoder>().Decode(draco::DecoderOptions(), &buffer, mesh.get());
+    if (!status.ok())
+        refuse("draco.data",
+               cat("Draco cannot decode the mesh: ",
+                   status.error_msg_string().empty() ? "broken data" : status.error_msg_string()));
+    return mesh;
+}
+
+// The values of one attribute, a point each.
+template <typename T, std::size_t N>
+void copy_values(const draco::Mesh& mesh, std::uint32_t unique_id, draco::GeometryAttribute::Type type,
+                 std::vector<std::array<T, N>>& out) {
+    const draco::PointAttribute* attribute = mesh.GetAttributeByUniqueId(unique_id);
+    if (!attribute || attribute->attribute_type() != type)
+        refuse("draco.attributes", cat("the Draco mesh has no such attribute with id ", unique_id));
+    out.resize(mesh.num_points());
+    for (std::uint32_t p = 0; p < mesh.num_points(); ++p) {
+        const draco::AttributeValueIndex index = attribute->mapped_index(draco::PointIndex(p));
+        if (index.value() >= attribute->size())
+            refuse("draco.data", cat("vertex ", p, " of the Draco mesh has no value"));
+        attribute->GetValue(index, out[p].data());
+    }
+}
+
+}  // namespace
+
+std::vector<std::uint8_t> encode_draco_mesh(const StoredMesh& mesh, DracoMode mode) {
+    draco::Mesh out;
+    out.set_num_points(static_cast<std::uint32_t>(mesh.position.size()));
+    out.SetNumFaces(mesh.faces.size());
+    for (std::uint32_t f = 0; f < mesh.faces.size(); ++f) {
+        const auto [a, b, c] = mesh.faces[f];
+        out.SetFace(draco::FaceIndex(f), {draco::PointIndex(a), draco::PointIndex(b), draco::PointIndex(c)});
+    }
+    const DracoAttributeIds ids;
+    const int position = add_attribute(out, draco::GeometryAttribute::POSITION, draco::DT_FLOAT32, false,
+                                       ids.position, mesh.position);
+    add_attribute(out, draco::GeometryAttribute::COLOR, draco::DT_UINT16, true, ids.color, mesh.color);
+
+    draco::ExpertEncoder encoder(out);
+    encoder.SetEncodingMethod(mode == DracoMode::kEdgebreaker ? draco::MESH_EDGEBREAKER_ENCODING
+                                                              : draco::MESH_SEQUENTIAL_ENCODING);
+    encoder.SetSpeedOptions(0, 0);  // smallest; base meshes are small
+    quantize_positions(encoder, position, mesh);
+    draco::EncoderBuffer buffer;
+    const draco::Status status = encoder.EncodeToBuffer(&buffer);
+    if (!status.ok())
+        throw Error(ErrorCode::kInternal, cat("Draco cannot encode the mesh: ", status.error_msg_string()));
+    return {buffer.data(), buffer.data() + buffer.size()};
+}
+
+DracoMode draco_mode(std::span<const std::uint8_t> bytes) {
+    return read_header(bytes).method == draco::MESH_EDGEBREAKER_ENCODING ? DracoMode::kEdgebreaker
+                                                                         : DracoMode::kSequential;
+}
+
+StoredMesh decode_draco_mesh(std::span<const std::uint8_t> bytes, const DracoAttributeIds& ids,
+                             std::uint64_t vertices, std::uint64_t faces) {
+    const Header header = read_header(bytes);
+    // Edgebreaker may split vertices but not merge them; each face has three.
+    const bool edgebreaker = header.method == draco::MESH_EDGEBREAKER_ENCODING;
+    if (header.faces != faces || vertices > 3 * faces ||
+        (edgebreaker ? header.vertices > vertices : header.vertices != vertices))
+        refuse("mesh.counts", cat("the Draco mesh has ", header.vertices, " vertices and ", header.faces,
+                                  " faces, expected ", vertices, " and ", faces));
+    if (header.seams > 1) refuse("draco.attributes", "more attributes than POSITION and COLOR");
+
+    const std::unique_ptr<draco::Mesh> mesh = edgebreaker ? decode<draco::MeshEdgebreakerDecoder>(bytes)
+                                                          : decode<draco::MeshSequentialDecoder>(bytes);
+    if (mesh->num_faces() != faces || mesh->num_points() != vertices)
+        refuse("mesh.counts", cat("the decoded mesh has ", mesh->num_points(), " vertices and ",
+                                  mesh->num_faces(), " faces, expected ", vertices, " and ", faces));
+    StoredMesh out;
+    copy_values(*mesh, ids.position, draco::GeometryAttribute::POSITION, out.position);
+    copy_values(*mesh, ids.color, draco::GeometryAttribute::COLOR, out.color);
+    out.faces.resize(faces);
+    for (std::uint32_t f = 0; f < faces; ++f) {
+        const draco::Mesh::Face& face = mesh->face(draco::FaceIndex(f));
+        for (std::size_t i = 0; i < 3; ++i) {
+            // The sequential decoder does not check this.
+            if (face[i].value() >= vertices)
+                refuse("mesh.index",
+                       cat("face ", f, " has vertex ", face[i].value(), ", the mesh has ", vertices));
+            out.faces[f][i] = face[i].value();
+        }
+    }
+    return out;
+}
+
+}  // namespace imgmesh

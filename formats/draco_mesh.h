@@ -1,0 +1,35 @@
+// Meshes as Draco bitstreams (KHR_draco_mesh_compression): lossless for positions on kPositionStep.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "formats/container.h"
+#include "formats/stored_mesh.h"
+
+namespace imgmesh {
+
+/// The unique ids of the two attributes in what encode_draco_mesh writes.
+struct DracoAttributeIds {
+    std::uint32_t position = 0;
+    std::uint32_t color = 1;
+    bool operator==(const DracoAttributeIds&) const = default;
+};
+
+/// `mesh` has faces, without area 0, and positions on kPositionStep with z = 0; `mode` is not kOff.
+/// kSequential keeps all order; kEdgebreaker is about half the size, but orders vertices and faces anew,
+/// rotates corners, splits non-manifold vertices and drops vertices without a face. Nothing else is lost.
+/// Throws Error(kInternal) where Draco fails.
+std::vector<std::uint8_t> encode_draco_mesh(const StoredMesh& mesh, DracoMode mode);
+
+/// How the bitstream was made. Throws FindingError for anything but a mesh of the current bitstream version.
+DracoMode draco_mode(std::span<const std::uint8_t> bytes);
+
+/// Decodes a mesh of which vertices and faces are known. Safe for any bytes: the sizes in the bitstream are
+/// compared with `vertices` and `faces` before memory is taken. Indices are in range; positions and colours
+/// are whatever is stored. Throws FindingError.
+StoredMesh decode_draco_mesh(std::span<const std::uint8_t> bytes, const DracoAttributeIds& ids,
+                             std::uint64_t vertices, std::uint64_t faces);
+
+}  // namespace imgmesh

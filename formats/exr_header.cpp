@@ -1,0 +1,83 @@
+// Source: "OpenEXR File Layout", sections "Magic number", "Version field" and "Header".
+#include "formats/exr_header.h"
+
+#include <algorithm>
+#include <string_view>
+
+#include "formats/finding_codes.h"
+#include "libcore/base/error.h"
+
+namespace imgmesh {
+namespace {
+
+constexpr std::uint32_t kMagic = 20000630;
+constexpr std::uint32_t kFlagTiled = 0x200, kFlagLongNames = 0x400, kFlagMultiPart = 0x1000;
+constexpr std::size_t kMaxName = 255;
+// The longest of ours, the channel list, has about 80 bytes; other software adds comments and matrices.
+constexpr std::uint32_t kMaxAttributeBytes = 65536;
+// Long since enough for other software's attributes, and the walk stays short.
+constexpr int kMaxAttributes = 1000;
+
+class Walker {
+  public:
+    explicit Walker(std::span<const std::uint8_t> bytes) : rest_(bytes) {}
+
+    std::uint32_t number() {
+        const auto b = take(4);
+        return b[0] | std::uint32_t{b[1]} << 8 | std::uint32_t{b[2]} << 16 | std::uint32_t{b[3]} << 24;
+    }
+    // Zero-terminated.
+    std::string_view name() {
+        const std::size_t search = std::min(rest_.size(), kMaxName + 1);
+        const auto end = std::find(rest_.begin(), rest_.begin() + static_cast<std::ptrdiff_t>(search), 0);
+        const auto length = static_cast<std::size_t>(end - rest_.begin());
+        if (length == search) refuse("layers.header", "a name in the EXR's header does not end");
+        const auto b = take(length + 1);
+        return {reinterpret_cast<const char*>(b.data()), length};
+    }
+    std::span<const std::uint8_t> take(std::size_t count) {
+        if (count > rest_.size()) refuse("layers.header", "the EXR ends in its header");
+        const auto taken = rest_.first(count);
+        rest_ = rest_.subspan(count);
+        return taken;
+    }
+    // At the zero byte that ends a header.
+    bool at_end() const { return !rest_.empty() && rest_[0] == 0; }
+
+  private:
+    std::span<const std::uint8_t> rest_;
+};
+
+void check_part(Walker& in) {
+    for (int i = 0; !in.at_end(); ++i) {
+        if (i == kMaxAttributes) refuse("layers.header", cat("more than ", kMaxAttributes, " attributes"));
+        in.name();
+        const std::string_view type = in.name();
+        if (type == "preview" || type == "idmanifest" || type == "deepImageState")
+            refuse("layers.header", cat("the EXR has an attribute of type ", type));
+        const std::uint32_t size = in.number();
+        if (size > kMaxAttributeBytes)
+            refuse("layers.header", cat("an attribute of ", size, " bytes, at most ", kMaxAttributeBytes));
+        in.take(size);
+    }
+    in.take(1);
+}
+
+}  // namespace
+
+void check_exr_header(std::span<const std::uint8_t> bytes, int max_parts) {
+    Walker in(bytes);
+    if (in.number() != kMagic) refuse("layers.header", "the layers are not an EXR file");
+    const std::uint32_t version = in.number(), flags = version & ~0xFFu;
+    if ((version & 0xFF) != 2) refuse("layers.header", cat("EXR version ", version & 0xFF, ", expected 2"));
+    if (flags & ~(kFlagTiled | kFlagLongNames | kFlagMultiPart))
+        refuse("layers.type", "the EXR has deep parts or unknown flags");
+    check_part(in);
+    if (!(flags & kFlagMultiPart)) return;
+    for (int parts = 1; !in.at_end(); ++parts) {
+        if (parts == max_parts) refuse("layers.parts", cat("the EXR has more than ", max_parts, " parts"));
+        check_part(in);
+    }
+}
+
+}  // namespace imgmesh

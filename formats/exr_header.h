@@ -1,0 +1,14 @@
+// A look at an EXR's headers before OpenEXR sees them.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+namespace imgmesh {
+
+/// Walks the headers and refuses what would make OpenEXR take memory or run code that a container never
+/// needs: attributes that are longer than 64 kB or than the file, types with decoders of their own (preview,
+/// id manifest, deep image state), deep data, more than `max_parts` parts. Throws FindingError.
+void check_exr_header(std::span<const std::uint8_t> bytes, int max_parts);
+
+}  // namespace imgmesh

@@ -1,0 +1,165 @@
+#include "formats/stored_mesh.h"
+
+#include <openssl/evp.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <memory>
+#include <numeric>
+
+#include "formats/finding_codes.h"
+#include "libcore/base/error.h"
+#include "libcore/image/color.h"
+
+namespace imgmesh {
+namespace {
+
+static_assert(std::endian::native == std::endian::little,
+              "arrays are hashed and stored as they lie in memory");
+
+bool on_grid(float coordinate) {
+    const float steps = coordinate / kPositionStep;  // exact: a power of two
+    return std::abs(coordinate) < float{kMaxCoordinate} && steps == std::floor(steps);
+}
+
+std::array<Vec2f, 3> corners(const BaseMesh& mesh, const Face& face) {
+    return {mesh.position[face[0]], mesh.position[face[1]], mesh.position[face[2]]};
+}
+
+struct Corner {
+    std::array<float, 3> position;
+    std::array<std::uint16_t, 4> color;
+    auto operator<=>(const Corner&) const = default;
+};
+
+// The corners of a face from the smallest on: the same however the face was rotated.
+struct Key {
+    std::array<Corner, 3> corner;
+    Id face;
+    std::uint8_t first;  // which corner of the face comes first
+};
+
+std::vector<Key> sorted_keys(const StoredMesh& mesh) {
+    std::vector<Key> keys(mesh.faces.size());
+    for (Id f = 0; f < keys.size(); ++f) {
+        std::array<Corner, 3> c;
+        for (std::size_t i = 0; i < 3; ++i) {
+            const Id v = mesh.faces[f][i];
+            c[i] = {mesh.position[v], mesh.color[v]};
+        }
+        const auto first = std::min_element(c.begin(), c.end()) - c.begin();
+        std::rotate(c.begin(), c.begin() + first, c.end());
+        keys[f] = {c, f, static_cast<std::uint8_t>(first)};
+    }
+    std::sort(keys.begin(), keys.end(), [](const Key& a, const Key& b) {
+        return a.corner != b.corner ? a.corner < b.corner : a.face < b.face;
+    });
+    return keys;
+}
+
+}  // namespace
+
+StoredMesh stored_from_base(const BaseMesh& mesh) {
+    const auto fail = [](const std::string& what) {
+        throw Error(ErrorCode::kInternal, "cannot store the mesh: " + what);
+    };
+    if (mesh.channels != 3 || mesh.feature.size() != 3 * mesh.vertex_count())
+        fail("not three features a vertex");
+    if (mesh.faces.empty()) fail("it has no faces");
+    StoredMesh stored;
+    stored.position.reserve(mesh.vertex_count());
+    stored.color.reserve(mesh.vertex_count());
+    for (Id v = 0; v < mesh.vertex_count(); ++v) {
+        const Vec2f& p = mesh.position[v];
+        if (!on_grid(p.x()) || !on_grid(p.y()))
+            fail(cat("vertex ", v, " at (", p.x(), ",", p.y(), ") is not on the grid of 1/32 pixel"));
+        // 0 + x and 0 - y are never a negative zero, which would count as another position.
+        stored.position.push_back({0.0f + p.x(), 0.0f - p.y(), 0.0f});
+        const float* feature = mesh.feature_of(v);
+        const auto codes = color_codes(Vec3f(feature[0], feature[1], feature[2]));
+        stored.color.push_back({codes[0], codes[1], codes[2], 65535});
+    }
+    for (const Face& face : mesh.faces) {
+        if (*std::max_element(face.begin(), face.end()) >= mesh.vertex_count())
+            fail("an index is out of range");
+        const auto [a, b, c] = corners(mesh, face);
+        if (!(signed_area2(a, b, c) > 0)) fail("a face has no area or runs clockwise");
+    }
+    stored.faces = mesh.faces;
+    return stored;
+}
+
+BaseMesh base_from_stored(const StoredMesh& mesh) {
+    BaseMesh base;
+    base.position.reserve(mesh.position.size());
+    base.feature.reserve(3 * mesh.position.size());
+    for (std::size_t v = 0; v < mesh.position.size(); ++v) {
+        const auto& [x, y, z] = mesh.position[v];
+        if (!on_grid(x) || !on_grid(y) || z != 0)
+            refuse("mesh.position",
+                   cat("vertex ", v, " is at (", x, ",", y, ",", z, "), expected multiples of 1/32 below ",
+                       kMaxCoordinate, " and z = 0"));
+        base.position.emplace_back(x, 0.0f - y);
+        const auto& [red, green, blue, alpha] = mesh.color[v];
+        if (alpha != 65535) refuse("mesh.color", cat("vertex ", v, " has alpha ", alpha, ", expected 65535"));
+        const Vec3f luv = color_from_codes({red, green, blue});
+        base.feature.insert(base.feature.end(), luv.data(), luv.data() + 3);
+    }
+    for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
+        const Face& face = mesh.faces[f];
+        const Id largest = *std::max_element(face.begin(), face.end());
+        if (largest >= mesh.position.size())
+            refuse("mesh.index",
+                   cat("face ", f, " has vertex ", largest, ", the mesh has ", mesh.position.size()));
+        const auto [a, b, c] = corners(base, face);
+        if (!(signed_area2(a, b, c) > 0))
+            refuse("mesh.orientation", cat("face ", f, " has no area or runs clockwise"));
+    }
+    base.faces = mesh.faces;
+    return base;
+}
+
+std::string topology_hash(const StoredMesh& mesh) {
+    const std::unique_ptr<EVP_MD_CTX, decltype(&EVP_MD_CTX_free)> context(EVP_MD_CTX_new(), EVP_MD_CTX_free);
+    std::array<unsigned char, 32> digest;
+    static_assert(sizeof(Face) == 12 && sizeof(mesh.position[0]) == 12, "no padding");
+    if (!context || !EVP_DigestInit_ex(context.get(), EVP_sha256(), nullptr) ||
+        !EVP_DigestUpdate(context.get(), mesh.faces.data(), mesh.faces.size() * sizeof(Face)) ||
+        !EVP_DigestUpdate(context.get(), mesh.position.data(), mesh.position.size() * 12) ||
+        !EVP_DigestFinal_ex(context.get(), digest.data(), nullptr))
+        throw Error(ErrorCode::kInternal, "libcrypto has no SHA-256");
+    std::string hex;
+    for (const unsigned byte : digest) {
+        hex += "0123456789abcdef"[byte >> 4];
+        hex += "0123456789abcdef"[byte & 15];
+    }
+    return hex;
+}
+
+FaceMatch match_faces(const StoredMesh& from, const StoredMesh& to) {
+    const std::vector<Key> a = sorted_keys(from), b = sorted_keys(to);
+    if (a.size() != b.size())
+        throw Error(ErrorCode::kInternal,
+                    cat("the stored mesh has ", b.size(), " faces, the mesh has ", a.size()));
+    FaceMatch match{std::vector<Id>(a.size()), std::vector<std::uint8_t>(a.size())};
+    for (std::size_t i = 0; i < a.size(); ++i) {
+        if (a[i].corner != b[i].corner)
+            throw Error(ErrorCode::kInternal, cat("face ", a[i].face, " is not in the stored mesh"));
+        match.face[a[i].face] = b[i].face;
+        match.shift[a[i].face] = static_cast<std::uint8_t>((b[i].first + 3 - a[i].first) % 3);
+    }
+    return match;
+}
+
+void remap_pixels(const FaceMatch& match, PixelMap& map) {
+    for (PixelCoord& coord : map.coords) {
+        if (coord.face == kNone) continue;
+        const std::array<float, 3> weight = {1 - coord.u - coord.v, coord.u, coord.v};
+        // The weight of corner c moves to corner (c + shift) % 3.
+        const std::size_t shift = match.shift[coord.face];
+        coord = {match.face[coord.face], weight[(4 - shift) % 3], weight[(5 - shift) % 3]};
+    }
+}
+
+}  // namespace imgmesh

@@ -1,0 +1,94 @@
+#include "libcore/collapse/vertex_quadrics.h"
+
+#include "libcore/base/parallel.h"
+#include "libcore/collapse/ring_mesh.h"
+
+namespace imgmesh {
+namespace {
+
+constexpr int C = 3;
+
+// With a the area of face f, t its centroid less the vertex, g its gradient, summed over the faces around the
+// vertex:
+//   W = sum a,  G = sum a g / W,  S = lambda W I + sum a g'g - W G'G,  q = S^-1 lambda sum a t,
+//   e = lambda sum a |t|^2 - q' lambda sum a t.
+struct Accumulator {
+    float area = 0, tx = 0, ty = 0, tt = 0;
+    float gx[C] = {}, gy[C] = {};
+    float gxx = 0, gxy = 0, gyy = 0;
+
+    // A face of the grid: corners at 0, (ax, ay) and (bx, by), features less those of the vertex `da`, `db`.
+    void add(float ax, float ay, const float* da, float bx, float by, const float* db) {
+        const float det = ax * by - ay * bx;  // +-1: every face is half a pixel
+        const float a = 0.5f;
+        const float cx = (ax + bx) / 3, cy = (ay + by) / 3;
+        area += a;
+        tx += a * cx;
+        ty += a * cy;
+        tt += a * (cx * cx + cy * cy);
+        for (int c = 0; c < C; ++c) {
+            const float x = (by * da[c] - ay * db[c]) / det, y = (ax * db[c] - bx * da[c]) / det;
+            gx[c] += a * x;
+            gy[c] += a * y;
+            gxx += a * x * x;
+            gxy += a * x * y;
+            gyy += a * y * y;
+        }
+    }
+
+    Quadric<C> finish(float x, float y, const float* s, float lambda) const {
+        Quadric<C> q;
+        q.weight = area;
+        q.sxx = lambda * area + gxx;
+        q.sxy = gxy;
+        q.syy = lambda * area + gyy;
+        for (int c = 0; c < C; ++c) {
+            q.gx[c] = gx[c] / area;
+            q.gy[c] = gy[c] / area;
+            q.sxx -= area * q.gx[c] * q.gx[c];
+            q.sxy -= area * q.gx[c] * q.gy[c];
+            q.syy -= area * q.gy[c] * q.gy[c];
+        }
+        const float det = q.sxx * q.syy - q.sxy * q.sxy;
+        const float dx = lambda * (q.syy * tx - q.sxy * ty) / det,
+                    dy = lambda * (q.sxx * ty - q.sxy * tx) / det;
+        q.px = x + dx;
+        q.py = y + dy;
+        for (int c = 0; c < C; ++c) q.s[c] = s[c] + q.gx[c] * dx + q.gy[c] * dy;
+        q.error = std::fmax(0.0f, lambda * (tt - dx * tx - dy * ty));
+        return q;
+    }
+};
+
+}  // namespace
+
+std::vector<Quadric<3>> vertex_quadrics(const GridMesh& grid, const FeatureImage& gradients, float lambda) {
+    const int w = grid.feature.width;
+    std::vector<Quadric<C>> quadrics(grid.feature.pixel_count());
+    parallel_blocks(0, grid.feature.height, 16, [&](int first, int last) {
+        for (int y = first; y < last; ++y) {
+            for (int x = 0; x < w; ++x) {
+                const Ring ring = grid_ring(grid, x, y);
+                const std::size_t v =
+                    static_cast<std::size_t>(y) * static_cast<std::size_t>(w) + static_cast<std::size_t>(x);
+                float d[kMaxValence][C], ox[kMaxValence], oy[kMaxValence];
+                const float* own = gradients.pixel(v);
+                for (int k = 0; k < ring.valence; ++k) {
+                    const Id n = ring.neighbor[k];
+                    ox[k] = static_cast<float>(static_cast<int>(n % static_cast<Id>(w)) - x);
+                    oy[k] = static_cast<float>(static_cast<int>(n / static_cast<Id>(w)) - y);
+                    for (int c = 0; c < C; ++c) d[k][c] = gradients.pixel(n)[c] - own[c];
+                }
+                Accumulator sum;
+                for (int k = 0; k < ring.valence - (ring.border() ? 1 : 0); ++k) {
+                    const int m = k + 1 == ring.valence ? 0 : k + 1;
+                    sum.add(ox[k], oy[k], d[k], ox[m], oy[m], d[m]);
+                }
+                quadrics[v] = sum.finish(ring.x, ring.y, grid.feature.pixel(v), lambda);
+            }
+        }
+    });
+    return quadrics;
+}
+
+}  // namespace imgmesh

@@ -1,0 +1,21 @@
+// The quadrics that the dense mesh's vertices start with (paper sec. 3.2).
+#pragma once
+
+#include <vector>
+
+#include "libcore/collapse/quadric.h"
+#include "libcore/mesh/grid_mesh.h"
+
+namespace imgmesh {
+
+/// Sum over the faces around each vertex of area times the face's *flattened* quadric: lambda times the
+/// squared distance to the face's centroid, plus the squared distance to the face's linear colour function
+/// (Hoppe 1999). A face's colours are those of its corners at this vertex, its gradient is taken from
+/// `gradients`, usually a smoothed copy of grid.feature and of its size.
+///
+/// grid, gradients   three channels
+/// lambda            geometry against colour [feature^2 / px^2], > 0
+/// return            one quadric a vertex, in the grid's order
+std::vector<Quadric<3>> vertex_quadrics(const GridMesh& grid, const FeatureImage& gradients, float lambda);
+
+}  // namespace imgmesh

@@ -1,0 +1,84 @@
+#include "libcore/mesh/grid_mesh.h"
+
+#include <utility>
+
+#include "libcore/base/parallel.h"
+
+namespace imgmesh {
+namespace {
+
+float squared_distance(const float* a, const float* b, int channels) {
+    float sum = 0;
+    for (int c = 0; c < channels; ++c) sum += (a[c] - b[c]) * (a[c] - b[c]);
+    return sum;
+}
+
+// Repeats columns and rows of one pixel, so that every grid has an area.
+FeatureImage doubled_sides(FeatureImage in) {
+    if (in.width >= 2 && in.height >= 2) return in;
+    FeatureImage out{std::max(2, in.width), std::max(2, in.height), in.channels, {}};
+    out.data.resize(out.pixel_count() * static_cast<std::size_t>(in.channels));
+    for (int y = 0; y < out.height; ++y)
+        for (int x = 0; x < out.width; ++x)
+            std::copy_n(in.pixel(std::min(x, in.width - 1), std::min(y, in.height - 1)), in.channels,
+                        out.pixel(static_cast<std::size_t>(y) * static_cast<std::size_t>(out.width) +
+                                  static_cast<std::size_t>(x)));
+    return out;
+}
+
+constexpr int kRowsPerBlock = 32;
+
+}  // namespace
+
+GridMesh grid_mesh(FeatureImage feature) {
+    GridMesh mesh;
+    mesh.origin_x = feature.width == 1 ? -0.5f : 0.0f;
+    mesh.origin_y = feature.height == 1 ? -0.5f : 0.0f;
+    mesh.feature = doubled_sides(std::move(feature));
+    const FeatureImage& f = mesh.feature;
+    const int cells = f.width - 1;
+    mesh.diagonal.resize(static_cast<std::size_t>(cells) * static_cast<std::size_t>(f.height - 1));
+    parallel_blocks(0, f.height - 1, kRowsPerBlock, [&](int first, int last) {
+        for (int y = first; y < last; ++y)
+            for (int x = 0; x < cells; ++x) {
+                const float falling = squared_distance(f.pixel(x, y), f.pixel(x + 1, y + 1), f.channels);
+                const float rising = squared_distance(f.pixel(x + 1, y), f.pixel(x, y + 1), f.channels);
+                mesh.diagonal[static_cast<std::size_t>(y) * static_cast<std::size_t>(cells) +
+                              static_cast<std::size_t>(x)] = falling <= rising;
+            }
+    });
+    return mesh;
+}
+
+FeatureImage smoothed(const FeatureImage& feature, int passes) {
+    FeatureImage image = feature;
+    const int c = feature.channels, w = feature.width * c, h = feature.height;
+    std::vector<float> other(image.data.size());
+    for (int pass = 0; pass < passes; ++pass) {
+        parallel_blocks(0, h, kRowsPerBlock, [&](int first, int last) {
+            for (int y = first; y < last; ++y) {
+                const float* in =
+                    image.data.data() + static_cast<std::size_t>(y) * static_cast<std::size_t>(w);
+                float* out = other.data() + static_cast<std::size_t>(y) * static_cast<std::size_t>(w);
+                for (int i = 0; i < w; ++i) {
+                    const float before = in[i >= c ? i - c : i], after = in[i + c < w ? i + c : i];
+                    out[i] = 0.25f * (before + after) + 0.5f * in[i];
+                }
+            }
+        });
+        parallel_blocks(0, h, kRowsPerBlock, [&](int first, int last) {
+            for (int y = first; y < last; ++y) {
+                const auto row = [&](int r) {
+                    return other.data() + static_cast<std::size_t>(r) * static_cast<std::size_t>(w);
+                };
+                const float *above = row(std::max(0, y - 1)), *here = row(y),
+                            *below = row(std::min(h - 1, y + 1));
+                float* out = image.data.data() + static_cast<std::size_t>(y) * static_cast<std::size_t>(w);
+                for (int i = 0; i < w; ++i) out[i] = 0.25f * (above[i] + below[i]) + 0.5f * here[i];
+            }
+        });
+    }
+    return image;
+}
+
+}  // namespace imgmesh

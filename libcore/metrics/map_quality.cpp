@@ -1,0 +1,135 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "libcore/base/error.h"
+#include "libcore/base/parallel.h"
+#include "libcore/metrics/metrics.h"
+
+namespace imgmesh {
+namespace {
+
+constexpr int kGrainRows = 16;
+
+double area2(const Vec2d& a, const Vec2d& b, const Vec2d& c) {
+    const Vec2d ab = b - a, ac = c - a;
+    return ab.y() * ac.x() - ab.x() * ac.y();  // as signed_area2()
+}
+
+// Triangles and steps of the grid row between pixel rows y and y + 1. A position that is not finite makes
+// every comparison with it false, so that its triangles and steps do not count.
+void measure_row(const std::vector<Vec2d>& image, int width, int height, int y, MapQuality& q) {
+    const auto at = [&](int x, int row) -> const Vec2d& {
+        return image[static_cast<std::size_t>(row) * static_cast<std::size_t>(width) + std::size_t(x)];
+    };
+    const auto triangle = [&](const Vec2d& a, const Vec2d& b, const Vec2d& c) {
+        const double area = area2(a, b, c);
+        q.flipped_triangles += area <= 0;
+        if (area < q.min_area2) q.min_area2 = area;
+    };
+    const auto step = [&](const Vec2d& a, const Vec2d& b) {
+        const double jump = (a - b).norm();
+        if (jump > q.max_jump) q.max_jump = jump;
+    };
+    for (int x = 0; x < width; ++x) {
+        const bool right = x + 1 < width, below = y + 1 < height;
+        if (right) step(at(x, y), at(x + 1, y));
+        if (below) step(at(x, y), at(x, y + 1));
+        if (!right || !below) continue;
+        const Vec2d &a = at(x, y), &b = at(x, y + 1), &c = at(x + 1, y + 1), &d = at(x + 1, y);
+        triangle(a, b, c);
+        triangle(b, c, d);
+        triangle(c, d, a);
+        triangle(d, a, b);
+    }
+}
+
+void measure_pixels(const BaseMesh& mesh, const PixelMap& map, const std::vector<Vec2d>& image, bool has_mask,
+                    MapQuality& q) {
+    std::int64_t mapped = 0;
+    for (std::size_t i = 0; i < map.coords.size(); ++i) {
+        const PixelCoord& c = map.coords[i];
+        if (has_mask && c.face == kNone) continue;
+        ++q.pixels;
+        if (c.face >= mesh.faces.size()) {
+            ++q.unmapped;
+            continue;
+        }
+        // Infinite weights fail one of the three as well: u + v <= 1 bounds what u, v >= 0 leaves open.
+        if (!(c.u >= 0 && c.v >= 0 && double(c.u) + double(c.v) <= 1)) ++q.outside_simplex;
+        const auto w = static_cast<std::size_t>(map.width);
+        const double distance = (image[i] - Vec2d(double(i % w), double(i / w))).norm();
+        if (!std::isfinite(distance)) continue;
+        ++mapped;
+        q.mean_displacement += distance;
+        q.max_displacement = std::max(q.max_displacement, distance);
+    }
+    if (mapped > 0) q.mean_displacement /= double(mapped);
+}
+
+}  // namespace
+
+std::vector<Vec2d> mapped_positions(const BaseMesh& mesh, const PixelMap& map) {
+    std::vector<Vec2d> image(map.coords.size(), Vec2d::Constant(std::numeric_limits<double>::quiet_NaN()));
+    parallel_blocks(0, map.height, kGrainRows, [&](int first, int last) {
+        const auto width = static_cast<std::size_t>(map.width);
+        for (std::size_t i = std::size_t(first) * width; i < std::size_t(last) * width; ++i) {
+            const PixelCoord& coord = map.coords[i];
+            if (coord.face >= mesh.faces.size()) continue;
+            const auto [a, b, c] = mesh.faces[coord.face];
+            const double u = coord.u, v = coord.v;
+            image[i] = (1 - u - v) * mesh.position[a].cast<double>() + u * mesh.position[b].cast<double>() +
+                       v * mesh.position[c].cast<double>();
+        }
+    });
+    return image;
+}
+
+MapQuality map_quality(const BaseMesh& mesh, const PixelMap& map, bool has_mask) {
+    const std::vector<Vec2d> image = mapped_positions(mesh, map);
+    MapQuality q;
+    q.min_area2 = std::numeric_limits<double>::infinity();
+    for (int y = 0; y < map.height; ++y) measure_row(image, map.width, map.height, y, q);
+    if (std::isinf(q.min_area2)) q.min_area2 = 1;
+    measure_pixels(mesh, map, image, has_mask, q);
+    return q;
+}
+
+double map_rms(const BaseMesh& mesh, const PixelMap& map, const FeatureImage& reference) {
+    if (map.width != reference.width || map.height != reference.height)
+        throw Error(ErrorCode::kUsage, cat("pixel map is ", map.width, "x", map.height, ", reference is ",
+                                           reference.width, "x", reference.height));
+    if (mesh.channels != reference.channels)
+        throw Error(ErrorCode::kUsage,
+                    cat("base mesh has ", mesh.channels, " channels, reference has ", reference.channels));
+    // One sum a row, added in order: the same result for any number of threads.
+    std::vector<double> sums(static_cast<std::size_t>(map.height));
+    std::vector<std::int64_t> counts(sums.size());
+    parallel_blocks(0, map.height, kGrainRows, [&](int first, int last) {
+        for (int y = first; y < last; ++y) {
+            const float* want = reference.pixel(0, y);
+            double sum = 0;
+            std::int64_t count = 0;
+            for (const PixelCoord& coord : map.row(y)) {
+                if (coord.face != kNone) {
+                    const auto [a, b, c] = mesh.faces[coord.face];
+                    const float *fa = mesh.feature_of(a), *fb = mesh.feature_of(b), *fc = mesh.feature_of(c);
+                    const float u = coord.u, v = coord.v, w = 1 - u - v;
+                    for (int k = 0; k < mesh.channels; ++k) {
+                        const float error = w * fa[k] + u * fb[k] + v * fc[k] - want[k];
+                        sum += double(error) * double(error);
+                    }
+                    ++count;
+                }
+                want += reference.channels;
+            }
+            sums[static_cast<std::size_t>(y)] = sum;
+            counts[static_cast<std::size_t>(y)] = count;
+        }
+    });
+    const std::int64_t pixels = std::accumulate(counts.begin(), counts.end(), std::int64_t{0});
+    return pixels > 0 ? std::sqrt(std::accumulate(sums.begin(), sums.end(), 0.0) / double(pixels)) : 0;
+}
+
+}  // namespace imgmesh

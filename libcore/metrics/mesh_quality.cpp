@@ -1,0 +1,135 @@
+// Shape: edge ratio, radius ratio and q as in Field, "Qualitative measures for initial meshes", 2000.
+// Topology: every count follows from the list of half-edges sorted by their two ends.
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+#include <tuple>
+
+#include "libcore/metrics/metrics.h"
+
+namespace imgmesh {
+namespace {
+
+// Disjoint sets of 0 .. n-1.
+class Sets {
+  public:
+    explicit Sets(std::size_t n) : parent_(n) { std::iota(parent_.begin(), parent_.end(), std::size_t{0}); }
+    std::size_t find(std::size_t i) {
+        while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
+        return i;
+    }
+    void join(std::size_t i, std::size_t j) { parent_[find(i)] = find(j); }
+    std::int64_t count() const {
+        std::int64_t roots = 0;
+        for (std::size_t i = 0; i < parent_.size(); ++i) roots += parent_[i] == i;
+        return roots;
+    }
+
+  private:
+    std::vector<std::size_t> parent_;
+};
+
+// One side of a face. Corners are numbered 3 face + place.
+struct HalfEdge {
+    Id low, high;
+    std::size_t low_corner, high_corner;
+    bool rising;  // runs from low to high
+};
+
+std::vector<HalfEdge> sorted_half_edges(const BaseMesh& mesh) {
+    std::vector<HalfEdge> edges;
+    edges.reserve(mesh.faces.size() * 3);
+    for (std::size_t f = 0; f < mesh.faces.size(); ++f)
+        for (std::size_t k = 0; k < 3; ++k) {
+            const std::size_t next = (k + 1) % 3;
+            const Id a = mesh.faces[f][k], b = mesh.faces[f][next];
+            edges.push_back(a < b ? HalfEdge{a, b, 3 * f + k, 3 * f + next, true}
+                                  : HalfEdge{b, a, 3 * f + next, 3 * f + k, false});
+        }
+    std::sort(edges.begin(), edges.end(), [](const HalfEdge& a, const HalfEdge& b) {
+        return std::tie(a.low, a.high, a.low_corner) < std::tie(b.low, b.high, b.low_corner);
+    });
+    return edges;
+}
+
+void measure_topology(const BaseMesh& mesh, MeshQuality& q) {
+    const std::vector<HalfEdge> edges = sorted_half_edges(mesh);
+    Sets fans(mesh.faces.size() * 3);  // corners that one can reach from each other across shared edges
+    Sets components(mesh.faces.size());
+    for (std::size_t first = 0, last; first < edges.size(); first = last) {
+        last = first + 1;
+        while (last < edges.size() && edges[last].low == edges[first].low &&
+               edges[last].high == edges[first].high) {
+            fans.join(edges[first].low_corner, edges[last].low_corner);
+            fans.join(edges[first].high_corner, edges[last].high_corner);
+            components.join(edges[first].low_corner / 3, edges[last].low_corner / 3);
+            ++last;
+        }
+        const std::size_t faces = last - first;
+        ++q.edges;
+        q.boundary_edges += faces == 1;
+        q.nonmanifold_edges += faces > 2 || (faces == 2 && edges[first].rising == edges[first + 1].rising);
+    }
+    q.components = components.count();
+
+    std::vector<std::uint32_t> fans_at(mesh.vertex_count());
+    std::vector<bool> used(mesh.vertex_count());
+    for (std::size_t corner = 0; corner < mesh.faces.size() * 3; ++corner) {
+        const Id v = mesh.faces[corner / 3][corner % 3];
+        used[v] = true;
+        fans_at[v] += fans.find(corner) == corner;
+    }
+    q.nonmanifold_vertices = std::count_if(fans_at.begin(), fans_at.end(), [](auto n) { return n > 1; });
+    const std::int64_t used_vertices = std::count(used.begin(), used.end(), true);
+    q.euler = used_vertices - q.edges + q.faces;
+    if (used_vertices > 0) q.mean_valence = 2 * double(q.edges) / double(used_vertices);
+}
+
+void measure_shape(const BaseMesh& mesh, MeshQuality& q) {
+    std::int64_t positive = 0;
+    double least_angle = std::numbers::pi;
+    q.min_shape = mesh.faces.empty() ? 0 : 1;
+    for (const auto& [ia, ib, ic] : mesh.faces) {
+        const Vec2d a = mesh.position[ia].cast<double>(), b = mesh.position[ib].cast<double>(),
+                    c = mesh.position[ic].cast<double>();
+        const double area2 = signed_area2(mesh.position[ia], mesh.position[ib], mesh.position[ic]);
+        q.area += area2 / 2;
+        if (!(area2 > 0)) {
+            ++q.flipped_faces;
+            q.min_shape = least_angle = 0;
+            continue;
+        }
+        ++positive;
+        double length[3] = {(b - c).norm(), (c - a).norm(), (a - b).norm()};
+        std::sort(length, length + 3);
+        const auto [shortest, middle, longest] = length;
+        const double perimeter = shortest + middle + longest;
+        q.mean_edge_ratio += longest / shortest;
+        // inradius = area2 / perimeter, circumradius = product of the sides / (2 area2)
+        q.mean_radius_ratio += 4 * area2 * area2 / (perimeter * shortest * middle * longest);
+        const double shape =
+            2 * std::sqrt(3.0) * area2 / (shortest * shortest + middle * middle + longest * longest);
+        q.mean_shape += shape;
+        q.min_shape = std::min(q.min_shape, shape);
+        // The least angle lies opposite the shortest side, between the two others.
+        const double cosine2 = middle * middle + longest * longest - shortest * shortest;
+        least_angle = std::min(least_angle, std::atan2(2 * area2, cosine2));
+    }
+    if (!mesh.faces.empty()) q.min_angle_deg = least_angle * 180 / std::numbers::pi;
+    if (positive == 0) return;
+    for (double* mean : {&q.mean_edge_ratio, &q.mean_radius_ratio, &q.mean_shape}) *mean /= double(positive);
+}
+
+}  // namespace
+
+MeshQuality mesh_quality(const BaseMesh& mesh) {
+    MeshQuality q;
+    q.vertices = static_cast<std::int64_t>(mesh.vertex_count());
+    q.faces = static_cast<std::int64_t>(mesh.faces.size());
+    measure_topology(mesh, q);
+    measure_shape(mesh, q);
+    return q;
+}
+
+}  // namespace imgmesh

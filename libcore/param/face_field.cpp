@@ -1,0 +1,76 @@
+#include "libcore/param/face_field.h"
+
+#include <algorithm>
+
+#include "libcore/base/parallel.h"
+
+namespace imgmesh {
+
+std::vector<FaceField> face_fields(const BaseMesh& mesh) {
+    std::vector<FaceField> fields(mesh.faces.size());
+    parallel_blocks(0, static_cast<int>(fields.size()), 4096, [&](int first, int last) {
+        for (int i = first; i < last; ++i) {
+            const auto [a, b, c] = mesh.faces[static_cast<std::size_t>(i)];
+            FaceField& field = fields[static_cast<std::size_t>(i)];
+            const Vec2f &pa = mesh.position[a], ab = mesh.position[b] - pa, ac = mesh.position[c] - pa;
+            const double det = double(ab.x()) * ac.y() - double(ab.y()) * ac.x();
+            field.ax = pa.x();
+            field.ay = pa.y();
+            field.ux = static_cast<float>(ac.y() / det);
+            field.uy = static_cast<float>(-ac.x() / det);
+            field.vx = static_cast<float>(-ab.y() / det);
+            field.vy = static_cast<float>(ab.x() / det);
+            for (int k = 0; k < 3; ++k) {
+                const float fa = mesh.feature_of(a)[k], fb = mesh.feature_of(b)[k],
+                            fc = mesh.feature_of(c)[k];
+                field.f[k] = fa;
+                field.fx[k] = field.ux * (fb - fa) + field.vx * (fc - fa);
+                field.fy[k] = field.uy * (fb - fa) + field.vy * (fc - fa);
+            }
+        }
+    });
+    return fields;
+}
+
+std::vector<Face> face_neighbors(const BaseMesh& mesh) {
+    // Sorting the half-edges by their ends brings the two of each edge together.
+    struct HalfEdge {
+        Id low, high, face;
+        std::uint32_t corner;
+    };
+    std::vector<HalfEdge> half_edges;
+    half_edges.reserve(mesh.faces.size() * 3);
+    for (std::size_t f = 0; f < mesh.faces.size(); ++f)
+        for (std::uint32_t k = 0; k < 3; ++k) {
+            const Id p = mesh.faces[f][(k + 1) % 3], q = mesh.faces[f][(k + 2) % 3];
+            half_edges.push_back({std::min(p, q), std::max(p, q), static_cast<Id>(f), k});
+        }
+    std::sort(half_edges.begin(), half_edges.end(), [](const HalfEdge& a, const HalfEdge& b) {
+        return std::tie(a.low, a.high, a.face) < std::tie(b.low, b.high, b.face);
+    });
+    std::vector<Face> neighbors(mesh.faces.size(), Face{kNone, kNone, kNone});
+    for (std::size_t n = 0; n + 1 < half_edges.size(); ++n) {
+        const HalfEdge &a = half_edges[n], &b = half_edges[n + 1];
+        if (a.low != b.low || a.high != b.high) continue;
+        neighbors[a.face][a.corner] = b.face;
+        neighbors[b.face][b.corner] = a.face;
+    }
+    return neighbors;
+}
+
+Id walk_to(const Vec2f& p, Id face, const std::vector<FaceField>& fields,
+           const std::vector<Face>& neighbors) {
+    // The bound only guards against rounding in circles: in a convex domain the walk arrives.
+    for (std::size_t step = 0; step < fields.size() + 8; ++step) {
+        const FaceField& field = fields[face];
+        const float u = field.u(p.x(), p.y()), v = field.v(p.x(), p.y()), w = 1 - u - v;
+        const float least = std::min({u, v, w});
+        if (least >= 0) return face;
+        const Id next = neighbors[face][least == w ? 0 : least == u ? 1 : 2];
+        if (next == kNone) return face;
+        face = next;
+    }
+    return face;
+}
+
+}  // namespace imgmesh

@@ -1,0 +1,90 @@
+#include "libcore/param/fit_colors.h"
+
+#include <algorithm>
+#include <vector>
+
+#include "libcore/image/color.h"
+
+namespace imgmesh {
+namespace {
+
+// Source: projected block Gauss-Seidel. The features of one vertex share one weight, so its best colour is
+// the nearest one in gamut to its unconstrained best.
+constexpr int C = 3;
+
+// What the pixels of one face say about its three corners: sums of w w' and of w feature'.
+struct FaceSums {
+    double gram[3][3] = {};
+    double rhs[3][C] = {};
+};
+
+std::vector<FaceSums> sum_over_pixels(const BaseMesh& mesh, const FeatureImage& feature,
+                                      const std::vector<FitTerm>& terms) {
+    std::vector<FaceSums> sums(mesh.faces.size());
+    for (const FitTerm& term : terms)
+        for (std::size_t i = 0; i < term.map->coords.size(); ++i) {
+            const PixelCoord& coord = term.map->coords[i];
+            if (coord.face == kNone) continue;
+            const double w[3] = {1.0 - coord.u - coord.v, coord.u, coord.v};
+            FaceSums& sum = sums[coord.face];
+            const float* f = feature.pixel(i);
+            for (int a = 0; a < 3; ++a) {
+                const double wa = term.weight * w[a];
+                for (int b = 0; b < 3; ++b) sum.gram[a][b] += wa * w[b];
+                for (int c = 0; c < C; ++c) sum.rhs[a][c] += wa * f[c];
+            }
+        }
+    return sums;
+}
+
+// For every vertex the corners of faces that it is, as face * 3 + corner: those of v from first[v] to first[v
+// + 1].
+struct CornersOfVertices {
+    std::vector<std::size_t> first, corner;
+};
+
+CornersOfVertices corners_of_vertices(const BaseMesh& mesh) {
+    CornersOfVertices out;
+    out.first.assign(mesh.vertex_count() + 1, 0);
+    for (const Face& face : mesh.faces)
+        for (const Id v : face) ++out.first[v + 1];
+    for (std::size_t v = 0; v < mesh.vertex_count(); ++v) out.first[v + 1] += out.first[v];
+    out.corner.resize(mesh.faces.size() * 3);
+    std::vector<std::size_t> next(out.first.begin(), out.first.end() - 1);
+    for (std::size_t f = 0; f < mesh.faces.size(); ++f)
+        for (std::size_t a = 0; a < 3; ++a) out.corner[next[mesh.faces[f][a]]++] = f * 3 + a;
+    return out;
+}
+
+}  // namespace
+
+void fit_colors(BaseMesh& mesh, const FeatureImage& feature, const std::vector<FitTerm>& terms) {
+    const std::vector<FaceSums> sums = sum_over_pixels(mesh, feature, terms);
+    const CornersOfVertices corners = corners_of_vertices(mesh);
+    // A vertex that only pixels with tiny weights touch would be free to run away: pull it weakly to where it
+    // is.
+    constexpr double kPull = 1e-3;
+    // The normal equations are those of a mass matrix: each pass shrinks an error to a third or less. More
+    // than 6 passes change the RMS in the fourth digit.
+    constexpr int kPasses = 6;
+    for (int pass = 0; pass < kPasses; ++pass) {
+        for (Id v = 0; v < mesh.vertex_count(); ++v) {
+            const Eigen::Map<const Vec3f> color(mesh.feature_of(v));
+            double diagonal = kPull;
+            Vec3d rhs = kPull * color.cast<double>();
+            for (std::size_t k = corners.first[v]; k < corners.first[v + 1]; ++k) {
+                const FaceSums& sum = sums[corners.corner[k] / 3];
+                const Face& face = mesh.faces[corners.corner[k] / 3];
+                const std::size_t a = corners.corner[k] % 3;
+                diagonal += sum.gram[a][a];
+                rhs += Vec3d(sum.rhs[a]);
+                for (const std::size_t b : {(a + 1) % 3, (a + 2) % 3})
+                    rhs -= sum.gram[a][b] * Eigen::Map<const Vec3f>(mesh.feature_of(face[b])).cast<double>();
+            }
+            const Vec3f next = in_gamut((rhs / diagonal).cast<float>());
+            std::copy(next.data(), next.data() + C, mesh.feature_of(v));
+        }
+    }
+}
+
+}  // namespace imgmesh

@@ -1,0 +1,187 @@
+// Every drawing is a map of the output's pixels (the level's own, or the mesh rasterised), from which rows of
+// L*u*v* are made and encoded.
+#include "libcore/recon/draw.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include "libcore/base/error.h"
+#include "libcore/base/parallel.h"
+#include "libcore/recon/level_colors.h"
+#include "libcore/recon/luv_encoder.h"
+#include "libcore/recon/patch_colors.h"
+#include "libcore/recon/raster.h"
+
+namespace imgmesh {
+namespace {
+
+constexpr int kGrainRows = 16;
+
+// Larger drawings are surely a slip of the finger; this one takes 8 GB.
+constexpr double kMaxPixels = 1 << 28;
+
+// Fills one row of an output: L*, u*, v* as three planes of `width` values.
+using RowFunction = std::function<void(int y, float* planes)>;
+
+void store(float* planes, int width, std::size_t x, const Vec3f& luv) {
+    for (int c = 0; c < 3; ++c) planes[static_cast<std::size_t>(c * width) + x] = luv[c];
+}
+
+// The colours of a row through the map. The map streams through memory once and the rows stay in cache; only
+// the corners' colours are gathered. Face ids are known to be valid or kNone.
+void interpolate_row(const BaseMesh& mesh, const PixelMap& map, int y, float* planes) {
+    const std::span<const PixelCoord> row = map.row(y);
+    float *l = planes, *u = l + map.width, *v = u + map.width;
+    for (std::size_t x = 0; x < row.size(); ++x) {
+        if (row[x].face == kNone) {
+            l[x] = u[x] = v[x] = 0;
+            continue;
+        }
+        const auto [ia, ib, ic] = mesh.faces[row[x].face];
+        const float *a = mesh.feature_of(ia), *b = mesh.feature_of(ib), *c = mesh.feature_of(ic);
+        const float wb = row[x].u, wc = row[x].v, wa = 1 - wb - wc;
+        l[x] = wa * a[0] + wb * b[0] + wc * c[0];
+        u[x] = wa * a[1] + wb * b[1] + wc * c[1];
+        v[x] = wa * a[2] + wb * b[2] + wc * c[2];
+    }
+}
+
+// One colour a face.
+void face_row(const std::vector<Vec3f>& colors, const PixelMap& map, int y, float* planes) {
+    const std::span<const PixelCoord> row = map.row(y);
+    for (std::size_t x = 0; x < row.size(); ++x)
+        store(planes, map.width, x, row[x].face == kNone ? Vec3f(Vec3f::Zero()) : colors[row[x].face]);
+}
+
+// Darkens pixels whose right or lower neighbour belongs to another patch.
+void darken_borders(const PixelMap& map, int y, float* planes) {
+    constexpr float kDarker = 0.6f;
+    const std::span<const PixelCoord> row = map.row(y), below = map.row(std::min(y + 1, map.height - 1));
+    for (std::size_t x = 0; x < row.size(); ++x) {
+        const Id right = row[std::min(x + 1, row.size() - 1)].face;
+        if (right == row[x].face && below[x].face == row[x].face) continue;
+        for (int c = 0; c < 3; ++c) planes[static_cast<std::size_t>(c * map.width) + x] *= kDarker;
+    }
+}
+
+// Lines over a lightened picture. The edge nearest to a point is one of its own face's, and its distance
+// follows from the opposite corner's weight: weight * height over that edge.
+class WireRow {
+  public:
+    WireRow(const BaseMesh& mesh, double scale)
+        : width_(static_cast<float>(std::sqrt(std::max(1.0, scale)))) {
+        double length = 0, area = 0;
+        for (const auto& [ia, ib, ic] : mesh.faces) {
+            const Vec2f &a = mesh.position[ia], &b = mesh.position[ib], &c = mesh.position[ic];
+            const double area2 = signed_area2(a, b, c);
+            const double sides[3] = {(b - c).norm(), (c - a).norm(), (a - b).norm()};
+            for (const double side : sides) length += side / 2;
+            area += area2 / 2;
+            heights_.push_back(Vec3d(area2 / sides[0], area2 / sides[1], area2 / sides[2]).cast<float>() *
+                               float(scale));
+        }
+        // Lines that would cover more than a third of the picture fade.
+        const double covered = length * scale * width_ / std::max(area * scale * scale, 1.0);
+        opacity_ = static_cast<float>(std::min(0.9, 0.3 / covered));
+    }
+
+    void draw(const PixelMap& map, int y, float* planes) const {
+        constexpr float kLighter = 0.35f;  // share of white in the picture below
+        const Vec3f white(100, 0, 0), line(15, -3, -15);
+        const std::span<const PixelCoord> row = map.row(y);
+        for (std::size_t x = 0; x < row.size(); ++x) {
+            if (row[x].face == kNone) continue;
+            const Vec3f& height = heights_[row[x].face];
+            const float distance =
+                std::min({(1 - row[x].u - row[x].v) * height[0], row[x].u * height[1], row[x].v * height[2]});
+            const float ink = opacity_ * std::clamp(width_ / 2 + 0.5f - distance, 0.0f, 1.0f);
+            const auto at = [&](int c) -> float& {
+                return planes[static_cast<std::size_t>(c * map.width) + x];
+            };
+            const Vec3f below = (1 - kLighter) * Vec3f(at(0), at(1), at(2)) + kLighter * white;
+            store(planes, map.width, x, (1 - ink) * below + ink * line);
+        }
+    }
+
+  private:
+    std::vector<Vec3f> heights_;  // of every face over its three sides, opposite its corners [output pixels]
+    float width_;                 // of a line [output pixels]
+    float opacity_;
+};
+
+Image encode_rows(const SourceInfo& source, const PixelMap& map, const RowFunction& row_function) {
+    Image image = make_image(map.width, map.height, source.has_mask ? 4 : 3);
+    image.color_space = source.color_space;
+    image.sample_type = source.sample_type;
+    const LuvEncoder encoder(source.color_space);
+    parallel_blocks(0, map.height, kGrainRows, [&](int first, int last) {
+        std::vector<float> planes(static_cast<std::size_t>(map.width) * 3);
+        for (int y = first; y < last; ++y) {
+            row_function(y, planes.data());
+            float* out = image.row(y).data();
+            encoder.encode_row(planes, map.width, out, image.channels);
+            if (!source.has_mask) continue;
+            for (const PixelCoord& c : map.row(y)) {
+                out[3] = c.face == kNone ? 0.0f : 1.0f;
+                out += image.channels;
+            }
+        }
+    });
+    return image;
+}
+
+bool may_scale(DrawMode mode) {
+    return mode == DrawMode::kGouraud || mode == DrawMode::kWire || mode == DrawMode::kFlat;
+}
+
+void check_scale(const SourceInfo& source, const DrawParams& params) {
+    if (params.scale == 1) return;
+    if (!may_scale(params.mode))
+        throw Error(ErrorCode::kUsage,
+                    cat("scale is ", params.scale, ": this drawing has the picture's own size"));
+    if (!(params.scale > 0 && params.scale * source.width * params.scale * source.height <= kMaxPixels))
+        throw Error(ErrorCode::kUsage,
+                    cat("scale is ", params.scale, ", expected above 0 and at most ", kMaxPixels,
+                        " pixels of a ", source.width, "x", source.height, " picture"));
+}
+
+}  // namespace
+
+Image draw(const MeshImage& mesh_image, int level_index, const DrawParams& params) {
+    const SourceInfo& source = mesh_image.source;
+    const Level& level = level_to_draw(mesh_image, level_index);
+    const BaseMesh& mesh = level.mesh;
+    check_scale(source, params);
+
+    PixelMap raster;
+    if (may_scale(params.mode))
+        raster = rasterize(mesh, sample_grid(source.width, source.height, params.scale));
+    const PixelMap& map = may_scale(params.mode) ? raster : level.map;
+    switch (params.mode) {
+        case DrawMode::kMap:
+        case DrawMode::kGouraud:
+            return encode_rows(source, map,
+                               [&](int y, float* planes) { interpolate_row(mesh, map, y, planes); });
+        case DrawMode::kWire: {
+            const WireRow wire(mesh, params.scale);
+            return encode_rows(source, map, [&](int y, float* planes) {
+                interpolate_row(mesh, map, y, planes);
+                wire.draw(map, y, planes);
+            });
+        }
+        case DrawMode::kPatches: {
+            const std::vector<Vec3f> colors = patch_colors(mesh, map);
+            return encode_rows(source, map, [&](int y, float* planes) {
+                face_row(colors, map, y, planes);
+                darken_borders(map, y, planes);
+            });
+        }
+        case DrawMode::kFlat:
+            break;
+    }
+    const std::vector<Vec3f> colors = face_means(mesh);
+    return encode_rows(source, map, [&](int y, float* planes) { face_row(colors, map, y, planes); });
+}
+
+}  // namespace imgmesh

@@ -1,0 +1,15 @@
+// Colours that tell the patches of a pixel map apart.
+#pragma once
+
+#include <vector>
+
+#include "libcore/mesh/base_mesh.h"
+#include "libcore/param/pixel_map.h"
+
+namespace imgmesh {
+
+/// One L*u*v* colour per face: the mean colour of its patch, tinted with one of eight hues so that patches
+/// that touch (4-neighbours) differ clearly. Depends on the mesh and the map alone.
+std::vector<Vec3f> patch_colors(const BaseMesh& mesh, const PixelMap& map);
+
+}  // namespace imgmesh

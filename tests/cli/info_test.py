@@ -1,0 +1,140 @@
+"""imgmesh-info: facts, verdicts, and what it must not load."""
+import json
+import struct
+import subprocess
+
+import picture_files
+from support import BIN, CliCase, main
+
+
+class Info(CliCase):
+    def setUp(self):
+        super().setUp()
+        picture_files.png(self.folder / "in.png", picture_files.ramp(48, 32))
+        self.built = self.build("in.png", "--faces", "200", output="c.glb")
+        self.build("in.png", "--faces", "200", output="g.gltf")
+
+    def verdict(self, name):
+        """The finding of a broken container, which every tool refuses alike."""
+        report = self.report("imgmesh-info", name, "--validate", code=4)
+        self.assertFalse(report["valid"])
+        finding = report["findings"][0]
+        result = self.assert_error("imgmesh-info", [name, "--validate"], 4, finding["code"], finding["message"])
+        self.assertEqual(self.assert_error("imgmesh-info", [name], 4).stderr, result.stderr)
+        self.assert_error("imgmesh-reconstruct", [name, "-o", "out.png"], 4, finding["code"])
+        return finding
+
+    def test_facts(self):
+        facts = self.report("imgmesh-info", "c.glb")
+        self.assertEqual((facts["width"], facts["height"]), (48, 32))
+        self.assertEqual((facts["channels"], facts["color_space"], facts["sample_type"]), (["R", "G", "B"], "sRGB", "8"))
+        self.assertEqual(facts["built_by"], facts["generator"].replace("-info", "-build"))
+        self.assertEqual(sum(facts["bytes"][part] for part in ("meshes", "layers", "other")), facts["bytes"]["total"])
+        self.assertEqual(facts["build"]["faces"], 200)
+        (level,) = facts["levels"]
+        mesh, pixel_map = level["mesh"], level["map"]
+        self.assertEqual((level["vertices"], level["faces"]), (self.built["vertices"], self.built["faces"]))
+        self.assertEqual(level["vertices"] - mesh["edges"] + level["faces"], mesh["euler"])
+        self.assertEqual((mesh["euler"], mesh["components"]), (1, 1))
+        for count in ("nonmanifold_edges", "nonmanifold_vertices", "flipped_faces"):
+            self.assertEqual(mesh[count], 0)
+        self.assertAlmostEqual(mesh["area"], 47 * 31)
+        self.assertEqual(pixel_map["pixels"], 48 * 32)
+        for count in ("unmapped", "outside_simplex", "flipped_triangles"):
+            self.assertEqual(pixel_map[count], 0)
+
+    def test_both_spellings_say_the_same(self):
+        facts = [self.report("imgmesh-info", name) for name in ("c.glb", "g.gltf")]
+        for member in ("levels", "build", "channels", "version"):
+            self.assertEqual(facts[0][member], facts[1][member])
+
+    def test_text(self):
+        text = self.run_ok("imgmesh-info", "c.glb").stdout
+        for words in ("48 x 32", "edgebreaker", "sRGB", "level 0", f"{self.built['faces']} faces"):
+            self.assertIn(words, text)
+
+    def test_valid(self):
+        for name in ("c.glb", "g.gltf"):
+            self.assertEqual(self.run_ok("imgmesh-info", name, "--validate").stdout, f"{name}: valid\n")
+            self.assertEqual(self.report("imgmesh-info", name, "--validate")["findings"], [])
+
+    def test_truncated_anywhere(self):
+        data = (self.folder / "c.glb").read_bytes()
+        for length in (0, 1, 11, 12, 19, 20, 100, len(data) // 2, len(data) - 1):
+            (self.folder / "cut.glb").write_bytes(data[:length])
+            with self.subTest(length):
+                self.verdict("cut.glb")
+
+    def test_no_container(self):
+        (self.folder / "plain.gltf").write_text('{"asset": {"version": "2.0"}}')
+        self.assertEqual(self.verdict("plain.gltf")["code"], "ext.missing")
+        (self.folder / "deep.gltf").write_text("[" * 100000)
+        self.assertEqual(self.verdict("deep.gltf")["code"], "json.depth")
+        (self.folder / "words.gltf").write_text("words")
+        self.assertEqual(self.verdict("words.gltf")["code"], "json.syntax")
+
+    def test_companion_files(self):
+        exr, binary = (self.folder / "g.exr").read_bytes(), (self.folder / "g.bin").read_bytes()
+        (self.folder / "g.exr").unlink()
+        self.assert_error("imgmesh-info", ["g.gltf", "--validate"], 3, "g.exr")
+        (self.folder / "g.exr").write_bytes(exr[:len(exr) // 2])
+        self.assertTrue(self.verdict("g.gltf")["code"].startswith("layers."))
+        (self.folder / "g.exr").write_bytes(exr)
+        (self.folder / "g.bin").write_bytes(binary[:-8])
+        self.verdict("g.gltf")
+        (self.folder / "g.bin").unlink()
+        self.assert_error("imgmesh-info", ["g.gltf"], 3, "g.bin")
+
+    def edited(self, edit):
+        """A copy of g.gltf whose JSON went through `edit`."""
+        document = json.loads((self.folder / "g.gltf").read_text())
+        edit(document)
+        (self.folder / "e.gltf").write_text(json.dumps(document))
+        return "e.gltf"
+
+    def test_edited_json(self):
+        def root(document):
+            return document["extensions"]["IMGMESH_pixel_map"]
+        self.assertEqual(self.verdict(self.edited(lambda d: root(d)["layers"].update(uri="../g.exr")))["code"],
+                         "uri.name")
+        self.assertEqual(self.verdict(self.edited(lambda d: root(d).update(version="9.0")))["code"], "ext.version")
+        self.verdict(self.edited(lambda d: root(d)["image"].update(width=49)))
+        self.verdict(self.edited(lambda d: root(d)["image"].update(width=2**31 - 1, height=2**31 - 1)))
+        self.verdict(self.edited(lambda d: root(d)["image"].update(width=-48)))
+        self.verdict(self.edited(lambda d: d["bufferViews"][0].update(byteLength=2**40)))
+        node = lambda d: next(n for n in d["nodes"] if "IMGMESH_pixel_map" in n.get("extensions", {}))
+        wrong = {"topology": "0" * 64}
+        self.assertEqual(self.verdict(self.edited(
+            lambda d: node(d)["extensions"]["IMGMESH_pixel_map"].update(wrong)))["code"], "mesh.topology")
+        self.verdict(self.edited(lambda d: d.update(nodes=[])))
+
+    def test_flipped_bytes_never_crash(self):
+        """Each changed byte is found, or the container is still sound: never a signal, never code 1."""
+        data = (self.folder / "c.glb").read_bytes()
+        for at in range(0, len(data), max(1, len(data) // 60)):
+            changed = bytearray(data)
+            changed[at] ^= 0xFF
+            (self.folder / "x.glb").write_bytes(changed)
+            result = self.run_tool("imgmesh-info", "x.glb", "--validate")
+            with self.subTest(at):
+                self.assertIn(result.returncode, (0, 4), result.stderr)
+                if result.returncode == 4:
+                    self.assert_error_lines("imgmesh-info", result, 4, 1)
+
+    def test_length_of_the_header_is_checked_before_memory(self):
+        data = bytearray((self.folder / "c.glb").read_bytes())
+        struct.pack_into("<I", data, 12, 0xFFFFFFF0)
+        (self.folder / "x.glb").write_bytes(data)
+        self.verdict("x.glb")
+
+    def test_does_not_load_the_picture_library(self):
+        """It would cost 0.2 s at every start."""
+        def libraries(tool):
+            return subprocess.run(["ldd", str(BIN / tool)], capture_output=True, text=True, check=True).stdout
+        self.assertIn("libOpenImageIO", libraries("imgmesh-build"))
+        self.assertNotIn("OpenImageIO", libraries("imgmesh-info"))
+        self.assertNotIn("opencv", libraries("imgmesh-info"))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,156 @@
+"""imgmesh-build on every size and kind of picture: a sound container, and the picture comes back."""
+import numpy as np
+
+import picture_files
+from support import CliCase, main
+
+# With faces enough to keep every vertex the pixel map is the identity, and colours are 16-bit codes: what is
+# left is rounding to the picture's 8 bits. One code is 48 dB.
+EXACT_DB = 48
+
+
+class Pictures(CliCase):
+    def round_trip(self, picture, *args, **kwargs):
+        """Builds, checks the container, reconstructs; gives the report and the picture read back."""
+        report = self.build(picture, *args, **kwargs)
+        verdict = self.report("imgmesh-info", "out.glb", "--validate")
+        self.assertTrue(verdict["valid"])
+        self.run_ok("imgmesh-reconstruct", "out.glb", "-o", "back.tif")
+        return report, picture_files.read(self.folder / "back.tif")
+
+    def test_odd_sizes(self):
+        for width, height in ((1, 1), (1, 5), (5, 1), (2, 2), (2, 1), (1, 2), (3, 3), (2, 7), (17, 2)):
+            for name, samples in (("noise", picture_files.noise(width, height)),
+                                  ("checkerboard", picture_files.checkerboard(width, height)),
+                                  ("constant", np.full((height, width, 3), 0.4))):
+                with self.subTest(f"{name} {width}x{height}"):
+                    path = picture_files.png(self.folder / "in.png", samples)
+                    report, back = self.round_trip("in.png", "--density", "100")
+                    self.assertEqual((report["width"], report["height"]), (width, height))
+                    self.assertEqual(back.shape, (height, width, 3))
+                    self.assertEqual(report["flipped_pixel_triangles"], 0)
+                    self.assertGreater(picture_files.psnr(back, picture_files.read(path)), EXACT_DB)
+
+    def test_constant_picture_needs_next_to_nothing(self):
+        """Any mesh reproduces it, whatever the collapse did."""
+        picture_files.png(self.folder / "in.png", np.full((40, 60, 3), 0.3))
+        report, back = self.round_trip("in.png", "--faces", "8")
+        self.assertLessEqual(report["faces"], 8)
+        self.assertLess(report["map_rms"], 0.01)
+        self.assertEqual(report["flipped_pixel_triangles"], 0)
+        np.testing.assert_allclose(back, np.round(0.3 * 255) / 255, atol=1e-6)
+
+    def test_noise_and_checkerboard_stay_sound(self):
+        """Nothing in them can be simplified, but the mesh is as small as asked and nothing folds."""
+        for name, samples in (("noise", picture_files.noise(41, 31)),
+                              ("checkerboard", picture_files.checkerboard(41, 31))):
+            with self.subTest(name):
+                picture_files.png(self.folder / "in.png", samples)
+                report, back = self.round_trip("in.png", "--faces", "100")
+                self.assertLessEqual(report["faces"], 100)
+                self.assertEqual(report["flipped_pixel_triangles"], 0)
+                self.assertEqual(back.shape, samples.shape)
+
+    def test_stops(self):
+        picture_files.png(self.folder / "in.png", picture_files.noise(40, 30))
+        self.assertLessEqual(self.build("in.png", "--faces", "77")["faces"], 77)
+        self.assertGreaterEqual(self.build("in.png", "--faces", "77")["faces"], 70)
+        self.assertLessEqual(self.build("in.png", "--vertices", "50")["vertices"], 50)
+        self.assertLessEqual(self.build("in.png", "--density", "5")["vertices"], 60)
+        self.assertLessEqual(self.build("in.png", "--error", "30")["error"], 30)
+        untouched = self.build("in.png", "--error", "0")
+        self.assertEqual((untouched["vertices"], untouched["faces"], untouched["error"]), (1200, 2 * 39 * 29, 0))
+
+    def test_error_and_bytes_fall_with_size(self):
+        picture_files.png(self.folder / "in.png", picture_files.ramp(64, 48))
+        coarse, fine = (self.build("in.png", "--faces", n) for n in (40, 400))
+        self.assertLess(fine["map_rms"], coarse["map_rms"])
+        self.assertLess(coarse["bytes"], fine["bytes"])
+
+    def test_report_agrees_with_the_files(self):
+        picture_files.png(self.folder / "in.png", picture_files.ramp(64, 48))
+        for output in ("a.glb", "b.gltf"):
+            report = self.build("in.png", output=output)
+            size = sum(len(data) for name, data in self.files().items() if name.startswith(output[0] + "."))
+            self.assertEqual(report["bytes"], size)
+            self.assertAlmostEqual(report["bytes_per_pixel"], size / (64 * 48))
+            facts = self.report("imgmesh-info", output)
+            level = facts["levels"][0]
+            self.assertEqual((level["vertices"], level["faces"]), (report["vertices"], report["faces"]))
+            self.assertEqual(facts["bytes"]["total"], size)
+            self.assertEqual(level["mesh"]["mean_edge_ratio"], report["mean_edge_ratio"])
+        self.assertEqual({n for n in self.files() if n.startswith("b.")}, {"b.gltf", "b.bin", "b.exr"})
+
+    def test_grey(self):
+        grey = picture_files.ramp(24, 16)[..., :1]
+        for bits in (8, 16):
+            path = picture_files.png(self.folder / "in.png", grey, bits=bits)
+            _, back = self.round_trip("in.png", "--density", "100")
+            for channel in range(3):
+                self.assertGreater(picture_files.psnr(back[..., channel], picture_files.read(path)[..., 0]), EXACT_DB)
+            self.assertEqual(self.report("imgmesh-info", "out.glb")["channels"], ["Y"])
+
+    def test_palette(self):
+        indices = np.arange(24 * 16).reshape(16, 24) // 5 % 4
+        palette = np.array([[0, 0, 0], [1, 0, 0], [0, 0.5, 1], [0.9, 0.9, 0.2]])
+        picture_files.png(self.folder / "in.png", indices, palette=palette)
+        _, back = self.round_trip("in.png", "--density", "100")
+        self.assertGreater(picture_files.psnr(back, palette[indices]), EXACT_DB)
+
+    def test_sixteen_bits(self):
+        path = picture_files.png(self.folder / "in.png", picture_files.ramp(24, 16), bits=16)
+        self.round_trip("in.png", "--density", "100")
+        self.assertEqual(str(picture_files.spec(self.folder / "back.tif").format), "uint16")
+        self.assertEqual(self.report("imgmesh-info", "out.glb")["sample_type"], "16")
+        # 16-bit linear codes are coarser than 16-bit sRGB near black, and still far below 8 bits.
+        self.assertGreater(picture_files.psnr(picture_files.read(self.folder / "back.tif"),
+                                              picture_files.read(path)), 70)
+
+    def test_float_is_linear_by_default(self):
+        picture_files.write_float(self.folder / "in.exr", picture_files.ramp(24, 16))
+        report, back = self.round_trip("in.exr", "--density", "100")
+        self.assertEqual(report["color_space"], "linear")
+        self.assertEqual(str(picture_files.spec(self.folder / "back.tif").format), "float")
+        self.assertGreater(picture_files.psnr(back, picture_files.ramp(24, 16)), 70)
+
+    def test_color_space_is_taken_over(self):
+        picture_files.png(self.folder / "in.png", picture_files.ramp(24, 16))
+        report, _ = self.round_trip("in.png", "--color-space", "displayp3")
+        self.assertEqual(report["color_space"], "DisplayP3")
+        self.assertEqual(self.report("imgmesh-info", "out.glb")["color_space"], "DisplayP3")
+
+    def test_alpha_is_ignored_and_the_report_says_so(self):
+        rgba = np.concatenate([picture_files.ramp(24, 16), picture_files.noise(24, 16, 1)], axis=-1)
+        rgba[:, :5, 3] = 0
+        path = picture_files.png(self.folder / "in.png", rgba)
+        report, back = self.round_trip("in.png", "--density", "100", "--alpha", "ignore")
+        self.assertEqual(report["alpha"], "ignored")
+        self.assertEqual(back.shape, (16, 24, 3))
+        seen = picture_files.read(path)[..., 3] > 0.1  # OpenImageIO's Python associates alpha
+        original = np.round(rgba[..., :3] * 255) / 255
+        self.assertGreater(picture_files.psnr(back[seen], original[seen]), EXACT_DB)
+        picture_files.png(self.folder / "in.png", picture_files.ramp(24, 16))
+        self.assertEqual(self.build("in.png")["alpha"], "none")
+
+    def test_precision_of_the_map(self):
+        picture_files.png(self.folder / "in.png", picture_files.ramp(24, 16))
+        for precision in ("half", "float"):
+            self.build("in.png", "--bary", precision)
+            level = self.report("imgmesh-info", "out.glb")["levels"][0]
+            self.assertEqual(level["map"]["precision"], precision)
+
+    def test_compression_changes_bytes_and_nothing_else(self):
+        picture_files.png(self.folder / "in.png", picture_files.ramp(64, 48))
+        sizes, pictures = [], []
+        for mode in ("edgebreaker", "sequential", "none"):
+            report, back = self.round_trip("in.png", "--draco", mode, "--faces", "300")
+            self.assertEqual(self.report("imgmesh-info", "out.glb")["draco"], mode)
+            sizes.append(report["bytes"])
+            pictures.append(back)
+        self.assertEqual(sizes, sorted(sizes))
+        np.testing.assert_array_equal(pictures[0], pictures[1])
+        np.testing.assert_array_equal(pictures[0], pictures[2])
+
+
+if __name__ == "__main__":
+    main()

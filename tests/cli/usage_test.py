@@ -1,0 +1,98 @@
+"""Help, version, and every way to use the tools wrongly: exit code 2 and one line that says how."""
+import re
+
+import picture_files
+from support import ROOT, TOOLS, CliCase, main
+
+PROJECT = re.search(r"project\(imgmesh VERSION ([0-9.]+)", (ROOT / "CMakeLists.txt").read_text())
+
+
+class Usage(CliCase):
+    def test_help_ends_with_exit_codes(self):
+        for tool in TOOLS:
+            text = self.run_ok(tool, "--help").stdout
+            for option in ("--json", "--quiet", "--threads", "--config", "--no-overwrite", "--version"):
+                self.assertIn(option, text)
+            codes = text[text.index("Exit codes:"):].strip().splitlines()[1:]
+            self.assertEqual([int(line.split()[0]) for line in codes], [0, 1, 2, 3, 4, 5, 7])
+
+    def test_version_is_the_projects(self):
+        for tool in TOOLS:
+            self.assertEqual(self.run_ok(tool, "--version").stdout, f"{tool} {PROJECT.group(1)}\n")
+
+    def test_no_arguments(self):
+        for tool in TOOLS:
+            self.assert_error(tool, [], 2, "required")
+
+    def test_unknown_option(self):
+        for tool in TOOLS:
+            self.assert_error(tool, ["--frobnicate", "in", "-o", "out.glb"], 2, "--frobnicate")
+
+    def test_output_is_required(self):
+        self.assert_error("imgmesh-build", ["in.png"], 2, "--output")
+        self.assert_error("imgmesh-reconstruct", ["in.glb"], 2, "--output")
+        self.assert_error("imgmesh-build", ["in.png", "-o"], 2, "--output")
+        self.assert_error("imgmesh-build", ["in.png", "-o", ""], 2, "--output")
+
+    def test_one_input_only(self):
+        self.assert_error("imgmesh-reconstruct", ["a.glb", "b.glb", "-o", "out.png"], 2, "b.glb")
+        self.assert_error("imgmesh-info", ["a.glb", "b.glb"], 2, "b.glb")
+
+    def test_numbers_are_read_strictly(self):
+        picture_files.png(self.folder / "in.png", picture_files.ramp(9, 7))
+        wrong = {
+            "--faces": ["1e3", "-5", "0", "1", "1.5", "0x10", "+5", " 5", "5 ", "5k", "", "nan", "--json",
+                        "99999999999999999999"],
+            "--vertices": ["3", "four", "4.0"],
+            "--density": ["nan", "0", "-1", "100.1", "inf", "1%", "1,5", "", "1e400", "0x1p3"],
+            "--error": ["-1", "nan", "inf", "x"],
+            "--geometry-weight": ["0", "-1", "inf"],
+            "--color-weight": ["0", "-0.5", "nan"],
+            "--projection-color-weight": ["-1e-9", "infinity", "1/30"],
+            "--threads": ["0", "-1", "1.0", "1025", "all", "99999999999"],
+        }
+        for option, values in wrong.items():
+            for value in values:
+                self.assert_error("imgmesh-build", ["in.png", "-o", "out.glb", option, value], 2, option,
+                                  f"'{value}'", "expected")
+        for option, values in {"--level": ["-1", "0.5", "x", "4294967296"], "--scale": ["0", "nan", "-2"]}.items():
+            for value in values:
+                self.assert_error("imgmesh-reconstruct", ["in.glb", "-o", "out.png", option, value], 2, option,
+                                  f"'{value}'", "expected")
+
+    def test_names_are_those_listed(self):
+        for option, value, listed in (("--bary", "double", "half, float"),
+                                      ("--draco", "zip", "edgebreaker, sequential, none"),
+                                      ("--color-space", "CMYK", "sRGB, linear"), ("--alpha", "keep", "ignore")):
+            self.assert_error("imgmesh-build", ["in.png", "-o", "out.glb", option, value], 2, option, value, listed)
+        self.assert_error("imgmesh-reconstruct", ["in.glb", "-o", "o.png", "--mode", "visits"], 2, "--mode", "wire")
+        self.assert_error("imgmesh-reconstruct", ["in.glb", "-o", "o.png", "--depth", "12"], 2, "--depth", "16")
+
+    def test_an_option_is_given_once(self):
+        self.assert_error("imgmesh-build", ["in.png", "-o", "a.glb", "-o", "b.glb"], 2, "--output")
+        self.assert_error("imgmesh-build", ["in.png", "-o", "a.glb", "--faces", "4", "--faces", "8"], 2, "--faces")
+
+    def test_output_names(self):
+        self.assert_error("imgmesh-build", ["in.png", "-o", "out.png"], 2, "out.png", ".glb")
+        self.assert_error("imgmesh-build", ["in.png", "-o", "out"], 2, "out", ".gltf")
+        self.assert_error("imgmesh-build", ["a.png", "b.png", "-o", "out.glb"], 2, "out.glb", "folder")
+        self.assert_error("imgmesh-reconstruct", ["in.glb", "-o", "out.docx"], 2, "out.docx")
+        self.assert_error("imgmesh-reconstruct", ["in.glb", "-o", "out"], 2, "out")
+
+    def test_two_pictures_of_one_name(self):
+        """Refused before any work: the pictures are not there, and the folder is not made."""
+        self.assert_error("imgmesh-build", ["a/x.png", "b/y.png", "c/x.jpg", "-o", "out/"], 2, "a/x.png", "c/x.jpg")
+        self.assertFalse((self.folder / "out").exists())
+
+    def test_modes_and_what_they_can(self):
+        for mode in ("map", "patches"):
+            self.assert_error("imgmesh-reconstruct", ["in.glb", "-o", "o.png", "--mode", mode, "--scale", "2"], 2,
+                              "--scale", mode)
+        for mode in ("map", "gouraud", "patches"):
+            self.assert_error("imgmesh-reconstruct", ["in.glb", "-o", "o.svg", "--mode", mode], 2, "SVG", mode)
+        for option in (["--depth", "8"], ["--scale", "2"]):
+            self.assert_error("imgmesh-reconstruct", ["in.glb", "-o", "o.svg", "--mode", "wire", *option], 2, "SVG")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,68 @@
+#include <doctest/doctest.h>
+
+#include <sstream>
+
+#include "libcore/base/error.h"
+#include "tools/common/options.h"
+#include "tools/common/text.h"
+
+using namespace imgmesh;
+
+TEST_CASE("one_line: printable text stays, everything else is escaped byte by byte") {
+    CHECK(one_line("photo.png: no \"picture\" \\ here") == "photo.png: no \"picture\" \\ here");
+    CHECK(one_line("süß 写真 🙂") == "süß 写真 🙂");
+    CHECK(one_line("a\nb\r\tc\x1b[0m\x7f") == "a\\x0ab\\x0d\\x09c\\x1b[0m\\x7f");
+    CHECK(one_line(std::string("a\0b", 3)) == "a\\x00b");
+    CHECK(one_line("\u0085\u2028\u2029") == "\\xc2\\x85\\xe2\\x80\\xa8\\xe2\\x80\\xa9");
+}
+
+// Each of these is refused by the table of well-formed UTF-8 for another reason.
+TEST_CASE("one_line: ill-formed UTF-8") {
+    CHECK(one_line("\xff!") == "\\xff!");
+    CHECK(one_line("\x80!") == "\\x80!");                           // no lead byte
+    CHECK(one_line("\xc0\xaf!") == "\\xc0\\xaf!");                  // overlong
+    CHECK(one_line("\xe0\x80\xaf!") == "\\xe0\\x80\\xaf!");         // overlong
+    CHECK(one_line("\xed\xa0\x80!") == "\\xed\\xa0\\x80!");         // surrogate
+    CHECK(one_line("\xf4\x90\x80\x80") == "\\xf4\\x90\\x80\\x80");  // beyond U+10FFFF
+    CHECK(one_line("\xf0\x9f\x98") == "\\xf0\\x9f\\x98");           // cut off
+    CHECK(one_line("\xc3") == "\\xc3");
+}
+
+TEST_CASE("format_bytes: units of 1000, one decimal") {
+    CHECK(format_bytes(0) == "0 B");
+    CHECK(format_bytes(999) == "999 B");
+    CHECK(format_bytes(1000) == "1.0 kB");
+    CHECK(format_bytes(28345) == "28.3 kB");
+    CHECK(format_bytes(999'949) == "999.9 kB");
+    CHECK(format_bytes(999'950) == "1.0 MB");
+    CHECK(format_bytes(5'000'000'000'000'000) == "5000.0 TB");
+}
+
+TEST_CASE("TextTable: values stand in one column") {
+    TextTable table;
+    table.add("size", "9 x 7");
+    table.add("triangles", "two\nlines");
+    std::ostringstream out;
+    table.print(out, 2);
+    CHECK(out.str() == "  size       9 x 7\n  triangles  two\\x0alines\n");
+}
+
+TEST_CASE("parse_count: whole numbers, wholly read") {
+    CHECK(parse_count("--faces", "2", {2}) == 2);
+    CHECK(parse_count("--faces", "9223372036854775807", {2}) == std::numeric_limits<std::int64_t>::max());
+    CHECK(parse_count("--n", "-3", {-5, 5}) == -3);
+    CHECK_THROWS_WITH_AS(parse_count("--faces", "1e3", {2}),
+                         "--faces '1e3': expected a whole number, at least 2", Error);
+    CHECK_THROWS_WITH_AS(parse_count("--threads", "9", {1, 8}),
+                         "--threads '9': expected a whole number from 1 to 8", Error);
+}
+
+TEST_CASE("parse_number: finite numbers, wholly read") {
+    CHECK(parse_number("--error", "0", {0}) == 0);
+    CHECK(parse_number("--error", "1.5e-3", {0}) == 1.5e-3);
+    CHECK(parse_number("--density", "100", {0, 100, true}) == 100);
+    CHECK_THROWS_WITH_AS(parse_number("--density", "0", {0, 100, true}),
+                         "--density '0': expected a number above 0 and at most 100", Error);
+    CHECK_THROWS_WITH_AS(parse_number("--error", "nan", {0}),
+                         "--error 'nan': expected a number of at least 0", Error);
+}

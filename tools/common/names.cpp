@@ -1,0 +1,33 @@
+#include "tools/common/names.h"
+
+#include "libcore/image/color.h"
+
+namespace imgmesh {
+
+Choices<ColorSpace> color_space_choices() {
+    Choices<ColorSpace> choices;
+    for (const ColorSpace space : {ColorSpace::kSrgb, ColorSpace::kLinear, ColorSpace::kRec709,
+                                   ColorSpace::kGamma22, ColorSpace::kAdobeRgb, ColorSpace::kDisplayP3}) {
+        choices.emplace_back(color_space_name(space), space);
+    }
+    return choices;
+}
+
+Choices<WeightPrecision> bary_choices() {
+    return {{"half", WeightPrecision::kHalf}, {"float", WeightPrecision::kFloat}};
+}
+
+Choices<DracoMode> draco_choices() {
+    return {{"edgebreaker", DracoMode::kEdgebreaker},
+            {"sequential", DracoMode::kSequential},
+            {"none", DracoMode::kNone}};
+}
+
+Choices<SampleType> depth_choices() {
+    return {{"8", SampleType::kUint8},
+            {"16", SampleType::kUint16},
+            {"half", SampleType::kHalf},
+            {"float", SampleType::kFloat}};
+}
+
+}  // namespace imgmesh

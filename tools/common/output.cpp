@@ -1,0 +1,46 @@
+#include "tools/common/output.h"
+
+#include <cctype>
+#include <filesystem>
+#include <system_error>
+
+#include "libcore/base/error.h"
+
+namespace fs = std::filesystem;
+
+namespace imgmesh {
+
+std::string lower_extension(const std::string& path) {
+    std::string extension = fs::path(path).extension().string();
+    for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    return extension;
+}
+
+void check_output(const std::string& path, bool overwrite) {
+    std::error_code error;
+    const fs::path parent = fs::path(path).parent_path();
+    if (!parent.empty() && !fs::is_directory(parent, error))
+        throw Error(ErrorCode::kIo, cat(path, ": cannot write: there is no folder ", parent.string()));
+    if (fs::is_directory(path, error)) throw Error(ErrorCode::kIo, cat(path, ": cannot write: is a folder"));
+    if (!overwrite && fs::exists(fs::symlink_status(path, error)))
+        throw Error(ErrorCode::kIo, cat(path, ": exists, and --no-overwrite is given"));
+}
+
+void check_distinct(const std::vector<std::string>& inputs, const std::vector<std::string>& outputs) {
+    for (const std::string& output : outputs) {
+        for (const std::string& input : inputs) {
+            std::error_code error;  // of files that are not there, which are no conflict
+            if (fs::equivalent(input, output, error))
+                throw Error(ErrorCode::kUsage, cat(output, ": would replace the input ", input));
+        }
+    }
+}
+
+void make_folder(const std::string& path) {
+    std::error_code error;
+    fs::create_directories(path, error);
+    if (error) throw Error(ErrorCode::kIo, cat(path, ": cannot make the folder: ", error.message()));
+    if (!fs::is_directory(path)) throw Error(ErrorCode::kIo, cat(path, ": is not a folder"));
+}
+
+}  // namespace imgmesh

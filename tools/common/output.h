@@ -1,0 +1,22 @@
+// Checks of where results go, before any work is done.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace imgmesh {
+
+/// The extension of a file name in lower case, as in ".glb"; empty without one.
+std::string lower_extension(const std::string& path);
+
+/// Throws Error(kIo) where `path` cannot become a new file: its folder is not there, it is a folder itself,
+/// or it exists and `overwrite` is false.
+void check_output(const std::string& path, bool overwrite);
+
+/// Throws Error(kUsage) where one of the `outputs` is one of the files of `inputs`, by whatever name.
+void check_distinct(const std::vector<std::string>& inputs, const std::vector<std::string>& outputs);
+
+/// `path` as a folder, made where it is not there. Throws Error(kIo) where that fails.
+void make_folder(const std::string& path);
+
+}  // namespace imgmesh

@@ -1,0 +1,31 @@
+// Text for people: error lines, tables, units.
+#pragma once
+
+#include <cstdint>
+#include <iosfwd>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace imgmesh {
+
+/// `text` on one line that a terminal shows as it is: control characters, line and paragraph separators and
+/// bytes that are no UTF-8 become \xNN.
+std::string one_line(const std::string& text);
+
+/// Rows of a name and a value, printed with the values aligned.
+class TextTable {
+  public:
+    void add(std::string name, std::string value) { rows_.emplace_back(std::move(name), std::move(value)); }
+    void print(std::ostream& out, int indent) const;
+
+  private:
+    std::vector<std::pair<std::string, std::string>> rows_;
+};
+
+/// 999 -> "999 B", 28345 -> "28.3 kB" (units of 1000).
+std::string format_bytes(std::uint64_t bytes);
+/// `value` with `digits` significant digits, never with an exponent for 1e-4 <= |value| < 1e6.
+std::string format_number(double value, int digits = 4);
+
+}  // namespace imgmesh

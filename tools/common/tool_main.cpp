@@ -1,0 +1,181 @@
+#include "tools/common/tool_main.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <csignal>
+#include <cstring>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <new>
+#include <sstream>
+
+#include "libcore/base/parallel.h"
+#include "tools/common/config_file.h"
+#include "tools/common/options.h"
+#include "tools/common/progress_bar.h"
+#include "tools/common/text.h"
+
+namespace imgmesh {
+namespace {
+
+struct ExitCode {
+    ErrorCode code;
+    const char* meaning;
+};
+
+// Every exit code of every tool; --help prints it.
+constexpr ExitCode kExitCodes[] = {
+    {ErrorCode::kOk, "done"},
+    {ErrorCode::kInternal, "internal error"},
+    {ErrorCode::kUsage, "wrong use of the command line"},
+    {ErrorCode::kIo, "cannot read or write"},
+    {ErrorCode::kBadFile, "a file's content is not what it must be"},
+    {ErrorCode::kUnsupported, "a valid request or file that imgmesh does not support"},
+    {ErrorCode::kDifferent, "compared, and different"},
+};
+
+// More than any machine has, few enough for the thread library's tables.
+constexpr int kMaxThreads = 1024;
+
+struct CommonOptions {
+    bool json = false;
+    bool quiet = false;
+    bool overwrite = true;
+    int threads = hardware_threads();
+};
+
+std::string exit_code_table() {
+    std::string table = "Exit codes:";
+    for (const ExitCode& e : kExitCodes) table += cat("\n  ", static_cast<int>(e.code), "  ", e.meaning);
+    return table;
+}
+
+void add_common_options(CLI::App& app, CommonOptions& common) {
+    app.set_help_flag("-h,--help", "Print this and exit");
+    app.set_version_flag("--version", app.get_name() + " " IMGMESH_VERSION, "Print the version and exit");
+    app.add_flag("--json", common.json, "Print the report as one JSON object");
+    app.add_flag("-q,--quiet", common.quiet, "Print no text report and no progress");
+    app.add_flag("--overwrite,!--no-overwrite", common.overwrite, "Replace files that exist (default)");
+    add_count(app, "--threads", common.threads, {1, kMaxThreads},
+              "Threads at most; results are the same for any number (default all)");
+    add_config_option(app);
+    app.footer(exit_code_table());
+}
+
+// A standard stream that was closed by the caller would lend its number to the next file that is opened, and
+// the report would end up in that file. Opening the null device the wrong way round keeps writing an error.
+void hold_standard_streams() {
+    for (int fd = STDIN_FILENO; fd <= STDERR_FILENO; ++fd) {
+        if (::fcntl(fd, F_GETFD) == -1 && errno == EBADF) {
+            ::open("/dev/null", fd == STDOUT_FILENO ? O_RDONLY : O_WRONLY);
+        }
+    }
+}
+
+// Throws Error(kIo) where the text does not reach standard output as a whole.
+void write_stdout(const std::string& text) {
+    std::size_t done = 0;
+    while (done < text.size()) {
+        const ssize_t n = ::write(STDOUT_FILENO, text.data() + done, text.size() - done);
+        if (n >= 0) {
+            done += static_cast<std::size_t>(n);
+        } else if (errno != EINTR) {
+            throw Error(ErrorCode::kIo, cat("standard output: cannot write: ", std::strerror(errno)));
+        }
+    }
+}
+
+void print_error(const std::string& tool, const std::string& message) {
+    std::cerr << tool << ": error: " << one_line(message) << std::endl;
+}
+
+// What failures that did not stop the run add up to.
+ErrorCode joint_code(const std::vector<Failure>& failures) {
+    if (failures.empty()) return ErrorCode::kOk;
+    for (const Failure& f : failures) {
+        if (f.code != failures.front().code) return ErrorCode::kBadFile;
+    }
+    return failures.front().code;
+}
+
+ErrorCode run_parsed(const Tool& tool, const CommonOptions& common) {
+    Context context;
+    context.generator = tool.name + " " IMGMESH_VERSION;
+    context.overwrite = common.overwrite;
+    ProgressBar bar(!common.quiet && ::isatty(STDERR_FILENO));
+    context.progress = [&bar](double fraction, std::string_view stage) { bar.show(fraction, stage); };
+
+    const ThreadLimit limit(common.threads);
+    Report report = {{"$schema", tool.name + ".report.schema.json"}, {"generator", context.generator}};
+    report.update(tool.run(context));
+    bar.clear();
+
+    for (const Failure& f : context.failures) print_error(tool.name, f.message);
+    std::ostringstream text;
+    if (common.json) {
+        // File names may be no UTF-8, which JSON must be.
+        text << report.dump(2, ' ', false, Report::error_handler_t::replace) << '\n';
+    } else if (!common.quiet) {
+        tool.print(report, text);
+    }
+    write_stdout(text.str());
+    return joint_code(context.failures);
+}
+
+ErrorCode parse_and_run(const Tool& tool, int argc, char** argv) {
+    CLI::App app(tool.description, tool.name);
+    CommonOptions common;
+    tool.add_options(app);
+    add_common_options(app, common);
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::CallForHelp&) {
+        write_stdout(app.help());
+        return ErrorCode::kOk;
+    } catch (const CLI::CallForVersion& version) {
+        write_stdout(cat(version.what(), '\n'));
+        return ErrorCode::kOk;
+    } catch (const CLI::FileError& e) {
+        throw Error(ErrorCode::kIo, cat("--config: ", e.what()));
+    } catch (const CLI::ParseError& e) {
+        throw Error(ErrorCode::kUsage, cat(e.what(), " (see --help)"));
+    }
+    return run_parsed(tool, common);
+}
+
+}  // namespace
+
+Failure current_failure() {
+    try {
+        throw;
+    } catch (const Error& e) {
+        return {e.code(), e.what()};
+    } catch (const std::filesystem::filesystem_error& e) {
+        return {ErrorCode::kIo, cat(e.path1().string(), ": ", e.code().message())};
+    } catch (const std::bad_alloc&) {
+        return {ErrorCode::kInternal, "out of memory"};
+    } catch (const std::exception& e) {
+        return {ErrorCode::kInternal, cat("internal error: ", e.what())};
+    } catch (...) {
+        return {ErrorCode::kInternal, "internal error: unknown exception"};
+    }
+}
+
+int run_tool(const Tool& tool, int argc, char** argv) {
+    hold_standard_streams();
+    // A reader that goes away and a limit on file size are errors of write(), not the end of the process.
+    std::signal(SIGPIPE, SIG_IGN);
+    std::signal(SIGXFSZ, SIG_IGN);
+    try {
+        return static_cast<int>(parse_and_run(tool, argc, argv));
+    } catch (...) {
+        const Failure failure = current_failure();
+        print_error(tool.name, failure.message);
+        return static_cast<int>(failure.code);
+    }
+}
+
+}  // namespace imgmesh

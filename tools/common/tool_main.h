@@ -1,0 +1,65 @@
+// The frame of every command line tool: common options, errors, exit codes, the report.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <functional>
+#include <iosfwd>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "libcore/base/error.h"
+#include "libcore/base/progress.h"
+
+namespace imgmesh {
+
+/// What a tool found or did: the object that --json prints. The text report is made from it.
+using Report = nlohmann::ordered_json;
+
+/// A mistake as it is told to the user: one error line and an exit code.
+struct Failure {
+    ErrorCode code = ErrorCode::kInternal;
+    std::string message;
+};
+
+/// The exception being handled as a Failure. Call it in a catch block only.
+Failure current_failure();
+
+/// What a run gets beside its tool's own options.
+struct Context {
+    std::string generator;  ///< "imgmesh-build 0.1.0"
+    bool overwrite = true;  ///< of --overwrite, --no-overwrite
+    Progress progress;      ///< never empty; may be called from any thread
+    /// Mistakes that did not stop the run. Each becomes an error line, in this order, and they decide the
+    /// exit code: theirs where all agree, kBadFile where they differ.
+    std::vector<Failure> failures;
+};
+
+/// A tool without its options; name as in "imgmesh-build".
+struct Tool {
+    std::string name;
+    std::string description;
+    std::function<void(CLI::App&)> add_options;
+    std::function<Report(Context&)> run;
+    std::function<void(const Report&, std::ostream&)> print;
+};
+
+/// Parses the command line, runs, prints, and returns the exit code; throws nothing. A tool's report is
+/// described by schemas/<name>.report.schema.json.
+int run_tool(const Tool& tool, int argc, char** argv);
+
+/// run_tool for a tool whose options are an `Options`.
+///
+/// run    does the work and returns the report's members (an object).
+/// print  writes the report as text; the report is the one that --json would print.
+template <typename Options>
+int tool_main(const std::string& name, const std::string& description, int argc, char** argv,
+              void (*add_options)(CLI::App&, Options&), Report (*run)(const Options&, Context&),
+              void (*print)(const Report&, std::ostream&)) {
+    Options options;
+    return run_tool({name, description, [&](CLI::App& app) { add_options(app, options); },
+                     [&](Context& context) { return run(options, context); }, print},
+                    argc, argv);
+}
+
+}  // namespace imgmesh

@@ -1,0 +1,205 @@
+// imgmesh-build: pictures in, containers out.
+#include <chrono>
+#include <filesystem>
+#include <map>
+#include <mutex>
+#include <optional>
+#include <ostream>
+
+#include "formats/container.h"
+#include "formats/image_io.h"
+#include "libcore/base/parallel.h"
+#include "libcore/build/build.h"
+#include "libcore/image/color.h"
+#include "libcore/metrics/metrics.h"
+#include "tools/common/names.h"
+#include "tools/common/options.h"
+#include "tools/common/output.h"
+#include "tools/common/text.h"
+#include "tools/common/tool_main.h"
+
+namespace fs = std::filesystem;
+using namespace imgmesh;
+
+namespace {
+
+struct Options {
+    std::vector<std::string> inputs;
+    std::string output;
+    BuildParams params;
+    DracoMode draco = DracoMode::kEdgebreaker;
+    std::optional<ColorSpace> color_space;
+    std::string alpha = "ignore";
+};
+
+struct Job {
+    std::string input;
+    std::string output;
+};
+
+void add_options(CLI::App& app, Options& o) {
+    add_inputs(app, "IMAGE", o.inputs, "Pictures to read");
+    add_output(app, o.output,
+               "Container to write (.glb, .gltf), or a folder, ended by /, for NAME.glb of each");
+    const StopParams stop;
+    add_count(app, "--faces", o.params.stop.faces, {2}, "Stop at this many faces");
+    add_count(app, "--vertices", o.params.stop.vertices, {4}, "Stop at this many vertices");
+    add_number(app, "--density", o.params.stop.density, {0, 100, true},
+               cat("Stop at this many vertices, in percent of the pixels (default ", stop.density, ")"));
+    add_number(app, "--error", o.params.stop.error, {0}, "Stop before a quadric error above this");
+    const BuildParams params;
+    add_number(app, "--geometry-weight", o.params.geometry_weight, {0, kNoLimit, true},
+               cat("Weight of geometry in the quadrics (default ", params.geometry_weight, ")"));
+    add_number(app, "--color-weight", o.params.color_weight, {0, kNoLimit, true},
+               cat("Weight of colour in the quadrics (default ", params.color_weight, ")"));
+    add_number(app, "--projection-color-weight", o.params.projection_color_weight, {0},
+               cat("Weight of colour in the pixel map, 0 for the trivial map (default ",
+                   format_number(params.projection_color_weight), ")"));
+    add_choice(app, "--bary", o.params.bary, bary_choices(),
+               "Precision of the pixel map (default half where the map stays one to one, else float)");
+    add_choice(app, "--draco", o.draco, draco_choices(), "Mesh compression (default edgebreaker)");
+    add_choice(app, "--color-space", o.color_space, color_space_choices(),
+               "Of the pictures' numbers, whatever their files say");
+    add_choice<std::string, std::string>(app, "--alpha", o.alpha, {{"ignore", "ignore"}},
+                                         "What becomes of an alpha channel (default ignore)");
+}
+
+// Which container each picture goes to. Throws Error(kUsage) for what can be seen to be wrong before any
+// work.
+std::vector<Job> plan_jobs(const Options& o) {
+    std::vector<Job> jobs;
+    const bool folder = o.output.ends_with('/') || fs::is_directory(o.output);
+    if (!folder) {
+        if (o.inputs.size() > 1)
+            throw Error(ErrorCode::kUsage, cat("-o ", o.output, ": ", o.inputs.size(),
+                                               " pictures need a folder, whose name ends with /"));
+        const std::string extension = lower_extension(o.output);
+        if (extension != ".glb" && extension != ".gltf")
+            throw Error(ErrorCode::kUsage,
+                        cat("-o ", o.output, ": expected a name in .glb or .gltf, or a folder"));
+        jobs.push_back({o.inputs.front(), o.output});
+    } else {
+        std::map<std::string, std::string> input_of;
+        for (const std::string& input : o.inputs) {
+            const std::string output = fs::path(o.output) / (fs::path(input).stem().string() + ".glb");
+            const auto [entry, is_new] = input_of.emplace(output, input);
+            if (!is_new)
+                throw Error(ErrorCode::kUsage,
+                            cat(entry->second, " and ", input, " would both become ", output));
+            jobs.push_back({input, output});
+        }
+    }
+    std::vector<std::string> outputs;
+    for (const Job& job : jobs) {
+        for (std::string& file : container_files(job.output)) outputs.push_back(std::move(file));
+    }
+    check_distinct(o.inputs, outputs);
+    return jobs;
+}
+
+Report build_one(const Job& job, const Options& o, const Context& context, const Progress& progress) {
+    const auto start = std::chrono::steady_clock::now();
+    for (const std::string& file : container_files(job.output)) check_output(file, context.overwrite);
+    const Image image = read_image(job.input, o.color_space);
+    BuildResult result = build_mesh_image(image, o.params, progress);
+    result.mesh_image.generator = context.generator;
+    write_container(job.output, result.mesh_image, {o.draco, context.overwrite});
+
+    // The figures are those of what a reader gets.
+    const Container written = read_container(job.output);
+    const Level& level = written.mesh_image.levels.front();
+    const double bytes = static_cast<double>(written.facts.total_bytes);
+    const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+    return {{"input", job.input},
+            {"output", job.output},
+            {"width", image.width},
+            {"height", image.height},
+            {"color_space", color_space_name(image.color_space)},
+            {"alpha", image.channel("A") >= 0 ? "ignored" : "none"},
+            {"vertices", level.mesh.vertex_count()},
+            {"faces", level.mesh.faces.size()},
+            {"error", level.error},
+            {"map_rms", result.report.map_rms},
+            {"gouraud_rms", result.report.gouraud_rms},
+            {"flipped_pixel_triangles", map_quality(level.mesh, level.map).flipped_triangles},
+            {"mean_edge_ratio", mesh_quality(level.mesh).mean_edge_ratio},
+            {"bytes", written.facts.total_bytes},
+            {"bytes_per_pixel", bytes / static_cast<double>(image.pixel_count())},
+            {"seconds", seconds.count()}};
+}
+
+// The share of all pictures that is done, from the shares of each, which come from several threads.
+class JointProgress {
+  public:
+    JointProgress(std::size_t count, const Progress& progress)
+        : fractions_(count, 0.0), progress_(progress) {}
+
+    void show(std::size_t index, double fraction, std::string_view stage) {
+        const std::lock_guard lock(mutex_);
+        sum_ += fraction - fractions_[index];
+        fractions_[index] = fraction;
+        progress_(sum_ / static_cast<double>(fractions_.size()), stage);
+    }
+
+  private:
+    std::mutex mutex_;
+    std::vector<double> fractions_;
+    double sum_ = 0;
+    const Progress& progress_;
+};
+
+Report run(const Options& o, Context& context) {
+    const std::vector<Job> jobs = plan_jobs(o);
+    if (!fs::path(o.output).has_filename()) make_folder(o.output);
+
+    std::vector<Report> images(jobs.size());
+    std::vector<std::optional<Failure>> failures(jobs.size());
+    JointProgress progress(jobs.size(), context.progress);
+    parallel_blocks(0, static_cast<int>(jobs.size()), 1, [&](int begin, int) {
+        const auto i = static_cast<std::size_t>(begin);
+        try {
+            images[i] = build_one(jobs[i], o, context, [&](double fraction, std::string_view stage) {
+                progress.show(i, fraction, stage);
+            });
+        } catch (...) {
+            // One bad picture does not keep the others from being built.
+            failures[i] = current_failure();
+            images[i] = {{"input", jobs[i].input},
+                         {"failure", {{"code", failures[i]->code}, {"message", failures[i]->message}}}};
+        }
+        progress.show(i, 1, "done");
+    });
+    for (const std::optional<Failure>& failure : failures) {
+        if (failure) context.failures.push_back(*failure);
+    }
+    return {{"images", images}};
+}
+
+void print(const Report& report, std::ostream& out) {
+    for (const Report& image : report["images"]) {
+        if (image.contains("failure")) continue;
+        out << one_line(image["input"].get<std::string>() + " -> " + image["output"].get<std::string>())
+            << '\n';
+        const auto number = [&](const char* key) { return format_number(image[key].get<double>()); };
+        TextTable table;
+        table.add("size", cat(image["width"], " x ", image["height"], " pixels"));
+        if (image["alpha"] != "none") table.add("alpha", image["alpha"].get<std::string>());
+        table.add("mesh", cat(image["vertices"], " vertices, ", image["faces"], " faces"));
+        table.add("error",
+                  cat("map ", number("map_rms"), ", Gouraud ", number("gouraud_rms"), " L*u*v* RMS"));
+        table.add("edge ratio", number("mean_edge_ratio"));
+        table.add("flipped", cat(image["flipped_pixel_triangles"], " pixel triangles"));
+        table.add("file", cat(format_bytes(image["bytes"].get<std::uint64_t>()), ", ",
+                              number("bytes_per_pixel"), " bytes per pixel"));
+        table.add("time", cat(number("seconds"), " s"));
+        table.print(out, 2);
+    }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    return tool_main<Options>("imgmesh-build",
+                              "Turn pictures into containers: a small triangle mesh and a pixel map.", argc,
+                              argv, add_options, run, print);
+}

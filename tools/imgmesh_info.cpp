@@ -1,0 +1,171 @@
+// imgmesh-info: what is in a container, and whether it is sound. Does not link OpenImageIO.
+#include <ostream>
+
+#include "formats/container.h"
+#include "libcore/image/color.h"
+#include "libcore/metrics/metrics.h"
+#include "tools/common/names.h"
+#include "tools/common/options.h"
+#include "tools/common/text.h"
+#include "tools/common/tool_main.h"
+
+using namespace imgmesh;
+
+namespace {
+
+struct Options {
+    std::string input;
+    bool validate = false;
+};
+
+void add_options(CLI::App& app, Options& o) {
+    add_input(app, "CONTAINER", o.input, "Container to read (.glb, .gltf)");
+    app.add_flag("--validate", o.validate,
+                 "Only tell whether the container is sound, with the finding if not");
+}
+
+Report mesh_report(const MeshQuality& q) {
+    return {{"edges", q.edges},
+            {"boundary_edges", q.boundary_edges},
+            {"components", q.components},
+            {"euler", q.euler},
+            {"nonmanifold_edges", q.nonmanifold_edges},
+            {"nonmanifold_vertices", q.nonmanifold_vertices},
+            {"flipped_faces", q.flipped_faces},
+            {"area", q.area},
+            {"mean_valence", q.mean_valence},
+            {"mean_edge_ratio", q.mean_edge_ratio},
+            {"mean_radius_ratio", q.mean_radius_ratio},
+            {"mean_shape", q.mean_shape},
+            {"min_shape", q.min_shape},
+            {"min_angle_deg", q.min_angle_deg}};
+}
+
+Report map_report(const MapQuality& q, WeightPrecision precision) {
+    return {{"precision", name_of(bary_choices(), precision)},
+            {"pixels", q.pixels},
+            {"unmapped", q.unmapped},
+            {"outside_simplex", q.outside_simplex},
+            {"flipped_triangles", q.flipped_triangles},
+            {"min_area2", q.min_area2},
+            {"max_jump", q.max_jump},
+            {"mean_displacement", q.mean_displacement},
+            {"max_displacement", q.max_displacement}};
+}
+
+Report facts_report(const Container& container) {
+    const MeshImage& m = container.mesh_image;
+    const ContainerFacts& facts = container.facts;
+    Report levels = Report::array();
+    for (const Level& level : m.levels) {
+        levels.push_back({{"vertices", level.mesh.vertex_count()},
+                          {"faces", level.mesh.faces.size()},
+                          {"error", level.error},
+                          {"mesh", mesh_report(mesh_quality(level.mesh))},
+                          {"map", map_report(map_quality(level.mesh, level.map), level.map.precision)}});
+    }
+    Report build = Report::object();
+    for (const auto& [name, value] : m.parameters) std::visit([&](const auto& v) { build[name] = v; }, value);
+    return {{"version", facts.version},
+            {"built_by", m.generator},
+            {"width", m.source.width},
+            {"height", m.source.height},
+            {"channels", m.source.channel_names},
+            {"color_space", color_space_name(m.source.color_space)},
+            {"sample_type", name_of(depth_choices(), m.source.sample_type)},
+            {"has_mask", m.source.has_mask},
+            {"has_visits", !m.visits.empty()},
+            {"draco", name_of(draco_choices(), facts.draco)},
+            {"bytes",
+             {{"total", facts.total_bytes},
+              {"meshes", facts.mesh_bytes},
+              {"layers", facts.layer_bytes},
+              {"other", facts.total_bytes - facts.mesh_bytes - facts.layer_bytes}}},
+            {"levels", levels},
+            {"build", build}};
+}
+
+// A finding of the reader, "x.glb: [code] message", in its parts.
+Report finding_report(const std::string& text) {
+    const std::size_t begin = text.find(": ["), end = text.find("] ", begin);
+    if (begin == std::string::npos || end == std::string::npos)
+        throw std::logic_error("a finding without a code: " + text);
+    return {{"code", text.substr(begin + 3, end - begin - 3)}, {"message", text.substr(end + 2)}};
+}
+
+Report run(const Options& o, Context& context) {
+    Report report = {{"input", o.input}};
+    if (!o.validate) {
+        report.update(facts_report(read_container(o.input)));
+        return report;
+    }
+    Report findings = Report::array();
+    try {
+        read_container(o.input);
+    } catch (const Error& e) {
+        if (e.code() != ErrorCode::kBadFile) throw;
+        context.failures.push_back({e.code(), e.what()});
+        findings.push_back(finding_report(e.what()));
+    }
+    report["valid"] = findings.empty();
+    report["findings"] = findings;
+    return report;
+}
+
+void print_level(const Report& level, std::ostream& out) {
+    const Report& mesh = level["mesh"];
+    const Report& map = level["map"];
+    const auto number = [](const Report& value) { return format_number(value.get<double>()); };
+    TextTable table;
+    table.add("mesh", cat(level["vertices"], " vertices, ", level["faces"], " faces, error ",
+                          number(level["error"])));
+    table.add("topology", cat("Euler ", mesh["euler"], ", components ", mesh["components"], ", non-manifold ",
+                              mesh["nonmanifold_edges"], " edges and ", mesh["nonmanifold_vertices"],
+                              " vertices, flipped faces ", mesh["flipped_faces"]));
+    table.add("triangles", cat("edge ratio ", number(mesh["mean_edge_ratio"]), ", shape ",
+                               number(mesh["mean_shape"]), ", least ", number(mesh["min_shape"]),
+                               ", least angle ", number(mesh["min_angle_deg"]), " degrees"));
+    table.add("map", cat(map["precision"].get<std::string>(), ", ", map["pixels"], " pixels, flipped ",
+                         map["flipped_triangles"], " triangles, moves ", number(map["mean_displacement"]),
+                         " pixels, at most ", number(map["max_displacement"])));
+    table.print(out, 4);
+}
+
+void print(const Report& report, std::ostream& out) {
+    const std::string input = one_line(report["input"].get<std::string>());
+    if (report.contains("valid")) {
+        // A finding is told as an error.
+        if (report["valid"]) out << input << ": valid\n";
+        return;
+    }
+    const auto text = [&](const char* key) { return report[key].get<std::string>(); };
+    const auto bytes = [&](const char* part) {
+        return format_bytes(report["bytes"][part].get<std::uint64_t>());
+    };
+    std::string channels;
+    for (const Report& name : report["channels"])
+        channels += (channels.empty() ? "" : " ") + name.get<std::string>();
+
+    out << input << '\n';
+    TextTable table;
+    table.add("size", cat(report["width"], " x ", report["height"], " pixels"));
+    table.add("channels", cat(channels, ", ", text("sample_type"), ", ", text("color_space"),
+                              report["has_mask"] ? ", with a mask" : ""));
+    table.add("container", cat("version ", text("version"), ", Draco ", text("draco")));
+    table.add("file", cat(bytes("total"), ": meshes ", bytes("meshes"), ", layers ", bytes("layers"),
+                          ", other ", bytes("other")));
+    table.add("built by", text("built_by"));
+    for (const auto& [name, value] : report["build"].items()) table.add("  " + name, value.dump());
+    table.print(out, 2);
+    for (std::size_t i = 0; i < report["levels"].size(); ++i) {
+        out << "  level " << i << '\n';
+        print_level(report["levels"][i], out);
+    }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    return tool_main<Options>("imgmesh-info", "Tell what is in a container, and whether it is sound.", argc,
+                              argv, add_options, run, print);
+}

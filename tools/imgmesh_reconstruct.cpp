@@ -1,0 +1,129 @@
+// imgmesh-reconstruct: a container in, a picture out.
+#include <cmath>
+#include <filesystem>
+#include <optional>
+#include <ostream>
+
+#include "formats/atomic_file.h"
+#include "formats/container.h"
+#include "formats/image_io.h"
+#include "libcore/recon/draw.h"
+#include "tools/common/names.h"
+#include "tools/common/options.h"
+#include "tools/common/output.h"
+#include "tools/common/text.h"
+#include "tools/common/tool_main.h"
+
+using namespace imgmesh;
+
+namespace {
+
+struct Options {
+    std::string input;
+    std::string output;
+    DrawParams draw;
+    int level = 0;
+    std::optional<SampleType> depth;
+};
+
+Choices<DrawMode> mode_choices() {
+    return {{"map", DrawMode::kMap},
+            {"gouraud", DrawMode::kGouraud},
+            {"wire", DrawMode::kWire},
+            {"patches", DrawMode::kPatches},
+            {"flat", DrawMode::kFlat}};
+}
+
+void add_options(CLI::App& app, Options& o) {
+    add_input(app, "CONTAINER", o.input, "Container to read (.glb, .gltf)");
+    add_output(app, o.output, "Picture to write (.png, .exr, .tif, .jpg, ...; .svg of wire and flat)");
+    add_choice(app, "--mode", o.draw.mode, mode_choices(), "What to draw (default map, the reconstruction)");
+    add_count(app, "--level", o.level, {0}, "Level of the pyramid, 0 the finest (default 0)");
+    add_number(app, "--scale", o.draw.scale, {0, kNoLimit, true},
+               "Size against the source's, for gouraud, wire and flat (default 1)");
+    add_choice(app, "--depth", o.depth, depth_choices(), "Samples to write (default those of the source)");
+}
+
+// Throws Error(kUsage) for what can be seen to be wrong before the container is read.
+void check_options(const Options& o, bool svg) {
+    const bool plane = o.draw.mode == DrawMode::kMap || o.draw.mode == DrawMode::kPatches;
+    const std::string mode = name_of(mode_choices(), o.draw.mode);
+    if (plane && o.draw.scale != 1)
+        throw Error(ErrorCode::kUsage, cat("--scale ", o.draw.scale, ": mode ", mode,
+                                           " draws one pixel for one; expected gouraud, wire or flat"));
+    if (svg && o.draw.mode != DrawMode::kWire && o.draw.mode != DrawMode::kFlat)
+        throw Error(ErrorCode::kUsage,
+                    cat(o.output, ": mode ", mode, " cannot be drawn as SVG; expected wire or flat"));
+    if (svg && (o.depth || o.draw.scale != 1))
+        throw Error(ErrorCode::kUsage, cat(o.output, ": an SVG has neither --depth nor --scale"));
+    if (!svg && !can_write_image(o.output))
+        throw Error(ErrorCode::kUsage, cat("-o ", o.output, ": expected the name of a picture, as in .png"));
+}
+
+// Throws Error(kUsage) where a scaled picture would be larger than any that can be read.
+void check_size(const SourceInfo& source, double scale) {
+    const ImageLimits limits;
+    const double width = source.width * scale, height = source.height * scale;
+    if (std::max(width, height) > limits.max_side || width * height > static_cast<double>(limits.max_pixels))
+        throw Error(ErrorCode::kUsage,
+                    cat("--scale ", scale, ": the picture would have ", width, " x ", height,
+                        " pixels, more than ", limits.max_side, " a side or ", limits.max_pixels, " in all"));
+}
+
+Report run(const Options& o, Context& context) {
+    const bool svg = lower_extension(o.output) == ".svg";
+    check_options(o, svg);
+    check_distinct(container_files(o.input), {o.output});
+    check_output(o.output, context.overwrite);
+
+    context.progress(0, "read");
+    const MeshImage mesh_image = read_container(o.input).mesh_image;
+    const SourceInfo& source = mesh_image.source;
+    if (o.level >= static_cast<int>(mesh_image.levels.size()))
+        throw Error(ErrorCode::kUsage, cat("--level ", o.level, ": ", o.input, " has levels 0 to ",
+                                           mesh_image.levels.size() - 1));
+    int width = source.width, height = source.height;
+    context.progress(0.4, "draw");
+    if (svg) {
+        const std::string text = draw_svg(mesh_image, o.level, o.draw.mode);
+        AtomicFile file(o.output, context.overwrite);
+        file.write({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
+        file.commit();
+    } else {
+        check_size(source, o.draw.scale);
+        const Image image = draw(mesh_image, o.level, o.draw);
+        context.progress(0.8, "write");
+        write_image(o.output, image, {context.overwrite, o.depth});
+        width = image.width;
+        height = image.height;
+    }
+    const Level& level = mesh_image.levels[static_cast<std::size_t>(o.level)];
+    return {{"input", o.input},
+            {"output", o.output},
+            {"mode", name_of(mode_choices(), o.draw.mode)},
+            {"level", o.level},
+            {"scale", o.draw.scale},
+            {"width", width},
+            {"height", height},
+            {"vertices", level.mesh.vertex_count()},
+            {"faces", level.mesh.faces.size()},
+            {"bytes", std::filesystem::file_size(o.output)}};
+}
+
+void print(const Report& report, std::ostream& out) {
+    out << one_line(report["input"].get<std::string>() + " -> " + report["output"].get<std::string>())
+        << '\n';
+    TextTable table;
+    table.add("drawing", cat(report["mode"].get<std::string>(), " of level ", report["level"]));
+    table.add("size", cat(report["width"], " x ", report["height"]));
+    table.add("mesh", cat(report["vertices"], " vertices, ", report["faces"], " faces"));
+    table.add("file", format_bytes(report["bytes"].get<std::uint64_t>()));
+    table.print(out, 2);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    return tool_main<Options>("imgmesh-reconstruct", "Draw the picture of a container.", argc, argv,
+                              add_options, run, print);
+}
