@@ -62,7 +62,8 @@ Report facts_report(const Container& container) {
                           {"faces", level.mesh.faces.size()},
                           {"error", level.error},
                           {"mesh", mesh_report(mesh_quality(level.mesh))},
-                          {"map", map_report(map_quality(level.mesh, level.map), level.map.precision)}});
+                          {"map", map_report(map_quality(level.mesh, level.map, m.source.has_mask),
+                                             level.map.precision)}});
     }
     Report build = Report::object();
     for (const auto& [name, value] : m.parameters) std::visit([&](const auto& v) { build[name] = v; }, value);
@@ -72,7 +73,7 @@ Report facts_report(const Container& container) {
             {"height", m.source.height},
             {"channels", m.source.channel_names},
             {"color_space", color_space_name(m.source.color_space)},
-            {"sample_type", name_of(depth_choices(), m.source.sample_type)},
+            {"sample_type", name_of(sample_type_choices(), m.source.sample_type)},
             {"has_mask", m.source.has_mask},
             {"has_visits", !m.visits.empty()},
             {"draco", name_of(draco_choices(), facts.draco)},

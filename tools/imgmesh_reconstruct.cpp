@@ -34,6 +34,13 @@ Choices<DrawMode> mode_choices() {
             {"flat", DrawMode::kFlat}};
 }
 
+Choices<SampleType> depth_choices() {
+    return {{"8", SampleType::kUint8},
+            {"16", SampleType::kUint16},
+            {"half", SampleType::kHalf},
+            {"float", SampleType::kFloat}};
+}
+
 void add_options(CLI::App& app, Options& o) {
     add_input(app, "CONTAINER", o.input, "Container to read (.glb, .gltf)");
     add_output(app, o.output, "Picture to write (.png, .exr, .tif, .jpg, ...; .svg of wire and flat)");

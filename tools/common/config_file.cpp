@@ -98,7 +98,7 @@ class StrictConfig : public CLI::ConfigBase {
 }  // namespace
 
 void add_config_option(CLI::App& app) {
-    app.set_config("--config", "", "Read options from a TOML file, by their long names");
+    app.set_config("--config", "", "Read options from a TOML file, by their long names")->type_name("FILE");
     app.config_formatter(std::make_shared<StrictConfig>(app));
     app.allow_config_extras(false);
 }
