@@ -77,6 +77,10 @@ const Matrices& matrices() {
     return kMatrices;
 }
 
+double cube(double x) {
+    return x * x * x;
+}
+
 constexpr double kLinearSlope = 24389.0 / 27.0;   // L* per Y in the linear branch
 constexpr double kLinearLimit = 216.0 / 24389.0;  // Y where the branches meet
 constexpr double kWhiteU = 4 * 0.3127 / (-2 * 0.3127 + 12 * 0.3290 + 3);
@@ -137,8 +141,8 @@ Vec3f luv_from_linear(const Vec3f& linear) {
 
 Vec3f linear_from_luv(const Vec3f& luv) {
     const double lightness = luv[0];
-    const double y = lightness > kLinearSlope * kLinearLimit ? std::pow((lightness + 16) / 116, 3)
-                                                             : lightness / kLinearSlope;
+    const double y =
+        lightness > kLinearSlope * kLinearLimit ? cube((lightness + 16) / 116) : lightness / kLinearSlope;
     double u = kWhiteU, v = kWhiteV;
     if (lightness > 0) {
         u += luv[1] / (13 * lightness);
@@ -150,8 +154,33 @@ Vec3f linear_from_luv(const Vec3f& luv) {
     return (matrices().xyz_to_srgb * xyz).cast<float>();
 }
 
+Vec3f in_gamut(const Vec3f& luv) {
+    // Less than half a 16-bit code beyond counts as inside, so that a result is never projected again.
+    constexpr float kSlack = 4e-6f;
+    const auto inside = [](const Vec3f& linear) {
+        return linear.minCoeff() >= -kSlack && linear.maxCoeff() <= 1 + kSlack;
+    };
+    if (inside(linear_from_luv(luv))) return luv;
+    // Towards a grey of the same lightness the gamut is always reached; bisect for where.
+    const Vec3f grey(std::clamp(luv[0], 0.0f, 100.0f), 0, 0);
+    Vec3f best = luv_from_linear(linear_from_luv(luv).cwiseMax(0.0f).cwiseMin(1.0f));
+    // Darker and lighter greys too: at a lightness a little off, the gamut may reach much closer.
+    for (const float shift : {-8.0f, -4.0f, -2.0f, 0.0f, 2.0f, 4.0f, 8.0f}) {
+        const Vec3f center(std::clamp(grey[0] + shift, 0.0f, 100.0f), 0, 0);
+        const Vec3f rim(center[0], luv[1], luv[2]);
+        float low = 0, high = 1;
+        for (int step = 0; step < 12; ++step) {
+            const float middle = 0.5f * (low + high);
+            (inside(linear_from_luv(center + middle * (rim - center))) ? low : high) = middle;
+        }
+        const Vec3f candidate = center + low * (rim - center);
+        if ((candidate - luv).squaredNorm() < (best - luv).squaredNorm()) best = candidate;
+    }
+    return best;
+}
+
 std::array<std::uint16_t, 3> color_codes(const Vec3f& luv) {
-    const Vec3f linear = linear_from_luv(luv);
+    const Vec3f linear = linear_from_luv(in_gamut(luv));
     std::array<std::uint16_t, 3> codes;
     for (int c = 0; c < 3; ++c)
         codes[static_cast<std::size_t>(c)] =

@@ -29,8 +29,13 @@ Vec3f luv_from_linear(const Vec3f& linear);
 /// The inverse of luv_from_linear for L* > 0; black for L* <= 0 chroma-free.
 Vec3f linear_from_luv(const Vec3f& luv);
 
-/// The L*u*v* colour nearest to `luv` that a container's COLOR_0 holds: linear RGB clamped to [0, 1] and
-/// rounded to 16 bits. storable_color(storable_color(x)) == storable_color(x), bit for bit.
+/// `luv` itself where its linear RGB lies in [0, 1], else a colour close to it, in L*u*v*, for which that
+/// holds. (Clamping the RGB channels goes several times as far: near black a small step in L*u*v* leaves the
+/// gamut by a lot.)
+Vec3f in_gamut(const Vec3f& luv);
+
+/// What a container's COLOR_0 keeps of `luv`: in_gamut(luv) as linear RGB rounded to 16 bits.
+/// storable_color(storable_color(x)) == storable_color(x), bit for bit.
 Vec3f storable_color(const Vec3f& luv);
 /// Linear RGB of a storable colour as its 16-bit codes, and back.
 std::array<std::uint16_t, 3> color_codes(const Vec3f& luv);

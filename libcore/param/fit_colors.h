@@ -14,9 +14,9 @@ struct FitTerm {
 };
 
 /// Replaces mesh.feature by the least-squares solution of sum over terms and pixels of
-/// weight |w_a f_a + w_b f_b + w_c f_c - feature|^2. Vertices that no pixel touches keep their value.
-/// Maps and feature have one size. Conjugate gradients on the (well-conditioned) normal equations, started
-/// from what mesh.feature holds. Deterministic.
+/// weight |w_a f_a + w_b f_b + w_c f_c - feature|^2 among the colours that a container holds (in_gamut).
+/// Vertices that no pixel touches keep their value. Maps and feature have one size. Starts from what
+/// mesh.feature holds. Deterministic.
 void fit_colors(BaseMesh& mesh, const FeatureImage& feature, const std::vector<FitTerm>& terms);
 
 }  // namespace imgmesh
