@@ -81,7 +81,10 @@ CLI::Option* add_inputs(CLI::App& app, const std::string& name, std::vector<std:
             return true;
         },
         help);
-    return option->expected(1, CLI::detail::expected_max_vector_size)->type_name("")->required();
+    return option->expected(1, CLI::detail::expected_max_vector_size)
+        ->allow_extra_args()
+        ->type_name("")
+        ->required();
 }
 
 CLI::Option* add_output(CLI::App& app, std::string& output, const std::string& help) {
