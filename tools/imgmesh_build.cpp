@@ -114,7 +114,10 @@ BuildResult build_named(const std::string& input, const Image& image, const Buil
 
 Report build_one(const Job& job, const Options& o, const Context& context, const Progress& progress) {
     const auto start = std::chrono::steady_clock::now();
-    for (const std::string& file : container_files(job.output)) check_output(file, context.overwrite);
+    // What stands beside a .gltf is replaced only where there is one that it belongs to.
+    const bool replace_others = context.overwrite && fs::exists(job.output);
+    for (const std::string& file : container_files(job.output))
+        check_output(file, file == job.output ? context.overwrite : replace_others);
     const Image image = read_image(job.input, o.color_space);
     BuildResult result = build_named(job.input, image, o.params, progress);
     result.mesh_image.generator = context.generator;
@@ -195,7 +198,7 @@ Report run(const Options& o, Context& context) {
 void print(const Report& report, std::ostream& out) {
     for (const Report& image : report["images"]) {
         if (image.contains("failure")) continue;
-        out << one_line(image["input"].get<std::string>() + " -> " + image["output"].get<std::string>())
+        out << printable_line(image["input"].get<std::string>() + " -> " + image["output"].get<std::string>())
             << '\n';
         const auto number = [&](const char* key) { return format_number(image[key].get<double>()); };
         TextTable table;

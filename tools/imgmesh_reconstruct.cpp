@@ -118,7 +118,7 @@ Report run(const Options& o, Context& context) {
 }
 
 void print(const Report& report, std::ostream& out) {
-    out << one_line(report["input"].get<std::string>() + " -> " + report["output"].get<std::string>())
+    out << printable_line(report["input"].get<std::string>() + " -> " + report["output"].get<std::string>())
         << '\n';
     TextTable table;
     table.add("drawing", cat(report["mode"].get<std::string>(), " of level ", report["level"]));

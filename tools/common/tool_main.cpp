@@ -90,7 +90,7 @@ void write_stdout(const std::string& text) {
 }
 
 void print_error(const std::string& tool, const std::string& message) {
-    std::cerr << tool << ": error: " << one_line(message) << std::endl;
+    std::cerr << tool << ": error: " << printable_line(message) << std::endl;
 }
 
 // What failures that did not stop the run add up to.
