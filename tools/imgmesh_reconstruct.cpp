@@ -80,11 +80,12 @@ void check_size(const SourceInfo& source, double scale) {
 Report run(const Options& o, Context& context) {
     const bool svg = lower_extension(o.output) == ".svg";
     check_options(o, svg);
-    check_distinct(container_files(o.input), {o.output});
     check_output(o.output, context.overwrite);
 
     context.progress(0, "read");
-    const MeshImage mesh_image = read_container(o.input).mesh_image;
+    const Container container = read_container(o.input);
+    check_distinct(container.facts.files, {o.output});
+    const MeshImage& mesh_image = container.mesh_image;
     const SourceInfo& source = mesh_image.source;
     if (o.level >= static_cast<int>(mesh_image.levels.size()))
         throw Error(ErrorCode::kUsage, cat("--level ", o.level, ": ", o.input, " has levels 0 to ",
