@@ -184,10 +184,12 @@ DecodedPicture decode_exr(const std::string& path, Bytes bytes, const ImageLimit
         const auto stored_width = static_cast<std::size_t>(length(stored.min.x, stored.max.x));
         std::vector<float> row(stored_width * channels);
         Imf::FrameBuffer buffer;
+        // OpenEXR wants the address of pixel (0, 0), wherever the window is. The stride from row to row is 0.
+        const std::size_t stride = channels * sizeof(float);
+        const std::ptrdiff_t origin = std::ptrdiff_t{stored.min.x} * static_cast<std::ptrdiff_t>(stride);
         for (std::size_t c = 0; c < channels; ++c)
-            buffer.insert(names[c], Imf::Slice::Make(Imf::FLOAT, row.data() + c, {stored.min.x, 0},
-                                                     static_cast<std::int64_t>(stored_width), 1,
-                                                     channels * sizeof(float), 0));
+            buffer.insert(names[c], Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(row.data() + c) - origin,
+                                               stride, 0));
         Imf::InputPart part(file, 0);
         part.setFrameBuffer(buffer);
         const int left = std::max(shown.min.x, stored.min.x), right = std::min(shown.max.x, stored.max.x);

@@ -40,7 +40,7 @@ struct WriteImageOptions {
 };
 
 /// Writes in the format of the extension, atomically; integers are rounded and clamped. PNG (8 and 16 bit),
-/// JPEG, TIFF (8, 16, half, float), WebP (lossless), EXR (half, float), BMP, PPM and PNM (8 and 16 bit).
+/// JPEG, TIFF (8, 16, float), WebP (lossless), EXR (half, float), BMP, PPM and PNM (8 bit).
 ///
 /// The colours read back are those of `image`: floats are written linear (EXR's with associated alpha), and
 /// linear floats become sRGB in integers; other integers stay as encoded, noted by an ICC profile in colour

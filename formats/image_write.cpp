@@ -30,20 +30,21 @@ struct Format {
     bool alpha;
     bool icc;           ///< holds ICC profiles, and so integers of any colour space; without, they are sRGB
     bool any_channels;  ///< else grey or colour, with or without alpha
+    int max_side = std::numeric_limits<int>::max();
 };
 
 const std::vector<Format>& formats() {
     static const std::vector<Format> kFormats = {
         {".png", "png", {kUint8, kUint16}, true, true, false},
-        {".jpg", "jpeg", {kUint8}, false, true, false},
-        {".jpeg", "jpeg", {kUint8}, false, true, false},
-        {".tif", "tiff", {kUint8, kUint16, kHalf, kFloat}, true, true, true},
-        {".tiff", "tiff", {kUint8, kUint16, kHalf, kFloat}, true, true, true},
-        {".webp", "", {kUint8}, true, false, false},
+        {".jpg", "jpeg", {kUint8}, false, true, false, 65500},
+        {".jpeg", "jpeg", {kUint8}, false, true, false, 65500},
+        {".tif", "tiff", {kUint8, kUint16, kFloat}, true, true, true},
+        {".tiff", "tiff", {kUint8, kUint16, kFloat}, true, true, true},
+        {".webp", "", {kUint8}, true, false, false, 16383},
         {".exr", "", {kHalf, kFloat}, true, false, true},
         {".bmp", "bmp", {kUint8}, false, false, false},
-        {".ppm", "pnm", {kUint8, kUint16}, false, false, false},
-        {".pnm", "pnm", {kUint8, kUint16}, false, false, false}};
+        {".ppm", "pnm", {kUint8}, false, false, false},
+        {".pnm", "pnm", {kUint8}, false, false, false}};
     return kFormats;
 }
 
@@ -156,7 +157,11 @@ Image without_alpha(const std::string& path, const Format& format, Image image) 
     return out;
 }
 
-void check_channels(const std::string& path, const Format& format, const Image& image) {
+void check_shape(const std::string& path, const Format& format, const Image& image) {
+    if (image.width > format.max_side || image.height > format.max_side)
+        throw Error(ErrorCode::kUsage,
+                    cat(path, ": the picture is ", image.width, "x", image.height, ", ", format.extension,
+                        " pictures have at most ", format.max_side, " pixels a side"));
     if (format.any_channels) return;
     const auto& names = image.channel_names;
     using Names = std::vector<std::string>;
@@ -199,7 +204,9 @@ std::vector<std::uint8_t> encode_with_oiio(const std::string& path, const Format
         spec.attribute("Compression", "jpeg:95");
         spec.attribute("jpeg:subsampling", "4:4:4");
     }
-    if (is_integer(type) && image.color_space == ColorSpace::kSrgb) spec.attribute("oiio:ColorSpace", "sRGB");
+    // Not in TIFF, where it needs an EXIF directory, for which OpenImageIO cannot read its own memory back.
+    if (image.color_space == ColorSpace::kSrgb && std::string_view(format.writer) != "tiff")
+        spec.attribute("oiio:ColorSpace", "sRGB");
     if (is_integer(type) && image.color_space != ColorSpace::kSrgb) {
         const auto profile = icc_from_color_space(image.color_space);
         spec.attribute("ICCProfile", OIIO::TypeDesc(OIIO::TypeDesc::UINT8, static_cast<int>(profile.size())),
@@ -236,7 +243,7 @@ void write_image(const std::string& path, const Image& image, const WriteImageOp
                     cat(path, ": cannot write this kind of picture, expected one of ", list));
     }
     const SampleType type = choose_type(path, *format, image, options.sample_type);
-    check_channels(path, *format, image);
+    check_shape(path, *format, image);
     AtomicFile file(path, options.overwrite);  // before the work: where it cannot be written, all is in vain
 
     Image stored = without_alpha(path, *format, image);
@@ -245,7 +252,7 @@ void write_image(const std::string& path, const Image& image, const WriteImageOp
         multiply_alpha_in(stored);
         file.write(encode_exr(stored, type));
     } else if (format->extension == ".webp") {
-        file.write(encode_webp(path, stored));
+        file.write(encode_webp(stored));
     } else {
         file.write(encode_with_oiio(path, *format, stored, type));
     }

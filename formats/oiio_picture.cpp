@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <string_view>
 
@@ -116,6 +117,29 @@ std::optional<ColorSpace> color_space(const OIIO::ImageSpec& spec, PictureFormat
     return parse_color_space(name);
 }
 
+// Integers of type T as floats in [0, 1], exactly code / maximum; OpenImageIO multiplies by an inverse.
+template <typename T>
+bool read_codes(OIIO::ImageInput& input, OIIO::TypeDesc type, std::vector<float>& out) {
+    std::vector<T> codes(out.size());
+    if (!input.read_image(0, 0, 0, input.spec().nchannels, type, codes.data())) return false;
+    for (std::size_t i = 0; i < out.size(); ++i)
+        out[i] = static_cast<float>(codes[i]) / static_cast<float>(std::numeric_limits<T>::max());
+    return true;
+}
+
+bool read_samples(OIIO::ImageInput& input, SampleType type, std::vector<float>& out) {
+    switch (type) {
+        case SampleType::kUint8:
+            return read_codes<std::uint8_t>(input, OIIO::TypeUInt8, out);
+        case SampleType::kUint16:
+            return read_codes<std::uint16_t>(input, OIIO::TypeUInt16, out);
+        case SampleType::kHalf:
+        case SampleType::kFloat:
+            break;
+    }
+    return input.read_image(0, 0, 0, input.spec().nchannels, OIIO::TypeFloat, out.data());
+}
+
 void use_one_thread() {
     // OpenImageIO's own pool would ignore the caller's limit; pictures of a batch run in parallel anyway.
     static const bool kDone = OIIO::attribute("threads", 1);
@@ -152,8 +176,7 @@ DecodedPicture decode_with_oiio(const std::string& path, std::span<const std::ui
         out.image.channel_names = channel_names(spec);
         out.image.data.resize(out.image.pixel_count() * static_cast<std::size_t>(spec.nchannels));
         // libjpeg and others say of a truncated file no more than a warning: an error that is told counts.
-        if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeFloat, out.image.data.data()) ||
-            input->has_error())
+        if (!read_samples(*input, out.image.sample_type, out.image.data) || input->has_error())
             throw broken(input->geterror());
         // Asked for alpha as stored, TIFF's reader says when it stands alone; the others never multiply.
         out.associated_alpha =

@@ -31,9 +31,10 @@ DecodedPicture decode_exr(const std::string& path, std::span<const std::uint8_t>
                           const ImageLimits& limits, bool any_primaries);
 
 /// The bytes of an EXR or a WebP file. The picture is as it is to be stored: `image` linear with associated
-/// alpha for EXR and `type` kHalf or kFloat; sRGB, 8 bit and lossless, for WebP.
+/// alpha for EXR and `type` kHalf or kFloat; sRGB, 8 bit and lossless, at most 16383
+/// pixels a side, for WebP.
 std::vector<std::uint8_t> encode_exr(const Image& image, SampleType type);
-std::vector<std::uint8_t> encode_webp(const std::string& path, const Image& image);
+std::vector<std::uint8_t> encode_webp(const Image& image);
 
 /// A library's message as one line without control characters.
 std::string one_line(const std::string& message);

