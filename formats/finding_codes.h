@@ -2,6 +2,8 @@
 // them.
 #pragma once
 
+#include <cstddef>
+#include <iterator>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -65,11 +67,10 @@ inline constexpr Finding kFindings[] = {
 
 /// One of kFindings, by its code; any other does not compile.
 struct FindingCode {
-    const Finding* finding = nullptr;
+    std::size_t index = 0;
     consteval FindingCode(const char* code) {
-        for (const Finding& known : kFindings)
-            if (known.code == code) finding = &known;
-        if (!finding) throw "not in kFindings";
+        while (index < std::size(kFindings) && kFindings[index].code != code) ++index;
+        if (index == std::size(kFindings)) throw "not in kFindings";
     }
 };
 
@@ -78,7 +79,7 @@ struct FindingCode {
 class FindingError : public std::runtime_error {
   public:
     FindingError(FindingCode code, const std::string& text)
-        : std::runtime_error(text), finding_(code.finding) {}
+        : std::runtime_error(text), finding_(&kFindings[code.index]) {}
     std::string_view code() const { return finding_->code; }
     ErrorCode error_code() const { return finding_->error; }
 

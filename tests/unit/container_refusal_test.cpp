@@ -2,7 +2,9 @@
 #include <doctest/doctest.h>
 
 #include <filesystem>
+#include <fstream>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "formats/atomic_file.h"
 #include "formats/container.h"
@@ -26,9 +28,8 @@ Bytes read_bytes(const std::string& path) {
 }
 
 void write_bytes(const std::string& path, std::span<const std::uint8_t> bytes) {
-    AtomicFile file(path, true);
-    file.write(bytes);
-    file.commit();
+    std::ofstream out(path, std::ios::binary);
+    out.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
 }
 
 void write_text(const std::string& path, const std::string& text) {
@@ -180,6 +181,37 @@ TEST_CASE("refusals: IMGMESH_pixel_map") {
     CHECK(file.with([](json& d) { level(d, 0)["error"] = "x"; }) == "ext.member");
     CHECK(file.with([](json& d) { level(d, 0)["topology"] = "ab"; }) == "ext.member");
     CHECK(file.with([](json& d) { level(d, 0)["topology"] = std::string(64, '0'); }) == "mesh.topology");
+}
+
+TEST_CASE("refusals: docs/format.md lists every code, each is a code once") {
+    const Bytes bytes = read_bytes(IMGMESH_DOCS "/format.md");
+    const std::string text(bytes.begin(), bytes.end());
+    std::set<std::string_view> codes;
+    for (const Finding& f : kFindings) {
+        INFO(f.code);
+        CHECK(text.find(cat("| `", f.code, "` | ", f.meaning, " |\n")) != std::string::npos);
+        CHECK(codes.insert(f.code).second);
+    }
+}
+
+// The schemas and the reader agree on what is wrong.
+TEST_CASE("refusals: every invalid example of the schemas") {
+    Broken file;
+    int examples = 0;
+    for (const auto& entry : std::filesystem::directory_iterator(IMGMESH_SCHEMAS "/examples/invalid")) {
+        const std::string name = entry.path().filename().string();
+        const bool at_root = name.starts_with("glTF.IMGMESH_pixel_map.");
+        if (!at_root && !name.starts_with("node.IMGMESH_pixel_map.")) continue;
+        INFO(name);
+        const Bytes text = read_bytes(entry.path().string());
+        const json example = json::parse(text.begin(), text.end());
+        // At the node there are fewer vertices; what is wrong must be found before that.
+        const std::string code = file.with([&](json& d) { (at_root ? root(d) : level(d, 0)) = example; });
+        CHECK((code.starts_with("ext.") || code.starts_with("limits.") || code == "uri.name" ||
+               code == "mesh.counts"));
+        ++examples;
+    }
+    CHECK(examples >= 20);
 }
 
 TEST_CASE("refusals: URIs leave the folder in no spelling") {
