@@ -27,7 +27,8 @@ struct ContainerOptions {
 void write_container(const std::string& path, const MeshImage& mesh_image,
                      const ContainerOptions& options = {});
 
-/// The files that write_container makes for `path`, itself first: a .gltf has a .bin and a .exr beside it.
+/// The files that write_container makes for `path`, itself first: a .gltf has a .bin and a .exr
+/// beside it. Throws Error(kUsage) for another extension.
 std::vector<std::string> container_files(const std::string& path);
 
 /// What read_container refuses before it takes memory.
@@ -43,9 +44,10 @@ struct ContainerLimits {
 struct ContainerFacts {
     std::string version;  ///< of the extension
     DracoMode draco = DracoMode::kOff;
-    std::uint64_t total_bytes = 0;  ///< all files together
-    std::uint64_t mesh_bytes = 0;   ///< meshes as stored, compressed
-    std::uint64_t layer_bytes = 0;  ///< the EXR
+    std::vector<std::string> files;  ///< as read, the named one first
+    std::uint64_t total_bytes = 0;   ///< all files together
+    std::uint64_t mesh_bytes = 0;    ///< meshes as stored, compressed
+    std::uint64_t layer_bytes = 0;   ///< the EXR
 };
 
 struct Container {

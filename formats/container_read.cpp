@@ -27,6 +27,7 @@ class FileReader {
             Bytes bytes = read_file(path, left_);
             left_ -= bytes.size();
             total_ += bytes.size();
+            names_.push_back(path);
             return bytes;
         } catch (const Error& error) {
             if (error.code() != ErrorCode::kBadFile) throw;
@@ -34,9 +35,11 @@ class FileReader {
         }
     }
     std::uint64_t total() const { return total_; }
+    const std::vector<std::string>& names() const { return names_; }
 
   private:
     std::uint64_t left_, total_ = 0;
+    std::vector<std::string> names_;
 };
 
 View cut(View buffer, const ByteRange& range) {
@@ -108,6 +111,7 @@ Container read(const std::string& path, const ContainerLimits& limits) {
 
     Container container;
     container.facts = facts_of(asset, buffer);
+    container.facts.files = files.names();
     container.facts.total_bytes = files.total();
     container.facts.layer_bytes = layers.size();
     MeshImage& image = container.mesh_image;

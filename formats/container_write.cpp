@@ -90,14 +90,14 @@ void write_glb(const std::string& path, Asset& asset, std::vector<std::uint8_t> 
 
 void write_gltf(const std::string& path, Asset& asset, const std::vector<std::uint8_t>& buffer,
                 const std::vector<std::uint8_t>& layers, bool overwrite) {
-    const std::filesystem::path stem = std::filesystem::path(path).replace_extension();
+    const std::vector<std::string> names = container_files(path);
     // Files of these names that belong to no container, such as the picture it is made from, are not
     // replaced.
     const bool overwrite_others = overwrite && std::filesystem::exists(path);
     AtomicFile gltf(path, overwrite);
-    AtomicFile bin(stem.string() + ".bin", overwrite_others), exr(stem.string() + ".exr", overwrite_others);
-    asset.buffer_name = stem.filename().string() + ".bin";
-    asset.layers_name = stem.filename().string() + ".exr";
+    AtomicFile bin(names[1], overwrite_others), exr(names[2], overwrite_others);
+    asset.buffer_name = std::filesystem::path(names[1]).filename().string();
+    asset.layers_name = std::filesystem::path(names[2]).filename().string();
     asset.buffer_length = buffer.size();
     const std::string json = json_from_asset(asset);
     bin.write(buffer);
@@ -109,6 +109,12 @@ void write_gltf(const std::string& path, Asset& asset, const std::vector<std::ui
 }
 
 }  // namespace
+
+std::vector<std::string> container_files(const std::string& path) {
+    if (spelling_of(path) == Spelling::kGlb) return {path};
+    const std::string stem = std::filesystem::path(path).replace_extension().string();
+    return {path, stem + ".bin", stem + ".exr"};
+}
 
 void write_container(const std::string& path, const MeshImage& mesh_image, const ContainerOptions& options) {
     const Spelling spelling = spelling_of(path);
