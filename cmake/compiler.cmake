@@ -1,6 +1,10 @@
 # Warnings and sanitizers as one interface target that every target of ours links privately.
 add_library(imgmesh_compiler INTERFACE)
 target_compile_options(imgmesh_compiler INTERFACE -Wall -Wextra -Wshadow -Wconversion)
+if(CMAKE_CXX_COMPILER_ID STREQUAL GNU AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
+  # False alarms of g++ 12 in std::string's operator+ (GCC bug 105651).
+  target_compile_options(imgmesh_compiler INTERFACE -Wno-restrict)
+endif()
 if(CMAKE_CXX_COMPILER_ID MATCHES Clang)
   # Eigen's and the standard library's sizes are signed and unsigned; g++ does not ask for this either.
   target_compile_options(imgmesh_compiler INTERFACE -Wno-sign-conversion)
