@@ -4,7 +4,9 @@
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
 #include <ImfOutputFile.h>
+#include <ImfPreviewImage.h>
 #include <ImfStringAttribute.h>
+#include <ImfStringVectorAttribute.h>
 #include <ImfTiledOutputFile.h>
 #include <doctest/doctest.h>
 
@@ -173,6 +175,9 @@ TEST_CASE("layers: files of other software") {
     CHECK(with([](Foreign& f) { f.header.displayWindow().max.x += 1; }) == "layers.window");
     CHECK(with([](Foreign& f) { f.header.insert("note", Imf::StringAttribute(std::string(70000, 'x'))); }) ==
           "layers.header");
+    CHECK(with([](Foreign& f) { f.header.insert("names", Imf::StringVectorAttribute({"x"})); }) ==
+          "layers.header");
+    CHECK(with([](Foreign& f) { f.header.setPreviewImage(Imf::PreviewImage(2, 2)); }) == "layers.header");
     CHECK(with([](Foreign& f) { f.face[40] = kFaces; }) == "layers.face_range");
     CHECK(with([](Foreign& f) { f.face[40] = kNone; }) == "layers.mask");
     CHECK(with([](Foreign& f) {
