@@ -25,7 +25,7 @@ class Pictures(CliCase):
                                   ("constant", np.full((height, width, 3), 0.4))):
                 with self.subTest(f"{name} {width}x{height}"):
                     path = picture_files.png(self.folder / "in.png", samples)
-                    report, back = self.round_trip("in.png", "--density", "100")
+                    report, back = self.round_trip("in.png", "--faces", "1000")
                     self.assertEqual((report["width"], report["height"]), (width, height))
                     self.assertEqual(back.shape, (height, width, 3))
                     self.assertEqual(report["flipped_pixel_triangles"], 0)

@@ -73,8 +73,8 @@ class Streams(CliCase):
 
     def test_reports_of_names_that_are_no_utf8(self):
         name = b"p\xff\n.png"
-        picture_files.png(self.folder / "x.png", picture_files.ramp(9, 7)).rename(
-            os.path.join(os.fsencode(self.folder), name))
+        os.rename(picture_files.png(self.folder / "x.png", picture_files.ramp(9, 7)),
+                  os.path.join(os.fsencode(self.folder), name))
         result = self.run_ok("imgmesh-build", name, "-o", b"o\xff.glb", "--json")
         report = json.loads(result.stdout)
         validate_report("imgmesh-build", report)

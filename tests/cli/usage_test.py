@@ -39,23 +39,23 @@ class Usage(CliCase):
         self.assert_error("imgmesh-info", ["a.glb", "b.glb"], 2, "b.glb")
 
     def test_numbers_are_read_strictly(self):
+        """What is refused of every number stands in unit/tool_text_test.cpp; here, that each option does."""
         picture_files.png(self.folder / "in.png", picture_files.ramp(9, 7))
         wrong = {
-            "--faces": ["1e3", "-5", "0", "1", "1.5", "0x10", "+5", " 5", "5 ", "5k", "", "nan", "--json",
-                        "99999999999999999999"],
-            "--vertices": ["3", "four", "4.0"],
-            "--density": ["nan", "0", "-1", "100.1", "inf", "1%", "1,5", "", "1e400", "0x1p3"],
-            "--error": ["-1", "nan", "inf", "x"],
-            "--geometry-weight": ["0", "-1", "inf"],
-            "--color-weight": ["0", "-0.5", "nan"],
-            "--projection-color-weight": ["-1e-9", "infinity", "1/30"],
-            "--threads": ["0", "-1", "1.0", "1025", "all", "99999999999"],
+            "--faces": ["1e3", "-5", "1", "", "--json"],
+            "--vertices": ["3"],
+            "--density": ["nan", "0", "100.1"],
+            "--error": ["-1"],
+            "--geometry-weight": ["0"],
+            "--color-weight": ["0"],
+            "--projection-color-weight": ["-1e-9"],
+            "--threads": ["0", "1025", "all"],
         }
         for option, values in wrong.items():
             for value in values:
                 self.assert_error("imgmesh-build", ["in.png", "-o", "out.glb", option, value], 2, option,
                                   f"'{value}'", "expected")
-        for option, values in {"--level": ["-1", "0.5", "x", "4294967296"], "--scale": ["0", "nan", "-2"]}.items():
+        for option, values in {"--level": ["-1", "4294967296"], "--scale": ["0", "nan"]}.items():
             for value in values:
                 self.assert_error("imgmesh-reconstruct", ["in.glb", "-o", "out.png", option, value], 2, option,
                                   f"'{value}'", "expected")

@@ -47,6 +47,19 @@ TEST_CASE("TextTable: values stand in one column") {
     CHECK(out.str() == "  size       9 x 7\n  triangles  two\\x0alines\n");
 }
 
+TEST_CASE("numbers: what is not wholly a number is none") {
+    for (const char* text :
+         {"", " 5", "5 ", "+5", "5k", "0x10", "1.5", "1e3", "four", "nan", "99999999999999999999"}) {
+        INFO(text);
+        CHECK_THROWS_AS(parse_count("--n", text, {}), Error);
+    }
+    for (const char* text :
+         {"", " 5", "5 ", "+5", "5%", "0x1p3", "1,5", "1/30", "x", "nan", "inf", "1e400"}) {
+        INFO(text);
+        CHECK_THROWS_AS(parse_number("--x", text, {}), Error);
+    }
+}
+
 TEST_CASE("parse_count: whole numbers, wholly read") {
     CHECK(parse_count("--faces", "2", {2}) == 2);
     CHECK(parse_count("--faces", "9223372036854775807", {2}) == std::numeric_limits<std::int64_t>::max());
