@@ -7,6 +7,10 @@ if(CMAKE_CXX_COMPILER_ID MATCHES Clang)
 endif()
 # Results are the same bytes on any machine of one architecture: no contraction of a*b+c that depends on flags.
 target_compile_options(imgmesh_compiler INTERFACE -ffp-contract=off)
+# The note on passing 32-byte vectors does not concern functions that are always inlined (libcore/base/simd.h).
+target_compile_options(imgmesh_compiler INTERFACE -Wno-psabi)
+# Nobody reads errno or floating-point flags; without them loops with a choice in them become vector code. No result changes.
+target_compile_options(imgmesh_compiler INTERFACE -fno-trapping-math -fno-math-errno)
 if(IMGMESH_WERROR)
   target_compile_options(imgmesh_compiler INTERFACE -Werror)
 endif()

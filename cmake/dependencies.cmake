@@ -19,3 +19,6 @@ foreach(_dir IN LISTS _dirs)
   endif()
 endforeach()
 set_target_properties(OpenImageIO::OpenImageIO PROPERTIES INTERFACE_INCLUDE_DIRECTORIES "${_existing}")
+
+find_package(PkgConfig REQUIRED)
+pkg_check_modules(WebP REQUIRED IMPORTED_TARGET libwebp libwebpdemux)

@@ -14,7 +14,7 @@ enum class DracoMode { kEdgebreaker, kSequential, kOff };
 
 struct ContainerOptions {
     DracoMode draco = DracoMode::kEdgebreaker;
-    bool overwrite = true;
+    bool overwrite = true;  ///< x.bin and x.exr are replaced only where there is an x.gltf they belong to
 };
 
 /// Writes `mesh_image`; the extension of `path` (.glb or .gltf) decides the spelling.
@@ -22,12 +22,13 @@ struct ContainerOptions {
 /// Loses nothing of a MeshImage whose positions lie on kPositionStep, whose colours are 16-bit linear codes
 /// (storable_color, libcore/image/color.h) and whose weights lie on the map's precision grid: read_container
 /// gives the same mesh and map back, up to the order of vertices and faces and the rotation of corners, which
-/// Draco chooses. Several files are renamed to their names last, the .gltf after what it refers to. Throws
-/// Error: kUsage for another extension; kIo where a file cannot be written.
+/// Draco chooses, and vertices without a face. Several files are renamed to their names last, the .gltf after
+/// what it refers to. Throws Error: kUsage for another extension; kIo where a file cannot be written.
 void write_container(const std::string& path, const MeshImage& mesh_image,
                      const ContainerOptions& options = {});
 
-/// The files that write_container makes for `path`, itself first: a .gltf has a .bin and a .exr beside it.
+/// The files that write_container makes for `path`, itself first: a .gltf has a .bin and a .exr
+/// beside it. Throws Error(kUsage) for another extension.
 std::vector<std::string> container_files(const std::string& path);
 
 /// What read_container refuses before it takes memory.
@@ -43,9 +44,10 @@ struct ContainerLimits {
 struct ContainerFacts {
     std::string version;  ///< of the extension
     DracoMode draco = DracoMode::kOff;
-    std::uint64_t total_bytes = 0;  ///< all files together
-    std::uint64_t mesh_bytes = 0;   ///< meshes as stored, compressed
-    std::uint64_t layer_bytes = 0;  ///< the EXR
+    std::vector<std::string> files;  ///< as read, the named one first
+    std::uint64_t total_bytes = 0;   ///< all files together
+    std::uint64_t mesh_bytes = 0;    ///< meshes as stored, compressed
+    std::uint64_t layer_bytes = 0;   ///< the EXR
 };
 
 struct Container {
@@ -54,8 +56,9 @@ struct Container {
 };
 
 /// Reads and checks a container: topology hash, ranges, simplex, limits; URIs stay in the container's folder.
-/// Throws Error: kIo where a file cannot be read; kBadFile for the first finding, with its code
-/// (docs/format.md), as in "x.glb: [layers.face_range] ...".
+/// Throws Error: kIo where a file cannot be read; kBadFile for the first finding, or kUnsupported for a newer
+/// version, with its code (formats/finding_codes.h), as in "x.glb: [layers.face_range] ...".
+/// Parameters come back sorted by name.
 Container read_container(const std::string& path, const ContainerLimits& limits = {});
 
 }  // namespace imgmesh

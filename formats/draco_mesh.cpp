@@ -130,7 +130,7 @@ class GuardedDecoder : public Decoder {
 };
 
 template <typename Decoder>
-std::unique_ptr<draco::Mesh> decode(std::span<const std::uint8_t> bytes) {
+std::unique_ptr<draco::Mesh> decode_with(std::span<const std::uint8_t> bytes) {
     draco::DecoderBuffer buffer;
     buffer.Init(reinterpret_cast<const char*>(bytes.data()), bytes.size());
     auto mesh = std::make_unique<draco::Mesh>();
@@ -159,9 +159,30 @@ void copy_values(const draco::Mesh& mesh, std::uint32_t unique_id, draco::Geomet
     }
 }
 
+// A mesh whose header has been looked at.
+StoredMesh decode(std::span<const std::uint8_t> bytes, const DracoAttributeIds& ids, bool edgebreaker) {
+    const std::unique_ptr<draco::Mesh> mesh = edgebreaker ? decode_with<draco::MeshEdgebreakerDecoder>(bytes)
+                                                          : decode_with<draco::MeshSequentialDecoder>(bytes);
+    StoredMesh out;
+    copy_values(*mesh, ids.position, draco::GeometryAttribute::POSITION, out.position);
+    copy_values(*mesh, ids.color, draco::GeometryAttribute::COLOR, out.color);
+    out.faces.resize(mesh->num_faces());
+    for (std::uint32_t f = 0; f < mesh->num_faces(); ++f) {
+        const draco::Mesh::Face& face = mesh->face(draco::FaceIndex(f));
+        for (std::size_t i = 0; i < 3; ++i) {
+            // The sequential decoder does not check this.
+            if (face[i].value() >= mesh->num_points())
+                refuse("mesh.index", cat("face ", f, " has vertex ", face[i].value(), ", the mesh has ",
+                                         mesh->num_points()));
+            out.faces[f][i] = face[i].value();
+        }
+    }
+    return out;
+}
+
 }  // namespace
 
-std::vector<std::uint8_t> encode_draco_mesh(const StoredMesh& mesh, DracoMode mode) {
+DracoMesh encode_draco_mesh(const StoredMesh& mesh, DracoMode mode) {
     draco::Mesh out;
     out.set_num_points(static_cast<std::uint32_t>(mesh.position.size()));
     out.SetNumFaces(mesh.faces.size());
@@ -183,7 +204,9 @@ std::vector<std::uint8_t> encode_draco_mesh(const StoredMesh& mesh, DracoMode mo
     const draco::Status status = encoder.EncodeToBuffer(&buffer);
     if (!status.ok())
         throw Error(ErrorCode::kInternal, cat("Draco cannot encode the mesh: ", status.error_msg_string()));
-    return {buffer.data(), buffer.data() + buffer.size()};
+    DracoMesh result{{buffer.data(), buffer.data() + buffer.size()}, {}};
+    result.decoded = decode(result.bytes, ids, mode == DracoMode::kEdgebreaker);
+    return result;
 }
 
 DracoMode draco_mode(std::span<const std::uint8_t> bytes) {
@@ -202,26 +225,11 @@ StoredMesh decode_draco_mesh(std::span<const std::uint8_t> bytes, const DracoAtt
                                   " faces, expected ", vertices, " and ", faces));
     if (header.seams > 1) refuse("draco.attributes", "more attributes than POSITION and COLOR");
 
-    const std::unique_ptr<draco::Mesh> mesh = edgebreaker ? decode<draco::MeshEdgebreakerDecoder>(bytes)
-                                                          : decode<draco::MeshSequentialDecoder>(bytes);
-    if (mesh->num_faces() != faces || mesh->num_points() != vertices)
-        refuse("mesh.counts", cat("the decoded mesh has ", mesh->num_points(), " vertices and ",
-                                  mesh->num_faces(), " faces, expected ", vertices, " and ", faces));
-    StoredMesh out;
-    copy_values(*mesh, ids.position, draco::GeometryAttribute::POSITION, out.position);
-    copy_values(*mesh, ids.color, draco::GeometryAttribute::COLOR, out.color);
-    out.faces.resize(faces);
-    for (std::uint32_t f = 0; f < faces; ++f) {
-        const draco::Mesh::Face& face = mesh->face(draco::FaceIndex(f));
-        for (std::size_t i = 0; i < 3; ++i) {
-            // The sequential decoder does not check this.
-            if (face[i].value() >= vertices)
-                refuse("mesh.index",
-                       cat("face ", f, " has vertex ", face[i].value(), ", the mesh has ", vertices));
-            out.faces[f][i] = face[i].value();
-        }
-    }
-    return out;
+    StoredMesh mesh = decode(bytes, ids, edgebreaker);
+    if (mesh.faces.size() != faces || mesh.position.size() != vertices)
+        refuse("mesh.counts", cat("the decoded mesh has ", mesh.position.size(), " vertices and ",
+                                  mesh.faces.size(), " faces, expected ", vertices, " and ", faces));
+    return mesh;
 }
 
 }  // namespace imgmesh

@@ -17,11 +17,17 @@ struct DracoAttributeIds {
     bool operator==(const DracoAttributeIds&) const = default;
 };
 
+/// A bitstream, and the mesh that every decoder gets from it: the one that counts.
+struct DracoMesh {
+    std::vector<std::uint8_t> bytes;
+    StoredMesh decoded;
+};
+
 /// `mesh` has faces, without area 0, and positions on kPositionStep with z = 0; `mode` is not kOff.
 /// kSequential keeps all order; kEdgebreaker is about half the size, but orders vertices and faces anew,
 /// rotates corners, splits non-manifold vertices and drops vertices without a face. Nothing else is lost.
 /// Throws Error(kInternal) where Draco fails.
-std::vector<std::uint8_t> encode_draco_mesh(const StoredMesh& mesh, DracoMode mode);
+DracoMesh encode_draco_mesh(const StoredMesh& mesh, DracoMode mode);
 
 /// How the bitstream was made. Throws FindingError for anything but a mesh of the current bitstream version.
 DracoMode draco_mode(std::span<const std::uint8_t> bytes);

@@ -2,9 +2,13 @@
 // them.
 #pragma once
 
+#include <cstddef>
+#include <iterator>
 #include <stdexcept>
 #include <string>
 #include <string_view>
+
+#include "libcore/base/error.h"
 
 namespace imgmesh {
 
@@ -12,6 +16,7 @@ namespace imgmesh {
 struct Finding {
     std::string_view code;
     std::string_view meaning;
+    ErrorCode error = ErrorCode::kBadFile;
 };
 
 /// All of them, from the outside of a file inwards.
@@ -25,15 +30,15 @@ inline constexpr Finding kFindings[] = {
     {"glb.chunk", "a chunk is missing or runs over the end"},
     {"json.syntax", "not JSON, or not UTF-8"},
     {"json.depth", "nested deeper than the limit"},
-    {"gltf.version", "not glTF 2.x"},
-    {"gltf.required", "requires an extension that imgmesh does not know"},
+    {"gltf.version", "not glTF 2.x", ErrorCode::kUnsupported},
+    {"gltf.required", "requires an extension that imgmesh does not know", ErrorCode::kUnsupported},
     {"gltf.structure", "a member is missing or has another type than it must"},
     {"gltf.index", "an index points beyond its array"},
     {"gltf.range", "a byte range runs over its buffer or is misaligned"},
     {"gltf.buffer", "not exactly one buffer, or one shorter than it says"},
     {"uri.name", "a URI is not the bare name of a file beside"},
     {"ext.missing", "no extension IMGMESH_pixel_map"},
-    {"ext.version", "a version of IMGMESH_pixel_map that this reader does not know"},
+    {"ext.version", "a version of IMGMESH_pixel_map that this reader does not know", ErrorCode::kUnsupported},
     {"ext.member", "a member of IMGMESH_pixel_map is missing or not what it must be"},
     {"ext.level", "the levels are not lod0, lod1, ... each once"},
     {"draco.header", "not a Draco mesh, or of another bitstream version"},
@@ -48,7 +53,7 @@ inline constexpr Finding kFindings[] = {
     {"mesh.topology", "faces or positions changed since the pixel map was made"},
     {"layers.size", "the EXR is too small for the picture"},
     {"layers.header", "the EXR's header is broken"},
-    {"layers.version", "an imgmesh:version that this reader does not know"},
+    {"layers.version", "an imgmesh:version that this reader does not know", ErrorCode::kUnsupported},
     {"layers.type", "a part is neither scanline nor tiled in one level of small tiles"},
     {"layers.parts", "the parts are not the levels"},
     {"layers.window", "a part's window is not the picture"},
@@ -60,13 +65,12 @@ inline constexpr Finding kFindings[] = {
     {"layers.mask", "a pixel outside the mask has weights, or there is no mask"},
 };
 
-/// A code of kFindings; any other does not compile.
+/// One of kFindings, by its code; any other does not compile.
 struct FindingCode {
-    std::string_view code;
-    consteval FindingCode(const char* name) : code(name) {
-        bool known = false;
-        for (const Finding& finding : kFindings) known = known || finding.code == code;
-        if (!known) throw "not in kFindings";
+    std::size_t index = 0;
+    consteval FindingCode(const char* code) {
+        while (index < std::size(kFindings) && kFindings[index].code != code) ++index;
+        if (index == std::size(kFindings)) throw "not in kFindings";
     }
 };
 
@@ -74,11 +78,13 @@ struct FindingCode {
 /// not know. read_container turns it into an Error.
 class FindingError : public std::runtime_error {
   public:
-    FindingError(FindingCode code, const std::string& text) : std::runtime_error(text), code_(code.code) {}
-    std::string_view code() const { return code_; }
+    FindingError(FindingCode code, const std::string& text)
+        : std::runtime_error(text), finding_(&kFindings[code.index]) {}
+    std::string_view code() const { return finding_->code; }
+    ErrorCode error_code() const { return finding_->error; }
 
   private:
-    std::string_view code_;
+    const Finding* finding_;
 };
 
 [[noreturn]] inline void refuse(FindingCode code, const std::string& text) {

@@ -1,4 +1,4 @@
-// Pictures from and to files, through OpenImageIO (and OpenEXR's own checks for EXR). Target
+// Pictures from and to files: EXR through OpenEXR, WebP through libwebp, the rest through OpenImageIO. Target
 // imgmesh_pictures.
 #pragma once
 
@@ -17,16 +17,20 @@ struct ImageLimits {
     int max_channels = 64;
 };
 
-/// Reads the first subimage of any format that OpenImageIO knows, at full resolution, all channels.
+/// Reads the first picture (frame, layer, part) of a PNG, JPEG, TIFF, EXR, WebP, GIF, BMP, PNM, TGA, Radiance
+/// HDR, JPEG 2000 or HEIF file at full resolution, all channels. The content decides, not the name.
 ///
-/// 8 and 16 bit integers are scaled to [0, 1], half and float kept; 1-bit, palette and CMYK become RGB(A);
-/// associated alpha is divided out; EXIF orientation is applied (width and height as a viewer shows them).
-/// Channel names are R G B A Y where that is what they are. The colour space is `color_space`, else what the
-/// file says, else sRGB for integers and linear for floats. Pixels outside an EXR's data window are 0.
+/// 8 and 16 bit integers are scaled to [0, 1], half and float kept; 1-bit, palette, CMYK and YCbCr become
+/// grey or RGB(A); associated alpha is divided out; EXIF orientation is applied (width and height as a viewer
+/// shows them). Channel names are R G B A Y where that is what they are. The colour space is `color_space`,
+/// else what the file says (an ICC profile by its primaries and curve, else the format's own means), else
+/// sRGB for integers and linear for floats. An EXR's picture is its display window; pixels outside the data
+/// window are 0.
 ///
 /// Throws Error: kIo where the file cannot be read; kBadFile for content that is no picture, broken or
-/// truncated, over the limits, or with samples that are not finite; kUnsupported for what OpenImageIO reads
-/// but imgmesh does not (deep, volume). Never aborts, whatever the bytes.
+/// truncated, over the limits, or with samples that are not finite; kUnsupported for what imgmesh has no use
+/// for (deep and subsampled EXR, camera raw, CIELAB, signed integers, EXR primaries other than Rec.709's
+/// unless `color_space` is given). Never aborts, whatever the bytes.
 Image read_image(const std::string& path, std::optional<ColorSpace> color_space = {},
                  const ImageLimits& limits = {});
 
@@ -35,9 +39,16 @@ struct WriteImageOptions {
     std::optional<SampleType> sample_type;  ///< none: the image's, or the nearest that the format can hold
 };
 
-/// Writes in the format of the extension, atomically; integers are rounded and clamped; EXR is written linear
-/// (colour is converted), other formats as encoded, with the colour space noted where the format can. Throws
-/// Error: kUsage for an extension that cannot be written, kIo otherwise.
+/// Writes in the format of the extension, atomically; integers are rounded and clamped. PNG (8 and 16 bit),
+/// JPEG, TIFF (8, 16, float), WebP (lossless), EXR (half, float), BMP, PPM and PNM (8 bit).
+///
+/// The colours read back are those of `image`: floats are written linear (EXR's with associated alpha), and
+/// linear floats become sRGB in integers; other integers stay as encoded, noted by an ICC profile in colour
+/// PNG, JPEG and TIFF, and become sRGB in the rest, which can note none. The same image gives the same bytes.
+///
+/// Throws Error: kUsage for an extension that cannot be written, and for what its format cannot hold: the
+/// sample type asked for, channels other than grey or colour, transparency (an opaque alpha is left out),
+/// WebP's and JPEG's size; kIo where the file cannot be written.
 void write_image(const std::string& path, const Image& image, const WriteImageOptions& options = {});
 
 /// Whether write_image knows this path's extension.

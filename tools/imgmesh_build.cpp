@@ -42,11 +42,16 @@ void add_options(CLI::App& app, Options& o) {
     add_output(app, o.output,
                "Container to write (.glb, .gltf), or a folder, ended by /, for NAME.glb of each");
     const StopParams stop;
-    add_count(app, "--faces", o.params.stop.faces, {2}, "Stop at this many faces");
-    add_count(app, "--vertices", o.params.stop.vertices, {4}, "Stop at this many vertices");
+    CLI::Option* const faces = add_count(app, "--faces", o.params.stop.faces, {2}, "Stop at this many faces");
+    CLI::Option* const vertices =
+        add_count(app, "--vertices", o.params.stop.vertices, {4}, "Stop at this many vertices");
+    CLI::Option* const error =
+        add_number(app, "--error", o.params.stop.error, {0}, "Stop before a quadric error above this");
     add_number(app, "--density", o.params.stop.density, {0, 100, true},
-               cat("Stop at this many vertices, in percent of the pixels (default ", stop.density, ")"));
-    add_number(app, "--error", o.params.stop.error, {0}, "Stop before a quadric error above this");
+               cat("Stop at this many vertices, in percent of the pixels (default ", stop.density, ")"))
+        ->excludes(faces)
+        ->excludes(vertices)
+        ->excludes(error);
     const BuildParams params;
     add_number(app, "--geometry-weight", o.params.geometry_weight, {0, kNoLimit, true},
                cat("Weight of geometry in the quadrics (default ", params.geometry_weight, ")"));
@@ -97,11 +102,24 @@ std::vector<Job> plan_jobs(const Options& o) {
     return jobs;
 }
 
+// The library knows no file; its refusals get the picture's name here.
+BuildResult build_named(const std::string& input, const Image& image, const BuildParams& params,
+                        const Progress& progress) {
+    try {
+        return build_mesh_image(image, params, progress);
+    } catch (const Error& e) {
+        throw Error(e.code(), cat(input, ": ", e.what()));
+    }
+}
+
 Report build_one(const Job& job, const Options& o, const Context& context, const Progress& progress) {
     const auto start = std::chrono::steady_clock::now();
-    for (const std::string& file : container_files(job.output)) check_output(file, context.overwrite);
+    // What stands beside a .gltf is replaced only where there is one that it belongs to.
+    const bool replace_others = context.overwrite && fs::exists(job.output);
+    for (const std::string& file : container_files(job.output))
+        check_output(file, file == job.output ? context.overwrite : replace_others);
     const Image image = read_image(job.input, o.color_space);
-    BuildResult result = build_mesh_image(image, o.params, progress);
+    BuildResult result = build_named(job.input, image, o.params, progress);
     result.mesh_image.generator = context.generator;
     write_container(job.output, result.mesh_image, {o.draco, context.overwrite});
 
@@ -164,6 +182,8 @@ Report run(const Options& o, Context& context) {
         } catch (...) {
             // One bad picture does not keep the others from being built.
             failures[i] = current_failure();
+            if (failures[i]->code == ErrorCode::kInternal)
+                failures[i]->message = cat(jobs[i].input, ": ", failures[i]->message);
             images[i] = {{"input", jobs[i].input},
                          {"failure", {{"code", failures[i]->code}, {"message", failures[i]->message}}}};
         }
@@ -178,7 +198,7 @@ Report run(const Options& o, Context& context) {
 void print(const Report& report, std::ostream& out) {
     for (const Report& image : report["images"]) {
         if (image.contains("failure")) continue;
-        out << one_line(image["input"].get<std::string>() + " -> " + image["output"].get<std::string>())
+        out << printable_line(image["input"].get<std::string>() + " -> " + image["output"].get<std::string>())
             << '\n';
         const auto number = [&](const char* key) { return format_number(image[key].get<double>()); };
         TextTable table;

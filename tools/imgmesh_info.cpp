@@ -1,4 +1,5 @@
 // imgmesh-info: what is in a container, and whether it is sound. Does not link OpenImageIO.
+#include <optional>
 #include <ostream>
 
 #include "formats/container.h"
@@ -62,7 +63,8 @@ Report facts_report(const Container& container) {
                           {"faces", level.mesh.faces.size()},
                           {"error", level.error},
                           {"mesh", mesh_report(mesh_quality(level.mesh))},
-                          {"map", map_report(map_quality(level.mesh, level.map), level.map.precision)}});
+                          {"map", map_report(map_quality(level.mesh, level.map, m.source.has_mask),
+                                             level.map.precision)}});
     }
     Report build = Report::object();
     for (const auto& [name, value] : m.parameters) std::visit([&](const auto& v) { build[name] = v; }, value);
@@ -72,7 +74,7 @@ Report facts_report(const Container& container) {
             {"height", m.source.height},
             {"channels", m.source.channel_names},
             {"color_space", color_space_name(m.source.color_space)},
-            {"sample_type", name_of(depth_choices(), m.source.sample_type)},
+            {"sample_type", name_of(sample_type_choices(), m.source.sample_type)},
             {"has_mask", m.source.has_mask},
             {"has_visits", !m.visits.empty()},
             {"draco", name_of(draco_choices(), facts.draco)},
@@ -85,12 +87,12 @@ Report facts_report(const Container& container) {
             {"build", build}};
 }
 
-// A finding of the reader, "x.glb: [code] message", in its parts.
-Report finding_report(const std::string& text) {
-    const std::size_t begin = text.find(": ["), end = text.find("] ", begin);
-    if (begin == std::string::npos || end == std::string::npos)
-        throw std::logic_error("a finding without a code: " + text);
-    return {{"code", text.substr(begin + 3, end - begin - 3)}, {"message", text.substr(end + 2)}};
+// What the reader says of `input`, "input: [code] message", in its parts; nothing where it could not be read.
+std::optional<Report> finding_of(const std::string& input, const std::string& text) {
+    const std::string head = input + ": [";
+    const std::size_t end = text.find("] ", head.size());
+    if (!text.starts_with(head) || end == std::string::npos) return {};
+    return Report{{"code", text.substr(head.size(), end - head.size())}, {"message", text.substr(end + 2)}};
 }
 
 Report run(const Options& o, Context& context) {
@@ -103,9 +105,10 @@ Report run(const Options& o, Context& context) {
     try {
         read_container(o.input);
     } catch (const Error& e) {
-        if (e.code() != ErrorCode::kBadFile) throw;
+        const std::optional<Report> finding = finding_of(o.input, e.what());
+        if (!finding) throw;
         context.failures.push_back({e.code(), e.what()});
-        findings.push_back(finding_report(e.what()));
+        findings.push_back(*finding);
     }
     report["valid"] = findings.empty();
     report["findings"] = findings;
@@ -132,7 +135,7 @@ void print_level(const Report& level, std::ostream& out) {
 }
 
 void print(const Report& report, std::ostream& out) {
-    const std::string input = one_line(report["input"].get<std::string>());
+    const std::string input = printable_line(report["input"].get<std::string>());
     if (report.contains("valid")) {
         // A finding is told as an error.
         if (report["valid"]) out << input << ": valid\n";

@@ -34,6 +34,13 @@ Choices<DrawMode> mode_choices() {
             {"flat", DrawMode::kFlat}};
 }
 
+Choices<SampleType> depth_choices() {
+    return {{"8", SampleType::kUint8},
+            {"16", SampleType::kUint16},
+            {"half", SampleType::kHalf},
+            {"float", SampleType::kFloat}};
+}
+
 void add_options(CLI::App& app, Options& o) {
     add_input(app, "CONTAINER", o.input, "Container to read (.glb, .gltf)");
     add_output(app, o.output, "Picture to write (.png, .exr, .tif, .jpg, ...; .svg of wire and flat)");
@@ -73,11 +80,12 @@ void check_size(const SourceInfo& source, double scale) {
 Report run(const Options& o, Context& context) {
     const bool svg = lower_extension(o.output) == ".svg";
     check_options(o, svg);
-    check_distinct(container_files(o.input), {o.output});
     check_output(o.output, context.overwrite);
 
     context.progress(0, "read");
-    const MeshImage mesh_image = read_container(o.input).mesh_image;
+    const Container container = read_container(o.input);
+    check_distinct(container.facts.files, {o.output});
+    const MeshImage& mesh_image = container.mesh_image;
     const SourceInfo& source = mesh_image.source;
     if (o.level >= static_cast<int>(mesh_image.levels.size()))
         throw Error(ErrorCode::kUsage, cat("--level ", o.level, ": ", o.input, " has levels 0 to ",
@@ -111,7 +119,7 @@ Report run(const Options& o, Context& context) {
 }
 
 void print(const Report& report, std::ostream& out) {
-    out << one_line(report["input"].get<std::string>() + " -> " + report["output"].get<std::string>())
+    out << printable_line(report["input"].get<std::string>() + " -> " + report["output"].get<std::string>())
         << '\n';
     TextTable table;
     table.add("drawing", cat(report["mode"].get<std::string>(), " of level ", report["level"]));

@@ -4,6 +4,7 @@
 #include <tbb/global_control.h>
 #include <tbb/info.h>
 #include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
 
 namespace imgmesh {
 
@@ -23,9 +24,13 @@ int hardware_threads() {
 void parallel_blocks(int begin, int end, int grain, const std::function<void(int, int)>& body) {
     if (begin >= end) return;
     const int blocks = (end - begin + grain - 1) / grain;
-    tbb::parallel_for(0, blocks, [&](int b) {
-        const int first = begin + b * grain;
-        body(first, std::min(first + grain, end));
+    // A thread that waits for these blocks must not begin a block of a loop around them: with a picture a
+    // block, it would hold several pictures at a time, one on top of the other.
+    tbb::this_task_arena::isolate([&] {
+        tbb::parallel_for(0, blocks, [&](int b) {
+            const int first = begin + b * grain;
+            body(first, std::min(first + grain, end));
+        });
     });
 }
 

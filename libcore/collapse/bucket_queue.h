@@ -37,6 +37,8 @@ class BucketQueue {
         while (buckets_[static_cast<std::size_t>(lowest_)].empty()) ++lowest_;
         return lowest_;
     }
+    /// What pop() would hand out.
+    const QueuedEdge& top() { return buckets_[static_cast<std::size_t>(lowest_bucket())].back(); }
     QueuedEdge pop() {
         std::vector<QueuedEdge>& bucket = buckets_[static_cast<std::size_t>(lowest_bucket())];
         const QueuedEdge edge = bucket.back();

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "libcore/collapse/bucket_queue.h"
+#include "libcore/collapse/edge_batch.h"
 #include "libcore/collapse/ring_mesh.h"
 #include "libcore/collapse/vertex_quadrics.h"
 
@@ -24,7 +25,13 @@ constexpr float kFatness = 0.05f;
 
 // The queue holds only edges cheaper than a threshold, which rises by this factor when they are used up.
 // Larger wastes memory, smaller scans the mesh more often.
-constexpr float kWindow = 8.0f;
+constexpr float kWindow = 4.0f;
+
+// While the goal is far, a window is worked off tile by tile, so that what is touched stays in the cache. The
+// order differs from the exact one by at most a window, which does not show in the result as long as no
+// window ends early.
+constexpr int kTile = 64;
+constexpr std::int64_t kTiledAbove = 4;
 
 float snapped(float x) {
     return std::round(x / kPositionStep) * kPositionStep;
@@ -39,6 +46,8 @@ class Collapser {
   public:
     Collapser(const GridMesh& grid, const CollapseParams& params)
         : params_(params),
+          width_(grid.feature.width),
+          height_(grid.feature.height),
           rings_(ring_mesh(grid)),
           quadrics_(vertex_quadrics(grid, smoothed(grid.feature, params.smoothing), params.geometry_weight)),
           vertices_(static_cast<std::int64_t>(rings_.size())),
@@ -46,17 +55,17 @@ class Collapser {
 
     void run(const Progress& progress) {
         const std::int64_t start = vertices_;
-        float threshold = first_threshold();
-        for (; !done(); threshold *= kWindow) {
+        for (float threshold = first_threshold(); !done(); threshold *= kWindow) {
             const std::int64_t collapses_before = result_.collapses;
             postponed_ = false;
-            const float largest = file_all_below(threshold);
-            while (!queue_.empty() && !done()) {
-                const int bucket = queue_.lowest_bucket();
-                try_collapse(queue_.pop(), bucket, threshold);
-                if (progress && result_.collapses % 65536 == 0) progress(fraction_done(start), "collapse");
-            }
-            if (result_.collapses == collapses_before && largest < threshold && !postponed_) return;
+            const int side = far_from_done() ? kTile : std::max(width_, height_);
+            for (int y = 0; y < height_; y += side)
+                for (int x = 0; x < width_; x += side) {
+                    file_tile(x, y, side, threshold);
+                    drain(threshold);
+                }
+            if (progress) progress(fraction_done(start), "collapse");
+            if (result_.collapses == collapses_before && !postponed_) return;
         }
     }
 
@@ -74,6 +83,51 @@ class Collapser {
     }
 
   private:
+    // Collapses until the queue is empty or a limit is reached. Memory is what takes the time: an edge is
+    // handed out a few steps ahead of its turn, and what it will touch is fetched meanwhile.
+    void drain(float threshold) {
+        constexpr std::size_t kAhead = 8;
+        struct Waiting {
+            QueuedEdge edge;
+            int bucket;
+        };
+        std::array<Waiting, kAhead> waiting;
+        std::size_t taken = 0, tried = 0;
+        while (!done() && (tried < taken || !queue_.empty())) {
+            if (!queue_.empty()) {
+                const int bucket = queue_.lowest_bucket();
+                waiting[taken % kAhead] = {queue_.pop(), bucket};
+                prefetch_ends(waiting[taken % kAhead].edge);
+                if (++taken >= kAhead / 2) prefetch_rings(waiting[(taken - kAhead / 2) % kAhead].edge);
+                if (taken - tried < kAhead) continue;
+            }
+            const Waiting& next = waiting[tried++ % kAhead];
+            try_collapse(next.edge, next.bucket, threshold);
+        }
+    }
+
+    void prefetch_ends(const QueuedEdge& edge) const {
+        __builtin_prefetch(&rings_[edge.i]);
+        __builtin_prefetch(&rings_[edge.j]);
+        __builtin_prefetch(&quadrics_[edge.i]);
+        __builtin_prefetch(&quadrics_[edge.j]);
+    }
+    void prefetch_rings(const QueuedEdge& edge) const {
+        if (!current(edge)) return;
+        for (const Id v : {edge.i, edge.j})
+            for (int k = 0; k < rings_[v].valence; ++k) {
+                __builtin_prefetch(&rings_[rings_[v].neighbor[k]]);
+                __builtin_prefetch(&quadrics_[rings_[v].neighbor[k]]);
+            }
+    }
+    bool current(const QueuedEdge& edge) const {
+        return rings_[edge.i].version == edge.version_i && rings_[edge.j].version == edge.version_j;
+    }
+
+    bool far_from_done() const {
+        return vertices_ > kTiledAbove * params_.target_vertices &&
+               faces_ > kTiledAbove * params_.target_faces;
+    }
     bool done() const { return vertices_ <= params_.target_vertices || faces_ <= params_.target_faces; }
     double fraction_done(std::int64_t start) const {
         return static_cast<double>(start - vertices_) /
@@ -92,22 +146,26 @@ class Collapser {
         return true;
     }
 
-    // Where the merged vertex would go and what it would cost, legality of the star left aside.
-    Placement minimiser(Id i, Id j) const {
-        const Quadric<C>&qi = quadrics_[i], &qj = quadrics_[j];
+    // Where the merged vertex goes at best, and what that costs; legality of the star left aside.
+    Placement minimiser(Id i, Id j, const Quadric<C>& sum) const {
         std::uint8_t fixed = 0;
         Placement place;
         if (!shared_constraint(rings_[i], rings_[j], fixed, place.x, place.y)) return {};
-        if (fixed == 0) {
-            const MergedMinimum m = merged_minimum(qi, qj);
-            return {snapped(qi.px + m.qx), snapped(qi.py + m.qy), m.increment};
-        }
         // On a side the position is free along one axis only; its best value there follows from S.
-        const Quadric<C> sum = merged(qi, qj);
-        if (fixed == kFixedX) place.y = snapped(sum.py - sum.sxy * (place.x - sum.px) / sum.syy);
-        if (fixed == kFixedY) place.x = snapped(sum.px - sum.sxy * (place.y - sum.py) / sum.sxx);
-        place.cost = sum.at(place.x, place.y) - qi.error - qj.error;
+        if (fixed == 0) {
+            place.x = snapped(sum.px);
+            place.y = snapped(sum.py);
+        } else if (fixed == kFixedX) {
+            place.y = snapped(sum.py - sum.sxy * (place.x - sum.px) / sum.syy);
+        } else if (fixed == kFixedY) {
+            place.x = snapped(sum.px - sum.sxy * (place.y - sum.py) / sum.sxx);
+        }
+        place.cost = added_error(i, j, sum, place);
         return place;
+    }
+
+    float added_error(Id i, Id j, const Quadric<C>& sum, const Placement& place) const {
+        return std::max(0.0f, sum.at(place.x, place.y) - quadrics_[i].error - quadrics_[j].error);
     }
 
     bool star_is_fat(const MergedRing& ring, bool border, float x, float y) const {
@@ -134,19 +192,19 @@ class Collapser {
             {0.5f * (a.x + b.x), 0.5f * (a.y + b.y)}, {a.x, a.y}, {b.x, b.y}};
         for (const auto& [cx, cy] : candidates) {
             Placement p{fixed & kFixedX ? x : snapped(cx), fixed & kFixedY ? y : snapped(cy), 0};
-            p.cost = std::max(0.0f, sum.at(p.x, p.y) - quadrics_[i].error - quadrics_[j].error);
+            p.cost = added_error(i, j, sum, p);
             if (p.cost < best.cost && star_is_fat(ring, fixed != 0, p.x, p.y)) best = p;
         }
         return best;
     }
 
     void try_collapse(const QueuedEdge& edge, int bucket, float threshold) {
-        const auto [i, j, version_i, version_j] = edge;
-        if (rings_[i].version != version_i || rings_[j].version != version_j) return;
+        if (!current(edge)) return;
+        const Id i = edge.i, j = edge.j;
         MergedRing ring;
         if (!merge_rings(rings_, i, j, ring)) return;
-        Placement place = minimiser(i, j);
         const Quadric<C> sum = merged(quadrics_[i], quadrics_[j]);
+        Placement place = minimiser(i, j, sum);
         if (!star_is_fat(ring, rings_[i].border() || rings_[j].border(), place.x, place.y)) {
             place = fallback(i, j, ring, sum);
             if (place.cost == kNever) return;
@@ -169,23 +227,43 @@ class Collapser {
         faces_ -= ring.faces_removed;
         ++result_.collapses;
         for (int k = 0; k < rings_[i].valence; ++k) file(i, rings_[i].neighbor[k], threshold);
+        file_batch(threshold);
     }
 
-    // Files edge (i, j) if it costs less than `threshold`. Returns its cost, 0 if it may never collapse.
-    float file(Id i, Id j, float threshold) {
-        const float cost = std::max(0.0f, minimiser(i, j).cost);
-        if (cost < threshold) queue_.push(cost, {i, j, rings_[i].version, rings_[j].version});
-        return cost == kNever ? 0 : cost;
+    // Files edge (i, j) if it costs less than `threshold`; interior ones wait for file_batch().
+    void file(Id i, Id j, float threshold) {
+        if (!rings_[i].border() && !rings_[j].border()) {
+            batch_edges_[batch_size_] = {i, j};
+            batch_.set(batch_size_, quadrics_[i], quadrics_[j]);
+            if (++batch_size_ == EdgeBatch::kWidth) file_batch(threshold);
+            return;
+        }
+        file_at(i, j, minimiser(i, j, merged(quadrics_[i], quadrics_[j])).cost, threshold);
     }
 
-    // Files every edge that costs less than `threshold`. Returns the largest cost of all.
-    float file_all_below(float threshold) {
-        float largest = 0;
-        for (Id i = 0; i < rings_.size(); ++i)
-            for (int k = 0; k < rings_[i].valence; ++k)
-                if (i < rings_[i].neighbor[k])
-                    largest = std::max(largest, file(i, rings_[i].neighbor[k], threshold));
-        return largest;
+    void file_batch(float threshold) {
+        batch_.evaluate();
+        for (int lane = 0; lane < batch_size_; ++lane)
+            file_at(batch_edges_[lane].first, batch_edges_[lane].second, batch_.increment(lane), threshold);
+        batch_size_ = 0;
+    }
+
+    void file_at(Id i, Id j, float cost, float threshold) {
+        if (cost < threshold)
+            queue_.push(std::max(cost, 0.0f), {i, j, rings_[i].version, rings_[j].version});
+        else if (cost < kNever)
+            postponed_ = true;
+    }
+
+    // Files the edges of the vertices of a tile, each edge with its end of the lower number.
+    void file_tile(int left, int top, int side, float threshold) {
+        for (int y = top; y < std::min(top + side, height_); ++y)
+            for (int x = left; x < std::min(left + side, width_); ++x) {
+                const Id i = static_cast<Id>(y) * static_cast<Id>(width_) + static_cast<Id>(x);
+                for (int k = 0; k < rings_[i].valence; ++k)
+                    if (i < rings_[i].neighbor[k]) file(i, rings_[i].neighbor[k], threshold);
+            }
+        file_batch(threshold);
     }
 
     // The median cost of a sample of edges, so that the first window holds about half of them.
@@ -193,7 +271,8 @@ class Collapser {
         constexpr std::size_t kSampled = 4096;
         std::vector<float> costs;
         for (std::size_t i = 0; i < rings_.size(); i += std::max<std::size_t>(1, rings_.size() / kSampled)) {
-            const float cost = minimiser(static_cast<Id>(i), rings_[i].neighbor[0]).cost;
+            const Id v = static_cast<Id>(i), n = rings_[i].neighbor[0];
+            const float cost = minimiser(v, n, merged(quadrics_[v], quadrics_[n])).cost;
             if (cost < kNever) costs.push_back(cost);
         }
         if (costs.empty()) return 1.0f;
@@ -203,9 +282,13 @@ class Collapser {
     }
 
     CollapseParams params_;
+    int width_, height_;
     RingMesh rings_;
     std::vector<Quadric<C>> quadrics_;
     BucketQueue queue_;
+    EdgeBatch batch_;
+    std::array<std::pair<Id, Id>, EdgeBatch::kWidth> batch_edges_;
+    int batch_size_ = 0;
     bool postponed_ = false;  // some legal edge costs more than the current threshold
     std::int64_t vertices_, faces_;
     CollapseResult result_;

@@ -53,7 +53,7 @@ struct MergedMinimum {
 /// Sum of two quadrics, in closed form (derivation in docs/decisions/0001-canonical-quadric.md). Where S is
 /// singular, the minimiser is not unique: the midpoint of both is taken. O(1), about 60 flops.
 template <int C>
-MergedMinimum merged_minimum(const Quadric<C>& i, const Quadric<C>& j) {
+inline __attribute__((always_inline)) MergedMinimum merged_minimum(const Quadric<C>& i, const Quadric<C>& j) {
     const float h = i.weight * j.weight / (i.weight + j.weight);
     const float dx = j.px - i.px, dy = j.py - i.py;
     float txx = 0, txy = 0, tyy = 0, ux = 0, uy = 0, rr = 0;
@@ -72,16 +72,21 @@ MergedMinimum merged_minimum(const Quadric<C>& i, const Quadric<C>& j) {
     const float det = axx * ayy - axy * axy;
     // Below this, rounding decides the solution's direction.
     constexpr float kSingular = 1e-6f;
+    // Both outcomes are computed, so that the compiler can choose between them without a branch, lane by
+    // lane.
+    const bool regular = det > kSingular * (axx + ayy) * (axx + ayy);
+    const float inverse = 1 / det;
+    const float x = (ayy * bx - axy * by) * inverse, y = (axx * by - axy * bx) * inverse;
+    const float middle_x = 0.5f * dx, middle_y = 0.5f * dy;
     MergedMinimum m;
-    const bool singular = !(det > kSingular * (axx + ayy) * (axx + ayy));
-    m.qx = singular ? 0.5f * dx : (ayy * bx - axy * by) / det;
-    m.qy = singular ? 0.5f * dy : (axx * by - axy * bx) / det;
+    m.qx = regular ? x : middle_x;
+    m.qy = regular ? y : middle_y;
     const float wx = m.qx - dx, wy = m.qy - dy;
     const float own = m.qx * (i.sxx * m.qx + i.sxy * m.qy) + m.qy * (i.sxy * m.qx + i.syy * m.qy);
     const float other = wx * (j.sxx * wx + j.sxy * wy) + wy * (j.sxy * wx + j.syy * wy);
     const float color = rr + 2 * (ux * m.qx + uy * m.qy) + m.qx * (txx * m.qx + txy * m.qy) +
                         m.qy * (txy * m.qx + tyy * m.qy);
-    m.increment = own + other + h * std::fmax(color, 0.0f);
+    m.increment = own + other + h * (color > 0 ? color : 0);
     return m;
 }
 

@@ -27,7 +27,7 @@ class Info(CliCase):
     def test_facts(self):
         facts = self.report("imgmesh-info", "c.glb")
         self.assertEqual((facts["width"], facts["height"]), (48, 32))
-        self.assertEqual((facts["channels"], facts["color_space"], facts["sample_type"]), (["R", "G", "B"], "sRGB", "8"))
+        self.assertEqual((facts["channels"], facts["color_space"], facts["sample_type"]), (["R", "G", "B"], "sRGB", "uint8"))
         self.assertEqual(facts["built_by"], facts["generator"].replace("-info", "-build"))
         self.assertEqual(sum(facts["bytes"][part] for part in ("meshes", "layers", "other")), facts["bytes"]["total"])
         self.assertEqual(facts["build"]["faces"], 200)

@@ -101,7 +101,7 @@ class Pictures(CliCase):
         path = picture_files.png(self.folder / "in.png", picture_files.ramp(24, 16), bits=16)
         self.round_trip("in.png", "--density", "100")
         self.assertEqual(str(picture_files.spec(self.folder / "back.tif").format), "uint16")
-        self.assertEqual(self.report("imgmesh-info", "out.glb")["sample_type"], "16")
+        self.assertEqual(self.report("imgmesh-info", "out.glb")["sample_type"], "uint16")
         # 16-bit linear codes are coarser than 16-bit sRGB near black, and still far below 8 bits.
         self.assertGreater(picture_files.psnr(picture_files.read(self.folder / "back.tif"),
                                               picture_files.read(path)), 70)

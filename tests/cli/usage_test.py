@@ -72,6 +72,11 @@ class Usage(CliCase):
         self.assert_error("imgmesh-build", ["in.png", "-o", "a.glb", "-o", "b.glb"], 2, "--output")
         self.assert_error("imgmesh-build", ["in.png", "-o", "a.glb", "--faces", "4", "--faces", "8"], 2, "--faces")
 
+    def test_density_is_not_mixed_with_other_limits(self):
+        for option in ("--faces", "--vertices", "--error"):
+            self.assert_error("imgmesh-build", ["in.png", "-o", "out.glb", "--density", "5", option, "10"], 2,
+                              "--density", option)
+
     def test_output_names(self):
         self.assert_error("imgmesh-build", ["in.png", "-o", "out.png"], 2, "out.png", ".glb")
         self.assert_error("imgmesh-build", ["in.png", "-o", "out"], 2, "out", ".gltf")

@@ -29,7 +29,7 @@ TEST_CASE("draco: sequential returns the same mesh, edgebreaker the same faces, 
         INFO(width << "x" << height);
         const StoredMesh mesh = stored_from_base(random_mesh(width, height, cells_x, cells_y, random));
         const auto decode = [&](DracoMode mode) {
-            const auto bytes = encode_draco_mesh(mesh, mode);
+            const auto bytes = encode_draco_mesh(mesh, mode).bytes;
             CHECK(draco_mode(bytes) == mode);
             return decode_draco_mesh(bytes, {}, mesh.position.size(), mesh.faces.size());
         };
@@ -118,7 +118,7 @@ TEST_CASE("draco: broken bytes give a finding, never a crash or another mesh's s
     const StoredMesh mesh = stored_from_base(random_mesh(20, 15, 9, 7, random));
     const auto vertices = mesh.position.size(), faces = mesh.faces.size();
     for (const DracoMode mode : {DracoMode::kEdgebreaker, DracoMode::kSequential}) {
-        const auto bytes = encode_draco_mesh(mesh, mode);
+        const auto bytes = encode_draco_mesh(mesh, mode).bytes;
         for (std::size_t length = 0; length < bytes.size(); length += 1 + length / 64)
             CHECK(finding([&] { decode_draco_mesh(std::span(bytes).first(length), {}, vertices, faces); }) !=
                   "");

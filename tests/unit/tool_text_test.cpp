@@ -8,24 +8,24 @@
 
 using namespace imgmesh;
 
-TEST_CASE("one_line: printable text stays, everything else is escaped byte by byte") {
-    CHECK(one_line("photo.png: no \"picture\" \\ here") == "photo.png: no \"picture\" \\ here");
-    CHECK(one_line("süß 写真 🙂") == "süß 写真 🙂");
-    CHECK(one_line("a\nb\r\tc\x1b[0m\x7f") == "a\\x0ab\\x0d\\x09c\\x1b[0m\\x7f");
-    CHECK(one_line(std::string("a\0b", 3)) == "a\\x00b");
-    CHECK(one_line("\u0085\u2028\u2029") == "\\xc2\\x85\\xe2\\x80\\xa8\\xe2\\x80\\xa9");
+TEST_CASE("printable_line: printable text stays, everything else is escaped byte by byte") {
+    CHECK(printable_line("photo.png: no \"picture\" \\ here") == "photo.png: no \"picture\" \\ here");
+    CHECK(printable_line("süß 写真 🙂") == "süß 写真 🙂");
+    CHECK(printable_line("a\nb\r\tc\x1b[0m\x7f") == "a\\x0ab\\x0d\\x09c\\x1b[0m\\x7f");
+    CHECK(printable_line(std::string("a\0b", 3)) == "a\\x00b");
+    CHECK(printable_line("\u0085\u2028\u2029") == "\\xc2\\x85\\xe2\\x80\\xa8\\xe2\\x80\\xa9");
 }
 
 // Each of these is refused by the table of well-formed UTF-8 for another reason.
-TEST_CASE("one_line: ill-formed UTF-8") {
-    CHECK(one_line("\xff!") == "\\xff!");
-    CHECK(one_line("\x80!") == "\\x80!");                           // no lead byte
-    CHECK(one_line("\xc0\xaf!") == "\\xc0\\xaf!");                  // overlong
-    CHECK(one_line("\xe0\x80\xaf!") == "\\xe0\\x80\\xaf!");         // overlong
-    CHECK(one_line("\xed\xa0\x80!") == "\\xed\\xa0\\x80!");         // surrogate
-    CHECK(one_line("\xf4\x90\x80\x80") == "\\xf4\\x90\\x80\\x80");  // beyond U+10FFFF
-    CHECK(one_line("\xf0\x9f\x98") == "\\xf0\\x9f\\x98");           // cut off
-    CHECK(one_line("\xc3") == "\\xc3");
+TEST_CASE("printable_line: ill-formed UTF-8") {
+    CHECK(printable_line("\xff!") == "\\xff!");
+    CHECK(printable_line("\x80!") == "\\x80!");                           // no lead byte
+    CHECK(printable_line("\xc0\xaf!") == "\\xc0\\xaf!");                  // overlong
+    CHECK(printable_line("\xe0\x80\xaf!") == "\\xe0\\x80\\xaf!");         // overlong
+    CHECK(printable_line("\xed\xa0\x80!") == "\\xed\\xa0\\x80!");         // surrogate
+    CHECK(printable_line("\xf4\x90\x80\x80") == "\\xf4\\x90\\x80\\x80");  // beyond U+10FFFF
+    CHECK(printable_line("\xf0\x9f\x98") == "\\xf0\\x9f\\x98");           // cut off
+    CHECK(printable_line("\xc3") == "\\xc3");
 }
 
 TEST_CASE("format_bytes: units of 1000, one decimal") {

@@ -18,7 +18,7 @@ class StrictConfig : public CLI::ConfigBase {
     explicit StrictConfig(const CLI::App& app) : app_(app) {}
 
     std::vector<CLI::ConfigItem> from_config(std::istream& input) const override {
-        std::vector<CLI::ConfigItem> items;
+        std::vector<CLI::ConfigItem> options;
         std::set<std::string> seen;
         std::string line;
         for (int number = 1; std::getline(input, line); ++number) {
@@ -48,9 +48,9 @@ class StrictConfig : public CLI::ConfigBase {
             if (at < line.size() && line[at] != '#')
                 refuse(cat("option '", item.name, "': unexpected '", line.substr(at), "' after its value"));
             item.inputs = {value};
-            items.push_back(item);
+            options.push_back(item);
         }
-        return items;
+        return options;
     }
 
   private:
@@ -98,7 +98,7 @@ class StrictConfig : public CLI::ConfigBase {
 }  // namespace
 
 void add_config_option(CLI::App& app) {
-    app.set_config("--config", "", "Read options from a TOML file, by their long names");
+    app.set_config("--config", "", "Read options from a TOML file, by their long names")->type_name("FILE");
     app.config_formatter(std::make_shared<StrictConfig>(app));
     app.allow_config_extras(false);
 }

@@ -20,12 +20,12 @@ Choices<WeightPrecision> bary_choices() {
 Choices<DracoMode> draco_choices() {
     return {{"edgebreaker", DracoMode::kEdgebreaker},
             {"sequential", DracoMode::kSequential},
-            {"none", DracoMode::kNone}};
+            {"none", DracoMode::kOff}};
 }
 
-Choices<SampleType> depth_choices() {
-    return {{"8", SampleType::kUint8},
-            {"16", SampleType::kUint16},
+Choices<SampleType> sample_type_choices() {
+    return {{"uint8", SampleType::kUint8},
+            {"uint16", SampleType::kUint16},
             {"half", SampleType::kHalf},
             {"float", SampleType::kFloat}};
 }

@@ -18,8 +18,7 @@ using Choices = std::vector<std::pair<std::string, Value>>;
 Choices<ColorSpace> color_space_choices();
 Choices<WeightPrecision> bary_choices();
 Choices<DracoMode> draco_choices();
-/// "8", "16", "half", "float".
-Choices<SampleType> depth_choices();
+Choices<SampleType> sample_type_choices();
 
 /// The word of a value that is among the choices.
 template <typename Value>

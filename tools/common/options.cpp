@@ -81,9 +81,8 @@ CLI::Option* add_inputs(CLI::App& app, const std::string& name, std::vector<std:
             return true;
         },
         help);
-    // Without extra arguments CLI11 takes a name such as [a] for what it is, not for a list.
     return option->expected(1, CLI::detail::expected_max_vector_size)
-        ->allow_extra_args(false)
+        ->allow_extra_args()
         ->type_name("")
         ->required();
 }

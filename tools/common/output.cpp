@@ -21,9 +21,10 @@ void check_output(const std::string& path, bool overwrite) {
     const fs::path parent = fs::path(path).parent_path();
     if (!parent.empty() && !fs::is_directory(parent, error))
         throw Error(ErrorCode::kIo, cat(path, ": cannot write: there is no folder ", parent.string()));
-    if (fs::is_directory(path, error)) throw Error(ErrorCode::kIo, cat(path, ": cannot write: is a folder"));
+    if (fs::exists(path, error) && !fs::is_regular_file(path, error))
+        throw Error(ErrorCode::kIo, cat(path, ": cannot write: is not a regular file"));
     if (!overwrite && fs::exists(fs::symlink_status(path, error)))
-        throw Error(ErrorCode::kIo, cat(path, ": exists, and --no-overwrite is given"));
+        throw Error(ErrorCode::kIo, cat(path, ": exists, and is not overwritten"));
 }
 
 void check_distinct(const std::vector<std::string>& inputs, const std::vector<std::string>& outputs) {

@@ -38,7 +38,7 @@ bool is_printable(std::uint32_t code) {
 
 }  // namespace
 
-std::string one_line(const std::string& text) {
+std::string printable_line(const std::string& text) {
     std::string line;
     for (std::size_t i = 0; i < text.size();) {
         std::uint32_t code = 0;
@@ -63,7 +63,7 @@ void TextTable::print(std::ostream& out, int indent) const {
     for (const auto& [name, value] : rows_) width = std::max(width, name.size());
     for (const auto& [name, value] : rows_) {
         out << std::string(static_cast<std::size_t>(indent), ' ') << name
-            << std::string(width - name.size() + 2, ' ') << one_line(value) << '\n';
+            << std::string(width - name.size() + 2, ' ') << printable_line(value) << '\n';
     }
 }
 

@@ -11,7 +11,7 @@ namespace imgmesh {
 
 /// `text` on one line that a terminal shows as it is: control characters, line and paragraph separators and
 /// bytes that are no UTF-8 become \xNN.
-std::string one_line(const std::string& text);
+std::string printable_line(const std::string& text);
 
 /// Rows of a name and a value, printed with the values aligned.
 class TextTable {

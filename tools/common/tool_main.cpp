@@ -12,6 +12,7 @@
 #include <new>
 #include <sstream>
 
+#include "formats/atomic_file.h"
 #include "libcore/base/parallel.h"
 #include "tools/common/config_file.h"
 #include "tools/common/options.h"
@@ -89,7 +90,7 @@ void write_stdout(const std::string& text) {
 }
 
 void print_error(const std::string& tool, const std::string& message) {
-    std::cerr << tool << ": error: " << one_line(message) << std::endl;
+    std::cerr << tool << ": error: " << printable_line(message) << std::endl;
 }
 
 // What failures that did not stop the run add up to.
@@ -169,6 +170,7 @@ int run_tool(const Tool& tool, int argc, char** argv) {
     // A reader that goes away and a limit on file size are errors of write(), not the end of the process.
     std::signal(SIGPIPE, SIG_IGN);
     std::signal(SIGXFSZ, SIG_IGN);
+    remove_temporaries_on_signals();
     try {
         return static_cast<int>(parse_and_run(tool, argc, argv));
     } catch (...) {

@@ -1,0 +1,141 @@
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+#include <memory>
+
+#include "formats/atomic_file.h"
+#include "formats/container.h"
+#include "formats/exr_layers.h"
+#include "formats/glb.h"
+#include "formats/gltf_asset.h"
+#include "libcore/base/error.h"
+
+namespace imgmesh {
+namespace {
+
+constexpr const char* kVersion = "1.0";
+
+void check_writable(const MeshImage& image) {
+    const SourceInfo& source = image.source;
+    const auto pixels = static_cast<std::size_t>(source.width) * static_cast<std::size_t>(source.height);
+    bool fits = source.width >= 1 && source.height >= 1 &&
+                std::max(source.width, source.height) <= kMaxCoordinate && !image.levels.empty() &&
+                (image.visits.empty() || image.visits.size() == pixels);
+    for (const Level& level : image.levels) {
+        fits = fits && level.map.width == source.width && level.map.height == source.height &&
+               level.map.coords.size() == pixels;
+        for (const PixelCoord& c : level.map.coords)
+            fits = fits && (c.face == kNone ? source.has_mask : c.face < level.mesh.faces.size());
+    }
+    if (!fits)
+        throw Error(ErrorCode::kInternal, "cannot store the mesh image: its parts do not fit each other");
+}
+
+// Appends values as they lie in memory, at a multiple of four.
+template <typename T>
+ByteRange append(std::vector<std::uint8_t>& buffer, const std::vector<T>& values) {
+    const auto* first = reinterpret_cast<const std::uint8_t*>(values.data());
+    const ByteRange range{buffer.size(), values.size() * sizeof(T)};
+    buffer.insert(buffer.end(), first, first + range.length);
+    buffer.resize((buffer.size() + 3) / 4 * 4, 0);
+    return range;
+}
+
+// Stores the mesh of `level` in `buffer` and rewrites `map` for the mesh that a reader will get.
+AssetLevel store_level(const Level& level, DracoMode mode, std::vector<std::uint8_t>& buffer, PixelMap& map) {
+    StoredMesh mesh = stored_from_base(level.mesh);
+    AssetLevel out;
+    if (mode == DracoMode::kOff) {
+        out.indices = append(buffer, mesh.faces);
+        out.positions = append(buffer, mesh.position);
+        out.colors = append(buffer, mesh.color);
+    } else {
+        DracoMesh draco = encode_draco_mesh(mesh, mode);
+        out.is_draco = true;
+        out.draco = append(buffer, draco.bytes);
+        remap_pixels(match_faces(mesh, draco.decoded), map);
+        mesh = std::move(draco.decoded);
+    }
+    out.vertices = mesh.position.size();
+    out.faces = mesh.faces.size();
+    out.error = level.error;
+    out.topology = topology_hash(mesh);
+    out.low = out.high = mesh.position.front();
+    for (const auto& p : mesh.position)
+        for (std::size_t i = 0; i < 3; ++i) {
+            out.low[i] = std::min(out.low[i], p[i]);
+            out.high[i] = std::max(out.high[i], p[i]);
+        }
+    return out;
+}
+
+enum class Spelling { kGlb, kGltf };
+
+Spelling spelling_of(const std::string& path) {
+    std::string extension = std::filesystem::path(path).extension().string();
+    for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    if (extension == ".glb") return Spelling::kGlb;
+    if (extension == ".gltf") return Spelling::kGltf;
+    throw Error(ErrorCode::kUsage, cat(path, ": a container's name ends with .glb or .gltf"));
+}
+
+void write_glb(const std::string& path, Asset& asset, std::vector<std::uint8_t> buffer,
+               const std::vector<std::uint8_t>& layers, bool overwrite) {
+    AtomicFile file(path, overwrite);
+    asset.layers = append(buffer, layers);
+    asset.buffer_length = buffer.size();
+    file.write(pack_glb(json_from_asset(asset), buffer));
+    file.commit();
+}
+
+void write_gltf(const std::string& path, Asset& asset, const std::vector<std::uint8_t>& buffer,
+                const std::vector<std::uint8_t>& layers, bool overwrite) {
+    const std::vector<std::string> names = container_files(path);
+    // Files of these names that belong to no container, such as the picture it is made from, are not
+    // replaced.
+    const bool overwrite_others = overwrite && std::filesystem::exists(path);
+    AtomicFile gltf(path, overwrite);
+    AtomicFile bin(names[1], overwrite_others), exr(names[2], overwrite_others);
+    asset.buffer_name = std::filesystem::path(names[1]).filename().string();
+    asset.layers_name = std::filesystem::path(names[2]).filename().string();
+    asset.buffer_length = buffer.size();
+    const std::string json = json_from_asset(asset);
+    bin.write(buffer);
+    exr.write(layers);
+    gltf.write({reinterpret_cast<const std::uint8_t*>(json.data()), json.size()});
+    bin.commit();
+    exr.commit();
+    gltf.commit();
+}
+
+}  // namespace
+
+std::vector<std::string> container_files(const std::string& path) {
+    if (spelling_of(path) == Spelling::kGlb) return {path};
+    const std::string stem = std::filesystem::path(path).replace_extension().string();
+    return {path, stem + ".bin", stem + ".exr"};
+}
+
+void write_container(const std::string& path, const MeshImage& mesh_image, const ContainerOptions& options) {
+    const Spelling spelling = spelling_of(path);
+    check_writable(mesh_image);
+    Asset asset;
+    asset.version = kVersion;
+    asset.source = mesh_image.source;
+    asset.generator = mesh_image.generator;
+    asset.parameters = mesh_image.parameters;
+    std::vector<std::uint8_t> buffer;
+    std::vector<LayerPart> parts;
+    for (const Level& level : mesh_image.levels) {
+        parts.push_back({level_name(parts.size()), level.map, {}});
+        asset.levels.push_back(store_level(level, options.draco, buffer, parts.back().map));
+    }
+    parts.front().visits = mesh_image.visits;
+    const std::vector<std::uint8_t> layers = encode_exr_layers(parts);
+    if (spelling == Spelling::kGlb)
+        write_glb(path, asset, std::move(buffer), layers, options.overwrite);
+    else
+        write_gltf(path, asset, buffer, layers, options.overwrite);
+}
+
+}  // namespace imgmesh

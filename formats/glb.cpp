@@ -1,0 +1,88 @@
+// Source: glTF 2.0 specification, section 4 "GLB File Format Specification".
+#include "formats/glb.h"
+
+#include <cstring>
+#include <limits>
+
+#include "formats/finding_codes.h"
+#include "libcore/base/error.h"
+
+namespace imgmesh {
+namespace {
+
+constexpr std::uint32_t kMagic = 0x46546C67, kJson = 0x4E4F534A, kBinary = 0x004E4942;
+constexpr std::size_t kHeaderBytes = 12, kChunkHeaderBytes = 8;
+
+std::uint32_t number(std::span<const std::uint8_t> bytes, std::size_t at) {
+    std::uint32_t value = 0;
+    std::memcpy(&value, bytes.data() + at, sizeof value);
+    return value;
+}
+
+std::size_t padded(std::size_t size) {
+    return (size + 3) / 4 * 4;
+}
+
+}  // namespace
+
+bool is_glb(std::span<const std::uint8_t> bytes) {
+    return bytes.size() >= 4 && number(bytes, 0) == kMagic;
+}
+
+std::vector<std::uint8_t> pack_glb(std::string_view json, std::span<const std::uint8_t> binary) {
+    const std::size_t json_bytes = padded(json.size()), binary_bytes = padded(binary.size());
+    const std::size_t total = kHeaderBytes + 2 * kChunkHeaderBytes + json_bytes + binary_bytes;
+    if (total > std::numeric_limits<std::uint32_t>::max())
+        throw Error(ErrorCode::kUnsupported,
+                    cat("a .glb holds at most 4 GiB, this one would need ", total, " bytes; write a .gltf"));
+    std::vector<std::uint8_t> bytes;
+    bytes.reserve(total);
+    const auto put = [&](std::size_t value) {
+        const auto word = static_cast<std::uint32_t>(value);
+        const auto* p = reinterpret_cast<const std::uint8_t*>(&word);
+        bytes.insert(bytes.end(), p, p + 4);
+    };
+    put(kMagic);
+    put(2);
+    put(total);
+    put(json_bytes);
+    put(kJson);
+    bytes.insert(bytes.end(), json.begin(), json.end());
+    bytes.resize(bytes.size() + json_bytes - json.size(), ' ');
+    put(binary_bytes);
+    put(kBinary);
+    bytes.insert(bytes.end(), binary.begin(), binary.end());
+    bytes.resize(total, 0);
+    return bytes;
+}
+
+GlbView unpack_glb(std::span<const std::uint8_t> bytes) {
+    if (!is_glb(bytes) || bytes.size() < kHeaderBytes || number(bytes, 4) != 2)
+        refuse("glb.header", "not a glTF 2.0 binary file");
+    if (number(bytes, 8) != bytes.size())
+        refuse("glb.length",
+               cat("the header says ", number(bytes, 8), " bytes, the file has ", bytes.size()));
+    GlbView view;
+    bool has_json = false, has_binary = false;
+    for (std::size_t at = kHeaderBytes; at < bytes.size();) {
+        if (bytes.size() - at < kChunkHeaderBytes) refuse("glb.chunk", "the file ends in a chunk's header");
+        const std::uint32_t length = number(bytes, at), type = number(bytes, at + 4);
+        at += kChunkHeaderBytes;
+        if (length > bytes.size() - at)
+            refuse("glb.chunk", cat("a chunk of ", length, " bytes, ", bytes.size() - at, " are left"));
+        const auto content = bytes.subspan(at, length);
+        if (!has_json) {
+            if (type != kJson) refuse("glb.chunk", "the first chunk is not JSON");
+            view.json = {reinterpret_cast<const char*>(content.data()), content.size()};
+            has_json = true;
+        } else if (type == kBinary && !has_binary) {
+            view.binary = content;
+            has_binary = true;
+        }
+        at += length;
+    }
+    if (!has_json) refuse("glb.chunk", "no JSON chunk");
+    return view;
+}
+
+}  // namespace imgmesh

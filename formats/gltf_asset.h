@@ -1,0 +1,59 @@
+// The JSON side of a container: what a glTF document says about the levels, and where their bytes are.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "formats/container.h"
+#include "formats/draco_mesh.h"
+#include "libcore/param/mesh_image.h"
+
+namespace imgmesh {
+
+/// Bytes of the asset's one buffer.
+struct ByteRange {
+    std::uint64_t offset = 0;
+    std::uint64_t length = 0;
+    bool operator==(const ByteRange&) const = default;
+};
+
+/// One level: its node, mesh and accessors.
+struct AssetLevel {
+    std::uint64_t vertices = 0;
+    std::uint64_t faces = 0;
+    double error = 0;
+    std::string topology;                ///< topology_hash()
+    std::array<float, 3> low{}, high{};  ///< bounds of the stored positions
+    bool is_draco = false;
+    ByteRange draco;  ///< is_draco: the bitstream and its attributes
+    DracoAttributeIds ids;
+    ByteRange indices, positions, colors;  ///< else: uint32, 3 float32, 4 uint16, tightly packed
+    bool operator==(const AssetLevel&) const = default;
+};
+
+struct Asset {
+    std::string version;  ///< of IMGMESH_pixel_map
+    SourceInfo source;
+    std::string generator;
+    std::vector<BuildParameter> parameters;  ///< comes back sorted by name
+    std::vector<AssetLevel> levels;          ///< 0 is the finest
+    std::uint64_t buffer_length = 0;
+    std::string buffer_name;  ///< the file beside; empty for a .glb's binary chunk
+    ByteRange layers;         ///< the EXR in the buffer, where `layers_name` is empty
+    std::string layers_name;  ///< or its file beside
+};
+
+/// The name of level k's node and EXR part.
+std::string level_name(std::size_t k);
+
+/// The glTF document. Throws Error(kUnsupported) for a buffer above 2 GiB, which many readers cannot address.
+std::string json_from_asset(const Asset& asset);
+
+/// The inverse. Every number is checked: sizes against `limits`, counts against each other, ranges against
+/// buffer_length. Safe for any text. Throws FindingError.
+Asset asset_from_json(std::string_view json, const ContainerLimits& limits);
+
+}  // namespace imgmesh

@@ -1,0 +1,15 @@
+// Names that the writer and the reader of the JSON side share.
+#pragma once
+
+namespace imgmesh {
+
+inline constexpr const char* kPixelMap = "IMGMESH_pixel_map";
+inline constexpr const char* kDraco = "KHR_draco_mesh_compression";
+inline constexpr const char* kUnlit = "KHR_materials_unlit";
+inline constexpr const char* kLod = "MSFT_lod";
+inline constexpr const char* kLayersMimeType = "image/x-exr";
+inline constexpr const char* kGenerator = "generator";
+/// In the order of SampleType.
+inline constexpr const char* kSampleTypes[] = {"uint8", "uint16", "half", "float"};
+
+}  // namespace imgmesh

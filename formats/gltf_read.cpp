@@ -1,0 +1,255 @@
+// tinygltf reads the glTF 2.0 part, of a document reduced to what a container needs: it follows no URI,
+// decodes no picture and does not recurse deeply then. What it does not check is checked here: indices,
+// ranges, integers above 32 bits (which it truncates). Our extension is read from the JSON itself.
+#include <tiny_gltf.h>
+
+#include <algorithm>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "formats/extension_read.h"
+#include "formats/file_uri.h"
+#include "formats/finding_codes.h"
+#include "formats/gltf_asset.h"
+#include "formats/gltf_names.h"
+#include "formats/json_members.h"
+#include "libcore/base/error.h"
+
+namespace imgmesh {
+namespace {
+
+using nlohmann::json;
+
+// A container's JSON has some kilobytes; a DOM of other content takes twenty times its text.
+constexpr std::size_t kMaxJsonBytes = std::size_t{64} << 20;
+
+json parse(std::string_view text, int max_depth) {
+    if (text.size() > kMaxJsonBytes)
+        refuse("limits.bytes", cat("JSON of ", text.size(), " bytes, at most ", kMaxJsonBytes));
+    const auto guard = [&](int depth, json::parse_event_t, json&) {
+        if (depth > max_depth) refuse("json.depth", cat("nested deeper than ", max_depth));
+        return true;
+    };
+    try {
+        return json::parse(text.begin(), text.end(), guard);
+    } catch (const json::exception& error) {
+        refuse("json.syntax", error.what());
+    }
+}
+
+// ---- The glTF part
+// --------------------------------------------------------------------------------------------
+void check_integers(const json& value, const char* where) {
+    if (value.is_number_integer()) {
+        const bool fits = value.is_number_unsigned()
+                              ? value.get<std::uint64_t>() <= std::numeric_limits<int>::max()
+                              : value.get<std::int64_t>() >= std::numeric_limits<int>::min();
+        if (!fits) refuse("gltf.range", cat("a number in \"", where, "\" has more than 32 bits"));
+    } else if (value.is_structured()) {
+        for (const json& item : value) check_integers(item, where);
+    }
+}
+
+void check_version(const json& document) {
+    if (!document.is_object()) refuse("gltf.structure", "the document is not a JSON object");
+    const json& asset = member(document, "asset", "gltf.structure");
+    const std::string version = string_member(asset, "version", "gltf.structure");
+    if (!version.starts_with("2.")) refuse("gltf.version", cat("glTF version ", version, ", expected 2.0"));
+    if (const json* required = find(document, "extensionsRequired"))
+        for (const json& name : *required)
+            if (name != kDraco && name != kUnlit && name != kPixelMap)
+                refuse("gltf.required", cat("the asset requires the extension ", name.dump()));
+}
+
+tinygltf::Model load_model(const json& document) {
+    json reduced = {{"asset", document["asset"]}};
+    for (const char* name : {"accessors", "bufferViews", "meshes", "nodes"}) {
+        reduced[name] = member(document, name, "gltf.structure");
+        if (!reduced[name].is_array()) refuse("gltf.structure", cat("\"", name, "\" is not an array"));
+        check_integers(reduced[name], name);
+    }
+    // tinygltf refuses indices without a bufferView, which is what Draco leaves of them.
+    for (json& mesh : reduced["meshes"])
+        if (mesh.is_object() && mesh.contains("primitives") && mesh["primitives"].is_array())
+            for (json& primitive : mesh["primitives"])
+                if (primitive.is_object()) primitive.erase("indices");
+    tinygltf::Model model;
+    std::string error, warning;
+    const std::string text = reduced.dump();
+    if (!tinygltf::TinyGLTF().LoadASCIIFromString(&model, &error, &warning, text.c_str(),
+                                                  static_cast<unsigned>(text.size()), "",
+                                                  tinygltf::NO_REQUIRE))
+        refuse("gltf.structure", error);
+    return model;
+}
+
+template <typename T>
+const T& at(const std::vector<T>& items, std::uint64_t index, const char* what) {
+    if (index >= items.size()) refuse("gltf.index", cat(what, " ", index, " of ", items.size()));
+    return items[index];
+}
+
+// An index that tinygltf gives as int, -1 for none.
+template <typename T>
+const T& at(const std::vector<T>& items, int index, const char* what) {
+    if (index < 0) refuse("gltf.structure", cat("no ", what));
+    return at(items, static_cast<std::uint64_t>(index), what);
+}
+
+ByteRange view_range(const tinygltf::Model& model, std::uint64_t index, std::uint64_t buffer_length) {
+    const tinygltf::BufferView& view = at(model.bufferViews, index, "bufferView");
+    if (view.buffer != 0) refuse("gltf.index", cat("buffer ", view.buffer, " of 1"));
+    if (view.byteOffset > buffer_length || view.byteLength > buffer_length - view.byteOffset)
+        refuse("gltf.range", cat("bufferView ", index, " covers ", view.byteLength, " bytes from ",
+                                 view.byteOffset, ", the buffer has ", buffer_length));
+    return {view.byteOffset, view.byteLength};
+}
+
+struct Element {
+    const char* name;
+    int component, type;
+    bool normalized;
+    std::uint64_t bytes;
+};
+constexpr Element kIndices = {"indices", TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT, TINYGLTF_TYPE_SCALAR, false,
+                              4};
+constexpr Element kPositions = {"POSITION", TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_VEC3, false, 12};
+constexpr Element kColors = {"COLOR_0", TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT, TINYGLTF_TYPE_VEC4, true, 8};
+
+const tinygltf::Accessor& checked_accessor(const tinygltf::Model& model, std::uint64_t index,
+                                           const Element& want, std::uint64_t count) {
+    const tinygltf::Accessor& accessor = at(model.accessors, index, "accessor");
+    if (accessor.componentType != want.component || accessor.type != want.type ||
+        accessor.normalized != want.normalized || accessor.sparse.isSparse)
+        refuse("mesh.accessor", cat("the accessor of ", want.name, " has another type"));
+    if (accessor.count != count)
+        refuse("mesh.counts",
+               cat("the accessor of ", want.name, " has ", accessor.count, " items, expected ", count));
+    return accessor;
+}
+
+ByteRange accessor_range(const tinygltf::Model& model, const tinygltf::Accessor& accessor,
+                         const Element& want, std::uint64_t buffer_length) {
+    const tinygltf::BufferView& view = at(model.bufferViews, accessor.bufferView, "bufferView");
+    if (view.byteStride != 0 && view.byteStride != want.bytes)
+        refuse("mesh.accessor", cat(want.name, " is not tightly packed"));
+    ByteRange range = view_range(model, static_cast<std::uint64_t>(accessor.bufferView), buffer_length);
+    // The count was checked against the limits.
+    const std::uint64_t length = accessor.count * want.bytes;
+    if (accessor.byteOffset > range.length || length > range.length - accessor.byteOffset)
+        refuse("gltf.range", cat("the accessor of ", want.name, " runs over its bufferView"));
+    return {range.offset + accessor.byteOffset, length};
+}
+
+std::uint64_t attribute_index(const tinygltf::Primitive& primitive, const char* name) {
+    const auto it = primitive.attributes.find(name);
+    if (it == primitive.attributes.end() || it->second < 0)
+        refuse("gltf.structure", cat("the mesh has no attribute ", name));
+    return static_cast<std::uint64_t>(it->second);
+}
+
+// Fills in where the mesh of a level is.
+void read_primitive(const json& document, const tinygltf::Model& model, int mesh_index,
+                    std::uint64_t buffer_length, AssetLevel& level) {
+    const tinygltf::Mesh& mesh = at(model.meshes, mesh_index, "mesh");
+    if (mesh.primitives.size() != 1 || mesh.primitives[0].mode != TINYGLTF_MODE_TRIANGLES)
+        refuse("gltf.structure", cat("mesh ", mesh_index, " is not one primitive of triangles"));
+    const tinygltf::Primitive& primitive = mesh.primitives[0];
+    // tinygltf drops what it does not take for a primitive.
+    const json& sources = document["meshes"][static_cast<std::size_t>(mesh_index)]["primitives"];
+    if (sources.size() != 1)
+        refuse("gltf.structure", cat("mesh ", mesh_index, " has something else than a primitive"));
+    const json& source = sources[0];
+    const auto& indices = checked_accessor(model, unsigned_member(source, "indices", "gltf.structure"),
+                                           kIndices, 3 * level.faces);
+    const auto& positions =
+        checked_accessor(model, attribute_index(primitive, "POSITION"), kPositions, level.vertices);
+    const auto& colors =
+        checked_accessor(model, attribute_index(primitive, "COLOR_0"), kColors, level.vertices);
+    if (positions.minValues.size() != 3 || positions.maxValues.size() != 3)
+        refuse("mesh.accessor", "the accessor of POSITION has no bounds");
+    for (std::size_t i = 0; i < 3; ++i) {
+        level.low[i] = static_cast<float>(positions.minValues[i]);
+        level.high[i] = static_cast<float>(positions.maxValues[i]);
+    }
+    const json* extensions = find(source, "extensions");
+    const json* draco = extensions ? find(*extensions, kDraco) : nullptr;
+    if (draco) {
+        const json& attributes = member(*draco, "attributes", "gltf.structure");
+        const auto id = [&](const char* name) {
+            return static_cast<std::uint32_t>(unsigned_member(attributes, name, "gltf.structure"));
+        };
+        level.is_draco = true;
+        level.ids = {id("POSITION"), id("COLOR_0")};
+        level.draco =
+            view_range(model, unsigned_member(*draco, "bufferView", "gltf.structure"), buffer_length);
+    } else {
+        level.indices = accessor_range(model, indices, kIndices, buffer_length);
+        level.positions = accessor_range(model, positions, kPositions, buffer_length);
+        level.colors = accessor_range(model, colors, kColors, buffer_length);
+    }
+}
+
+void read_levels(const json& document, const tinygltf::Model& model, const ContainerLimits& limits,
+                 Asset& asset) {
+    std::vector<std::pair<std::string, std::size_t>> parts;  // part, node
+    const json& nodes = document["nodes"];
+    const auto extension = [&](std::size_t node) {
+        const json* extensions = find(nodes[node], "extensions");
+        return extensions ? find(*extensions, kPixelMap) : nullptr;
+    };
+    for (std::size_t node = 0; node < nodes.size(); ++node)
+        if (const json* found = extension(node))
+            parts.emplace_back(string_member(*found, "part", "ext.member"), node);
+    if (parts.empty() || parts.size() > static_cast<std::size_t>(limits.max_levels))
+        refuse("limits.levels", cat(parts.size(), " levels, expected 1 to ", limits.max_levels));
+    for (std::size_t k = 0; k < parts.size(); ++k) {
+        const auto part =
+            std::find_if(parts.begin(), parts.end(), [&](const auto& p) { return p.first == level_name(k); });
+        if (part == parts.end())
+            refuse("ext.level", cat("no node has the part ", level_name(k), " of ", parts.size(), " levels"));
+        AssetLevel level = read_level_member(*extension(part->second), asset.source, limits);
+        read_primitive(document, model, model.nodes[part->second].mesh, asset.buffer_length, level);
+        asset.levels.push_back(std::move(level));
+    }
+}
+
+}  // namespace
+
+Asset asset_from_json(std::string_view text, const ContainerLimits& limits) {
+    const json document = parse(text, limits.max_json_depth);
+    check_version(document);
+    const json* extensions = find(document, "extensions");
+    const json* root = extensions ? find(*extensions, kPixelMap) : nullptr;
+    if (!root) refuse("ext.missing", cat("the asset has no extension ", kPixelMap));
+
+    Asset asset;
+    asset.version = string_member(*root, "version", "ext.member");
+    if (!asset.version.starts_with("1."))
+        refuse("ext.version", cat(kPixelMap, " version ", asset.version, ", expected 1.x"));
+    asset.source = read_image_member(member(*root, "image", "ext.member"), limits);
+    read_build_member(member(*root, "build", "ext.member"), asset);
+
+    const json& buffers = member(document, "buffers", "gltf.buffer");
+    if (!buffers.is_array() || buffers.size() != 1)
+        refuse("gltf.buffer", cat(buffers.size(), " buffers, expected one"));
+    asset.buffer_length = unsigned_member(buffers[0], "byteLength", "gltf.buffer");
+    if (find(buffers[0], "uri"))
+        asset.buffer_name = name_from_uri(string_member(buffers[0], "uri", "gltf.buffer"));
+
+    const tinygltf::Model model = load_model(document);
+    const json& layers = member(*root, "layers", "ext.member");
+    if (string_member(layers, "mimeType", "ext.member") != kLayersMimeType)
+        refuse("ext.member", cat("the layers are not of type ", kLayersMimeType));
+    if (layers.contains("uri") == layers.contains("bufferView"))
+        refuse("ext.member", "the layers have not either a uri or a bufferView");
+    if (layers.contains("uri"))
+        asset.layers_name = name_from_uri(string_member(layers, "uri", "ext.member"));
+    else
+        asset.layers =
+            view_range(model, unsigned_member(layers, "bufferView", "ext.member"), asset.buffer_length);
+    read_levels(document, model, limits, asset);
+    return asset;
+}
+
+}  // namespace imgmesh

@@ -1,0 +1,77 @@
+// write-samples FOLDER: a container of every flavour for the tests that use other software, and for each .glb
+// the picture (.ppm) that a reader must draw of its level 0.
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+
+#include "formats/container.h"
+#include "tests/support/random_mesh_image.h"
+
+using namespace imgmesh;
+
+namespace {
+
+// Colours change smoothly, so that colours between two vertices stay within what a display shows.
+void paint(MeshImage& image) {
+    for (Level& level : image.levels)
+        for (Id v = 0; v < level.mesh.vertex_count(); ++v) {
+            const Vec2f& p = level.mesh.position[v];
+            const Vec3f linear(0.5f + 0.4f * std::sin(0.1f * p.x()), 0.5f + 0.4f * std::cos(0.13f * p.y()),
+                               0.4f + 0.3f * std::sin(0.07f * (p.x() + p.y())));
+            const Vec3f luv = storable_color(luv_from_linear(linear));
+            std::copy(luv.data(), luv.data() + 3, level.mesh.feature_of(v));
+        }
+}
+
+void write_picture(const std::string& path, const MeshImage& image) {
+    std::ofstream out(path, std::ios::binary);
+    out << "P6\n" << image.source.width << " " << image.source.height << "\n255\n";
+    const Level& level = image.levels[0];
+    for (const PixelCoord& c : level.map.coords) {
+        Vec3f srgb(0, 0, 0);
+        if (c.face != kNone) {
+            const auto corner = [&](std::size_t i) {
+                return Eigen::Map<const Vec3f>(level.mesh.feature_of(level.mesh.faces[c.face][i]));
+            };
+            const Vec3f luv = (1 - c.u - c.v) * corner(0) + c.u * corner(1) + c.v * corner(2);
+            srgb = encoded_from_linear(ColorSpace::kSrgb, linear_from_luv(luv));
+        }
+        for (int i = 0; i < 3; ++i)
+            out.put(static_cast<char>(std::lround(std::clamp(srgb[i], 0.f, 1.f) * 255)));
+    }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    if (argc != 2) {
+        std::cerr << "usage: write-samples FOLDER\n";
+        return 2;
+    }
+    const std::filesystem::path folder = argv[1];
+    std::filesystem::remove_all(folder);
+    std::filesystem::create_directories(folder);
+    const std::pair<const char*, DracoMode> modes[] = {{"edgebreaker", DracoMode::kEdgebreaker},
+                                                       {"sequential", DracoMode::kSequential},
+                                                       {"none", DracoMode::kOff}};
+    const std::pair<const char*, WeightPrecision> precisions[] = {{"half", WeightPrecision::kHalf},
+                                                                  {"float", WeightPrecision::kFloat}};
+    const std::array<std::array<int, 2>, 3> sizes = {{{96, 64}, {1, 9}, {1, 1}}};
+    std::uint32_t seed = 0;
+    for (const auto& [mode_name, mode] : modes)
+        for (const auto& [precision_name, precision] : precisions)
+            for (const auto [width, height] : sizes) {
+                const bool mask = ++seed % 2 == 0;
+                MeshImage image = random_mesh_image(width, height, 1 + int(seed % 3), precision, mask, seed);
+                paint(image);
+                if (mask) image.visits.assign(image.levels[0].map.coords.size(), 3);
+                const std::string name = std::string(mode_name) + " " + precision_name + " " +
+                                         std::to_string(width) + "x" + std::to_string(height);
+                for (const char* extension : {".glb", ".gltf"})
+                    write_container((folder / (name + extension)).string(), image, {mode, true});
+                write_picture((folder / (name + ".ppm")).string(), image);
+            }
+    return 0;
+}
