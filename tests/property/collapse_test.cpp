@@ -143,13 +143,20 @@ TEST_CASE("collapse: no vertex costs more than the largest error allowed") {
     }
 }
 
-TEST_CASE("collapse: the same mesh every time, with any number of threads") {
-    for (const Kind kind : {Kind::kNoise, Kind::kCheckerboard}) {
-        const FeatureImage feature = sample_feature(kind, 40, 30);
-        const BaseMesh first = collapse(feature, to_vertices(100)).mesh;
-        for (const int threads : {1, 2, 3}) {
-            const ThreadLimit limit(threads);
-            CHECK(same(collapse(feature, to_vertices(100)).mesh, first));
+// Large enough for several tiles each way, which are collapsed side by side, and for what is left after them.
+TEST_CASE("collapse: tiles make a sound mesh, the same every time, with any number of threads") {
+    for (const Kind kind : {Kind::kNoise, Kind::kCheckerboard, Kind::kDisc}) {
+        constexpr Size kLarge{230, 170};
+        const FeatureImage feature = sample_feature(kind, kLarge.width, kLarge.height);
+        for (const std::int64_t target : {12000, 400}) {
+            INFO(name_of(kind) << " to " << target);
+            const BaseMesh first = collapse(feature, to_vertices(target)).mesh;
+            check_sound(first, kLarge);
+            CHECK(first.vertex_count() == static_cast<std::size_t>(target));
+            for (const int threads : {1, 2, 3}) {
+                const ThreadLimit limit(threads);
+                CHECK(same(collapse(feature, to_vertices(target)).mesh, first));
+            }
         }
     }
 }
