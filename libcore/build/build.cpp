@@ -46,16 +46,22 @@ int smoothing_passes(double pixels_per_vertex) {
     return pixels_per_vertex >= 250 ? 4 : pixels_per_vertex >= 66 ? 2 : pixels_per_vertex >= 12 ? 1 : 0;
 }
 
-CollapseParams collapse_params(const BuildParams& params, double pixels) {
-    CollapseParams out;
-    out.geometry_weight = static_cast<float>(params.geometry_weight / params.color_weight);
+CollapseTarget collapse_target(const BuildParams& params, double pixels) {
+    CollapseTarget out;
     const StopParams& stop = params.stop;
-    out.target_faces = stop.faces.value_or(0);
-    out.target_vertices = stop.vertices.value_or(0);
+    out.faces = stop.faces.value_or(0);
+    out.vertices = stop.vertices.value_or(0);
     if (stop.error) out.max_error = *stop.error / params.color_weight;
     if (!stop.faces && !stop.vertices && !stop.error)
-        out.target_vertices = std::max(std::int64_t{4}, static_cast<std::int64_t>(std::llround(pixels * stop.density / 100)));
-    const auto vertices = static_cast<double>(std::max(out.target_vertices, out.target_faces / 2));
+        out.vertices =
+            std::max(std::int64_t{4}, static_cast<std::int64_t>(std::llround(pixels * stop.density / 100)));
+    return out;
+}
+
+CollapseParams collapse_params(const BuildParams& params, const CollapseTarget& target, double pixels) {
+    CollapseParams out;
+    out.geometry_weight = static_cast<float>(params.geometry_weight / params.color_weight);
+    const auto vertices = static_cast<double>(std::max(target.vertices, target.faces / 2));
     // With an error alone the density is not known beforehand; the default's serves.
     out.smoothing = smoothing_passes(vertices > 0 ? pixels / vertices : 100);
     return out;
@@ -96,8 +102,10 @@ BuildResult build_mesh_image(const Image& image, const BuildParams& params, cons
         if (!std::isfinite(f))
             throw Error(ErrorCode::kUnsupported, "the picture has samples that are not finite");
 
-    const CollapseParams collapse = collapse_params(params, static_cast<double>(image.pixel_count()));
-    CollapseResult collapsed = collapse_edges(grid_mesh(feature), collapse, stage(0.0, 0.7));
+    const auto pixels = static_cast<double>(image.pixel_count());
+    const CollapseTarget target = collapse_target(params, pixels);
+    const CollapseParams collapse = collapse_params(params, target, pixels);
+    CollapseResult collapsed = collapse_edges(grid_mesh(feature), collapse, target, stage(0.0, 0.7));
 
     Level level{std::move(collapsed.mesh), {}, collapsed.error * params.color_weight};
     FitParams fit;

@@ -45,47 +45,53 @@ struct Placement {
 class Collapser {
   public:
     Collapser(const GridMesh& grid, const CollapseParams& params)
-        : params_(params),
-          width_(grid.feature.width),
+        : width_(grid.feature.width),
           height_(grid.feature.height),
           rings_(ring_mesh(grid)),
           quadrics_(vertex_quadrics(grid, smoothed(grid.feature, params.smoothing), params.geometry_weight)),
+          area2_limit_(2 * params.max_face_area),
+          // q = 4 sqrt(3) area / sum, with twice the area at hand
+          shape_limit_(params.min_shape / (2 * std::sqrt(3.0f))),
           vertices_(static_cast<std::int64_t>(rings_.size())),
           faces_(std::int64_t{2} * (grid.feature.width - 1) * (grid.feature.height - 1)) {}
 
-    void run(const Progress& progress) {
-        const std::int64_t start = vertices_;
-        for (float threshold = first_threshold(); !done(); threshold *= kWindow) {
-            const std::int64_t collapses_before = result_.collapses;
+    void run(const CollapseTarget& target, const Progress& progress) {
+        target_ = target;
+        if (threshold_ == 0) threshold_ = first_threshold();
+        while (!done()) {
+            const std::int64_t collapses_before = collapses_;
             postponed_ = false;
             const int side = far_from_done() ? kTile : std::max(width_, height_);
             for (int y = 0; y < height_; y += side)
                 for (int x = 0; x < width_; x += side) {
-                    file_tile(x, y, side, threshold);
-                    drain(threshold);
+                    file_tile(x, y, side);
+                    drain();
                 }
-            if (progress) progress(fraction_done(start), "collapse");
-            if (result_.collapses == collapses_before && !postponed_) return;
+            if (progress) progress(fraction_done(), "collapse");
+            if (done() || (collapses_ == collapses_before && !postponed_)) break;
+            threshold_ *= kWindow;
         }
+        queue_ = {};
     }
 
-    CollapseResult finish() {
+    CollapseResult snapshot() const {
+        CollapseResult result{{}, error_, collapses_};
         std::vector<Id> live;
-        result_.mesh.channels = C;
-        result_.mesh.faces = ring_faces(rings_, live);
+        result.mesh.channels = C;
+        result.mesh.faces = ring_faces(rings_, live);
         for (const Id v : live) {
             const Ring& ring = rings_[v];
-            result_.mesh.position.emplace_back(ring.x, ring.y);
+            result.mesh.position.emplace_back(ring.x, ring.y);
             for (int c = 0; c < C; ++c)
-                result_.mesh.feature.push_back(quadrics_[v].feature(c, ring.x, ring.y));
+                result.mesh.feature.push_back(quadrics_[v].feature(c, ring.x, ring.y));
         }
-        return std::move(result_);
+        return result;
     }
 
   private:
     // Collapses until the queue is empty or a limit is reached. Memory is what takes the time: an edge is
     // handed out a few steps ahead of its turn, and what it will touch is fetched meanwhile.
-    void drain(float threshold) {
+    void drain() {
         constexpr std::size_t kAhead = 8;
         struct Waiting {
             QueuedEdge edge;
@@ -102,7 +108,7 @@ class Collapser {
                 if (taken - tried < kAhead) continue;
             }
             const Waiting& next = waiting[tried++ % kAhead];
-            try_collapse(next.edge, next.bucket, threshold);
+            try_collapse(next.edge, next.bucket);
         }
     }
 
@@ -125,13 +131,12 @@ class Collapser {
     }
 
     bool far_from_done() const {
-        return vertices_ > kTiledAbove * params_.target_vertices &&
-               faces_ > kTiledAbove * params_.target_faces;
+        return vertices_ > kTiledAbove * target_.vertices && faces_ > kTiledAbove * target_.faces;
     }
-    bool done() const { return vertices_ <= params_.target_vertices || faces_ <= params_.target_faces; }
-    double fraction_done(std::int64_t start) const {
-        return static_cast<double>(start - vertices_) /
-               static_cast<double>(std::max<std::int64_t>(1, start - params_.target_vertices));
+    bool done() const { return vertices_ <= target_.vertices || faces_ <= target_.faces; }
+    double fraction_done() const {
+        const auto start = static_cast<double>(rings_.size()), left = static_cast<double>(vertices_);
+        return (start - left) / std::max(1.0, start - static_cast<double>(target_.vertices));
     }
 
     // What may move where: returns false where the border forbids the merge altogether.
@@ -175,8 +180,11 @@ class Collapser {
             const Ring& b =
                 rings_[ring.neighbor[static_cast<std::size_t>(k + 1 == ring.valence ? 0 : k + 1)]];
             const float ax = a.x - x, ay = a.y - y, bx = b.x - x, by = b.y - y, ex = bx - ax, ey = by - ay;
-            const float longest = std::max({ax * ax + ay * ay, bx * bx + by * by, ex * ex + ey * ey});
-            if (!(ay * bx - ax * by > kFatness * longest)) return false;
+            const float aa = ax * ax + ay * ay, bb = bx * bx + by * by, ee = ex * ex + ey * ey;
+            const float area2 = ay * bx - ax * by;
+            if (!(area2 > kFatness * std::max({aa, bb, ee})) || area2 > area2_limit_ ||
+                area2 < shape_limit_ * (aa + bb + ee))
+                return false;
         }
         return true;
     }
@@ -198,7 +206,7 @@ class Collapser {
         return best;
     }
 
-    void try_collapse(const QueuedEdge& edge, int bucket, float threshold) {
+    void try_collapse(const QueuedEdge& edge, int bucket) {
         if (!current(edge)) return;
         const Id i = edge.i, j = edge.j;
         MergedRing ring;
@@ -209,7 +217,7 @@ class Collapser {
             place = fallback(i, j, ring, sum);
             if (place.cost == kNever) return;
             if (BucketQueue::bucket_of(place.cost) > bucket) {
-                if (place.cost < threshold)
+                if (place.cost < threshold_)
                     queue_.push(place.cost, edge);
                 else
                     postponed_ = true;
@@ -217,53 +225,53 @@ class Collapser {
             }
         }
         const float total = sum.at(place.x, place.y);
-        if (total > params_.max_error) return;
-        result_.error = std::max(result_.error, static_cast<double>(total));
+        if (total > target_.max_error) return;
+        error_ = std::max(error_, static_cast<double>(total));
         apply_merge(rings_, i, j, ring);
         rings_[i].x = place.x;
         rings_[i].y = place.y;
         quadrics_[i] = sum;
         --vertices_;
         faces_ -= ring.faces_removed;
-        ++result_.collapses;
-        for (int k = 0; k < rings_[i].valence; ++k) file(i, rings_[i].neighbor[k], threshold);
-        file_batch(threshold);
+        ++collapses_;
+        for (int k = 0; k < rings_[i].valence; ++k) file(i, rings_[i].neighbor[k]);
+        file_batch();
     }
 
-    // Files edge (i, j) if it costs less than `threshold`; interior ones wait for file_batch().
-    void file(Id i, Id j, float threshold) {
+    // Files edge (i, j) if it costs less than the threshold; interior ones wait for file_batch().
+    void file(Id i, Id j) {
         if (!rings_[i].border() && !rings_[j].border()) {
             batch_edges_[batch_size_] = {i, j};
             batch_.set(batch_size_, quadrics_[i], quadrics_[j]);
-            if (++batch_size_ == EdgeBatch::kWidth) file_batch(threshold);
+            if (++batch_size_ == EdgeBatch::kWidth) file_batch();
             return;
         }
-        file_at(i, j, minimiser(i, j, merged(quadrics_[i], quadrics_[j])).cost, threshold);
+        file_at(i, j, minimiser(i, j, merged(quadrics_[i], quadrics_[j])).cost);
     }
 
-    void file_batch(float threshold) {
+    void file_batch() {
         batch_.evaluate();
         for (int lane = 0; lane < batch_size_; ++lane)
-            file_at(batch_edges_[lane].first, batch_edges_[lane].second, batch_.increment(lane), threshold);
+            file_at(batch_edges_[lane].first, batch_edges_[lane].second, batch_.increment(lane));
         batch_size_ = 0;
     }
 
-    void file_at(Id i, Id j, float cost, float threshold) {
-        if (cost < threshold)
+    void file_at(Id i, Id j, float cost) {
+        if (cost < threshold_)
             queue_.push(std::max(cost, 0.0f), {i, j, rings_[i].version, rings_[j].version});
         else if (cost < kNever)
             postponed_ = true;
     }
 
     // Files the edges of the vertices of a tile, each edge with its end of the lower number.
-    void file_tile(int left, int top, int side, float threshold) {
+    void file_tile(int left, int top, int side) {
         for (int y = top; y < std::min(top + side, height_); ++y)
             for (int x = left; x < std::min(left + side, width_); ++x) {
                 const Id i = static_cast<Id>(y) * static_cast<Id>(width_) + static_cast<Id>(x);
                 for (int k = 0; k < rings_[i].valence; ++k)
-                    if (i < rings_[i].neighbor[k]) file(i, rings_[i].neighbor[k], threshold);
+                    if (i < rings_[i].neighbor[k]) file(i, rings_[i].neighbor[k]);
             }
-        file_batch(threshold);
+        file_batch();
     }
 
     // The median cost of a sample of edges, so that the first window holds about half of them.
@@ -281,7 +289,6 @@ class Collapser {
         return std::max(*middle, std::numeric_limits<float>::min());
     }
 
-    CollapseParams params_;
     int width_, height_;
     RingMesh rings_;
     std::vector<Quadric<C>> quadrics_;
@@ -290,16 +297,30 @@ class Collapser {
     std::array<std::pair<Id, Id>, EdgeBatch::kWidth> batch_edges_;
     int batch_size_ = 0;
     bool postponed_ = false;  // some legal edge costs more than the current threshold
-    std::int64_t vertices_, faces_;
-    CollapseResult result_;
+    float threshold_ = 0;     // of the current window
+    float area2_limit_, shape_limit_;
+    CollapseTarget target_;
+    std::int64_t vertices_, faces_, collapses_ = 0;
+    double error_ = 0;
 };
 
 }  // namespace
 
-CollapseResult collapse_edges(const GridMesh& grid, const CollapseParams& params, const Progress& progress) {
+std::vector<CollapseResult> collapse_edges(const GridMesh& grid, const CollapseParams& params,
+                                           std::span<const CollapseTarget> targets,
+                                           const Progress& progress) {
     Collapser collapser(grid, params);
-    collapser.run(progress);
-    return collapser.finish();
+    std::vector<CollapseResult> levels;
+    for (const CollapseTarget& target : targets) {
+        collapser.run(target, progress);
+        levels.push_back(collapser.snapshot());
+    }
+    return levels;
+}
+
+CollapseResult collapse_edges(const GridMesh& grid, const CollapseParams& params,
+                              const CollapseTarget& target, const Progress& progress) {
+    return std::move(collapse_edges(grid, params, std::span(&target, 1), progress).front());
 }
 
 }  // namespace imgmesh

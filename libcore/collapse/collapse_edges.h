@@ -4,6 +4,8 @@
 
 #include <cstdint>
 #include <limits>
+#include <span>
+#include <vector>
 
 #include "libcore/base/progress.h"
 #include "libcore/mesh/base_mesh.h"
@@ -11,20 +13,28 @@
 
 namespace imgmesh {
 
+/// Where a level of the pyramid ends; whichever limit comes first.
+struct CollapseTarget {
+    std::int64_t vertices = 0;  ///< at this many vertices
+    std::int64_t faces = 0;     ///< or at this many faces
+    /// no collapse above this total quadric error [feature units^2 px^2]
+    double max_error = std::numeric_limits<double>::infinity();
+};
+
 struct CollapseParams {
-    std::int64_t target_vertices = 0;  ///< stop at this many vertices
-    std::int64_t target_faces = 0;     ///< or at this many faces; whichever comes first
-    double max_error =
-        std::numeric_limits<double>::infinity();  ///< no collapse above this total quadric error
-    float geometry_weight = 3.0f;                 ///< lambda, against colour [feature^2 / px^2]; > 0
-    int smoothing = 2;  ///< passes of `smoothed` on the copy that gradients are taken from
+    float geometry_weight = 3.0f;  ///< lambda, against colour [feature^2 / px^2]; > 0
+    int smoothing = 2;             ///< passes of `smoothed` on the copy that gradients are taken from
+    /// no new triangle larger than this [px^2]
+    float max_face_area = std::numeric_limits<float>::infinity();
+    /// nor of a lesser q = 4 sqrt(3) area / sum of squared edges (1 is best); 0 leaves only the guard against
+    /// slivers
+    float min_shape = 0;
 };
 
 struct CollapseResult {
-    BaseMesh
-        mesh;  ///< vertices in the order of the pixels that they descend from; positions on kPositionStep
-    double error = 0;  ///< largest total quadric error of a merged vertex
-    std::int64_t collapses = 0;
+    BaseMesh mesh;               ///< vertices in the order of their pixels; positions on kPositionStep
+    double error = 0;            ///< largest total quadric error of a merged vertex so far
+    std::int64_t collapses = 0;  ///< so far
 };
 
 /// Collapses edges until a limit is reached or no edge may go. Every collapse keeps the mesh a triangulation
@@ -32,8 +42,16 @@ struct CollapseResult {
 /// at their quadric's minimiser wherever that is legal, else at the edge's midpoint or an end, whichever
 /// costs least.
 ///
+/// targets  one a level, each at least as coarse as the one before
+/// return   the mesh at each of the targets, in that order
+///
 /// About 170 bytes a pixel; O(n). Three feature channels. Deterministic.
+std::vector<CollapseResult> collapse_edges(const GridMesh& grid, const CollapseParams& params,
+                                           std::span<const CollapseTarget> targets,
+                                           const Progress& progress = {});
+
+/// The mesh of a single level.
 CollapseResult collapse_edges(const GridMesh& grid, const CollapseParams& params,
-                              const Progress& progress = {});
+                              const CollapseTarget& target, const Progress& progress = {});
 
 }  // namespace imgmesh
