@@ -143,7 +143,7 @@ TEST_CASE("collapse: no vertex costs more than the largest error allowed") {
     }
 }
 
-// Large enough for several tiles each way, which are collapsed side by side, and for what is left after them.
+// Large enough for several tiles each way, worked off one by one, and for the whole picture after them.
 TEST_CASE("collapse: tiles make a sound mesh, the same every time, with any number of threads") {
     for (const Kind kind : {Kind::kNoise, Kind::kCheckerboard, Kind::kDisc}) {
         constexpr Size kLarge{230, 170};
@@ -159,6 +159,22 @@ TEST_CASE("collapse: tiles make a sound mesh, the same every time, with any numb
             }
         }
     }
+}
+
+// A limit reached half way through the tiles would leave some of them fine and others coarse.
+TEST_CASE("collapse: no part of an even picture is favoured") {
+    for (const Kind kind : {Kind::kConstant, Kind::kNoise})
+        for (const std::int64_t target : {9000, 1000, 200}) {
+            INFO(name_of(kind) << " to " << target);
+            const BaseMesh mesh = collapse(sample_feature(kind, 230, 170), to_vertices(target)).mesh;
+            std::int64_t quadrant[4] = {};
+            for (const Vec2f& p : mesh.position)
+                ++quadrant[(p.x() > 114.5f ? 1 : 0) + (p.y() > 84.5f ? 2 : 0)];
+            for (const std::int64_t count : quadrant) {
+                CHECK(count > target / 6);
+                CHECK(count < target / 3);
+            }
+        }
 }
 
 // All planes agree, so every merge keeps the colour on the one plane, wherever it puts the vertex.
