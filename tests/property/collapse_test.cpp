@@ -18,14 +18,13 @@ struct Size {
     int width, height;
 };
 
-CollapseResult collapse(const FeatureImage& feature, const CollapseParams& params) {
-    return collapse_edges(grid_mesh(feature), params);
+CollapseResult collapse(const FeatureImage& feature, const CollapseTarget& target,
+                        const CollapseParams& params = {}) {
+    return collapse_edges(grid_mesh(feature), params, target);
 }
 
-CollapseParams to_vertices(std::int64_t vertices) {
-    CollapseParams params;
-    params.target_vertices = vertices;
-    return params;
+CollapseTarget to_vertices(std::int64_t vertices) {
+    return {.vertices = vertices};
 }
 
 bool has_vertex(const BaseMesh& mesh, float x, float y) {
@@ -93,10 +92,9 @@ TEST_CASE("collapse: the target is met") {
                 CHECK(collapse(feature, to_vertices(target)).mesh.vertex_count() ==
                       static_cast<std::size_t>(target));
             // One collapse takes two faces, or one at the border.
-            CollapseParams params;
             for (const std::int64_t target : {pixels, pixels / 2, std::max<std::int64_t>(8, pixels / 20)}) {
-                params.target_faces = target;
-                const auto faces = static_cast<std::int64_t>(collapse(feature, params).mesh.faces.size());
+                const auto faces =
+                    static_cast<std::int64_t>(collapse(feature, {.faces = target}).mesh.faces.size());
                 CHECK(faces <= target);
                 CHECK(faces >= target - 1);
             }
@@ -111,12 +109,8 @@ TEST_CASE("collapse: where nothing but the guards stops it, two triangles remain
 
 TEST_CASE("collapse: the first of several limits counts") {
     const FeatureImage feature = sample_feature(Kind::kDisc, 16, 16);
-    CollapseParams params = to_vertices(50);
-    params.target_faces = 10;
-    CHECK(collapse(feature, params).mesh.vertex_count() == 50);
-    params = to_vertices(5);
-    params.target_faces = 60;
-    const std::size_t faces = collapse(feature, params).mesh.faces.size();
+    CHECK(collapse(feature, {.vertices = 50, .faces = 10}).mesh.vertex_count() == 50);
+    const std::size_t faces = collapse(feature, {.vertices = 5, .faces = 60}).mesh.faces.size();
     CHECK((faces == 60 || faces == 59));
 }
 
@@ -126,18 +120,14 @@ TEST_CASE("collapse: no vertex costs more than the largest error allowed") {
         const FeatureImage feature = sample_feature(kind, 20, 15);
         std::size_t vertices_before = 20 * 15 + 1;
         for (const double limit : {0.0, 10.0, 1e3, 1e5}) {
-            CollapseParams params;
-            params.max_error = limit;
-            const CollapseResult result = collapse(feature, params);
+            const CollapseResult result = collapse(feature, {.max_error = limit});
             CHECK(result.error <= limit);
             check_sound(result.mesh, {20, 15});
             CHECK(result.mesh.vertex_count() <= vertices_before);
             vertices_before = result.mesh.vertex_count();
         }
         // Every vertex has a distance to the centroids around it, so nothing is free.
-        CollapseParams none;
-        none.max_error = 0;
-        CHECK(collapse(feature, none).collapses == 0);
+        CHECK(collapse(feature, {.max_error = 0}).collapses == 0);
         // And without a limit much is paid.
         CHECK(collapse(feature, to_vertices(20)).error > 10);
     }
@@ -186,9 +176,8 @@ TEST_CASE("collapse: a linear picture keeps its colours at every vertex") {
             const Vec3f c = color(static_cast<float>(x), static_cast<float>(y));
             feature.data.insert(feature.data.end(), c.data(), c.data() + 3);
         }
-    CollapseParams params = to_vertices(30);
-    params.smoothing = 0;  // borders repeated would bend the gradients there
-    const BaseMesh mesh = collapse(feature, params).mesh;
+    // Without smoothing, whose repeated borders would bend the gradients there.
+    const BaseMesh mesh = collapse(feature, to_vertices(30), {.smoothing = 0}).mesh;
     for (Id v = 0; v < mesh.vertex_count(); ++v) {
         const Vec3f expected = color(mesh.position[v].x(), mesh.position[v].y());
         CHECK((Eigen::Map<const Vec3f>(mesh.feature_of(v)) - expected).norm() < 1e-3);
@@ -198,17 +187,18 @@ TEST_CASE("collapse: a linear picture keeps its colours at every vertex") {
 // A large lambda asks for even spacing, so shape improves where the picture has nothing to say for it.
 TEST_CASE("collapse: more geometry weight makes rounder triangles") {
     const FeatureImage feature = sample_feature(Kind::kNoise, 40, 30);
-    CollapseParams flat = to_vertices(120), round = flat;
-    flat.geometry_weight = 0.1f;
-    round.geometry_weight = 1e5f;
-    CHECK(mesh_quality(collapse(feature, round).mesh).mean_radius_ratio >
-          mesh_quality(collapse(feature, flat).mesh).mean_radius_ratio + 0.02);
+    const auto roundness = [&](float geometry_weight) {
+        const CollapseResult result =
+            collapse(feature, to_vertices(120), {.geometry_weight = geometry_weight});
+        return mesh_quality(result.mesh).mean_radius_ratio;
+    };
+    CHECK(roundness(1e5f) > roundness(0.1f) + 0.02);
 }
 
 TEST_CASE("collapse: progress never falls and stays within 0 and 1") {
     double last = 0;
     int calls = 0;
-    collapse_edges(grid_mesh(sample_feature(Kind::kGradient, 300, 260)), to_vertices(500),
+    collapse_edges(grid_mesh(sample_feature(Kind::kGradient, 300, 260)), {}, to_vertices(500),
                    [&](double f, std::string_view) {
                        CHECK(f >= last);
                        CHECK(f <= 1);
@@ -216,4 +206,32 @@ TEST_CASE("collapse: progress never falls and stays within 0 and 1") {
                        ++calls;
                    });
     CHECK(calls > 0);
+}
+
+// The coarser level goes on from the finer one: the finer must not depend on what comes after it.
+TEST_CASE("collapse: levels of one run are what single runs give, each coarser than the one before") {
+    const FeatureImage feature = sample_feature(Kind::kDisc, 40, 30);
+    const CollapseTarget targets[] = {{.vertices = 300}, {.vertices = 120}, {.faces = 60}};
+    const auto levels = collapse_edges(grid_mesh(feature), {}, targets);
+    REQUIRE(levels.size() == 3);
+    CHECK(levels[0].mesh.position == collapse(feature, targets[0]).mesh.position);
+    CHECK(levels[0].mesh.faces == collapse(feature, targets[0]).mesh.faces);
+    CHECK(levels[1].mesh.vertex_count() == 120);
+    CHECK(levels[2].mesh.faces.size() <= 60);
+    CHECK(levels[2].error >= levels[1].error);
+    for (const CollapseResult& level : levels) check_sound(level.mesh, {40, 30});
+}
+
+TEST_CASE("collapse: no face is larger or thinner than the limits allow") {
+    for (const Kind kind : {Kind::kConstant, Kind::kNoise, Kind::kDisc}) {
+        INFO(name_of(kind));
+        const CollapseResult result =
+            collapse(sample_feature(kind, 40, 30), to_vertices(0), {.max_face_area = 9, .min_shape = 0.5f});
+        check_sound(result.mesh, {40, 30});
+        CHECK(result.collapses > 0);
+        CHECK(mesh_quality(result.mesh).min_shape >= 0.4999);
+        for (const auto& [a, b, c] : result.mesh.faces)
+            CHECK(signed_area2(result.mesh.position[a], result.mesh.position[b], result.mesh.position[c]) <=
+                  18);
+    }
 }

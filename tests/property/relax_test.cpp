@@ -25,10 +25,8 @@ struct Scene {
 
 Scene scene(FeatureImage feature, std::int64_t vertices) {
     Scene out;
-    CollapseParams params;
-    params.target_vertices = vertices;
     out.feature = std::move(feature);
-    out.mesh = collapse_edges(grid_mesh(out.feature), params).mesh;
+    out.mesh = collapse_edges(grid_mesh(out.feature), {}, CollapseTarget{.vertices = vertices}).mesh;
     out.fields = face_fields(out.mesh);
     out.neighbors = face_neighbors(out.mesh);
     out.pixels = resting_pixels(trivial_map(out.mesh, out.feature.width, out.feature.height));

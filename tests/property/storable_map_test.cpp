@@ -37,9 +37,8 @@ Scene at_rest(BaseMesh mesh, int width, int height) {
 
 Scene relaxed(Kind kind, int width, int height, std::int64_t vertices, float smoothness) {
     const FeatureImage feature = sample_feature(kind, width, height);
-    CollapseParams params;
-    params.target_vertices = vertices;
-    Scene s = at_rest(collapse_edges(grid_mesh(feature), params).mesh, width, height);
+    Scene s = at_rest(collapse_edges(grid_mesh(feature), {}, CollapseTarget{.vertices = vertices}).mesh,
+                      width, height);
     relax(s.pixels, s.fields, s.neighbors, feature, smoothness, 12);
     return s;
 }

@@ -48,9 +48,7 @@ Eigen::MatrixXd dense_solution(const BaseMesh& mesh, const FeatureImage& feature
 }
 
 BaseMesh collapsed(const FeatureImage& feature, std::int64_t vertices) {
-    CollapseParams params;
-    params.target_vertices = vertices;
-    return collapse_edges(grid_mesh(feature), params).mesh;
+    return collapse_edges(grid_mesh(feature), {}, CollapseTarget{.vertices = vertices}).mesh;
 }
 
 double objective(const BaseMesh& mesh, const FeatureImage& feature, const std::vector<FitTerm>& terms) {
