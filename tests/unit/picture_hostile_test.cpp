@@ -235,12 +235,12 @@ TEST_CASE("hostile: EXR attributes longer than the file, openly and hidden") {
     const TempFolder folder;
     const std::string_view version = {"\x76\x2f\x31\x01\x02\0\0\0", 8};
     const std::string_view string = {"owner\0string\0\xFF\xFF\xFF\x7F", 17};
-    // A "float" of 21 bytes, of which OpenEXR would read 4.
+    // A "float" of 21 bytes, after which the header ends; OpenEXR would read 4 and go on with the string.
     const std::string_view shell = {"x\0float\0\x15\0\0\0\0\0\0\0", 16};
     for (const std::string_view before : {std::string_view(), shell}) {
         Bytes bytes(300, 'x');
         std::size_t at = 0;
-        for (const std::string_view part : {version, before, string}) {
+        for (const std::string_view part : {version, before, string, std::string_view("\0", 1)}) {
             std::copy(part.begin(), part.end(), bytes.begin() + static_cast<std::ptrdiff_t>(at));
             at += part.size();
         }
