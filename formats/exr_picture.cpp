@@ -1,5 +1,4 @@
-// EXR pictures through OpenEXR itself: OpenImageIO's reader can abort on a corrupt file. Source of the header
-// walk: "OpenEXR File Layout", sections "Version field" and "Header".
+// EXR pictures through OpenEXR itself: OpenImageIO's reader can abort on a corrupt file.
 #include <OpenEXR/ImfChannelList.h>
 #include <OpenEXR/ImfChromaticities.h>
 #include <OpenEXR/ImfFrameBuffer.h>
@@ -17,6 +16,7 @@
 #include <new>
 #include <string_view>
 
+#include "formats/exr_opaque.h"
 #include "formats/picture_decoders.h"
 #include "libcore/base/error.h"
 
@@ -24,42 +24,6 @@ namespace imgmesh {
 namespace {
 
 using Bytes = std::span<const std::uint8_t>;
-
-// OpenEXR takes memory for an attribute's value before it sees that the file is shorter.
-void check_header(const std::string& path, Bytes b) {
-    constexpr std::uint32_t kMultiPart = 0x1000, kDeep = 0x800;
-    std::size_t at = 4;
-    const auto need = [&](std::size_t count) {
-        if (count > b.size() - at)
-            throw Error(ErrorCode::kBadFile, cat(path, ": the EXR ends in its header"));
-    };
-    const auto number = [&] {
-        need(4);
-        at += 4;
-        return b[at - 4] | std::uint32_t{b[at - 3]} << 8 | std::uint32_t{b[at - 2]} << 16 |
-               std::uint32_t{b[at - 1]} << 24;
-    };
-    const auto skip_name = [&] {
-        while (need(1), b[at] != 0) ++at;
-        ++at;
-    };
-    const std::uint32_t version = number();
-    if ((version & 0xFF) != 2)
-        throw Error(ErrorCode::kBadFile, cat(path, ": EXR version ", version & 0xFF, ", expected 2"));
-    if (version & kDeep)
-        throw Error(ErrorCode::kUnsupported, cat(path, ": deep EXR pictures are not supported"));
-    // An empty name ends a header, an empty header those of a file with many parts.
-    do {
-        while (need(1), b[at] != 0) {
-            skip_name();  // name
-            skip_name();  // type
-            const std::uint32_t size = number();
-            need(size);
-            at += size;
-        }
-        ++at;
-    } while ((version & kMultiPart) && (need(1), b[at] != 0));
-}
 
 class MemoryInput : public Imf::IStream {
   public:
@@ -159,9 +123,9 @@ void check_part(const std::string& path, const Imf::Header& header, const ImageL
 
 }  // namespace
 
-DecodedPicture decode_exr(const std::string& path, Bytes bytes, const ImageLimits& limits,
+DecodedPicture decode_exr(const std::string& path, std::span<std::uint8_t> bytes, const ImageLimits& limits,
                           bool any_primaries) {
-    check_header(path, bytes);
+    make_attributes_opaque(path, bytes);
     try {
         MemoryInput stream(path, bytes);
         Imf::MultiPartInputFile file(stream, /*numThreads=*/0, /*reconstructChunkOffsetTable=*/false);

@@ -73,7 +73,7 @@ void check_finite(const std::string& path, const Image& image) {
 }
 
 DecodedPicture decode(const std::string& path, bool any_primaries, const ImageLimits& limits) {
-    const std::vector<std::uint8_t> bytes = read_file(path, kMaxFileBytes);
+    std::vector<std::uint8_t> bytes = read_file(path, kMaxFileBytes);
     const PictureClaim claim = probe_picture(path, bytes);
     switch (claim.format) {
         case PictureFormat::kExr:

@@ -87,8 +87,8 @@ std::vector<std::string> channel_names(const OIIO::ImageSpec& spec) {
     std::vector<std::string> names = spec.channelnames;
     names.resize(static_cast<std::size_t>(spec.nchannels));
     const int alpha = alpha_channel(spec);
-    if (alpha >= 0) names[static_cast<std::size_t>(alpha)] = "A";
-    if (spec.nchannels < 3 && alpha != 0) names[0] = "Y";
+    if (alpha >= 0) names[static_cast<std::size_t>(alpha)] = std::string("A");
+    if (spec.nchannels < 3 && alpha != 0) names[0] = std::string("Y");
     return names;
 }
 

@@ -26,9 +26,10 @@ DecodedPicture decode_with_oiio(const std::string& path, std::span<const std::ui
                                 const PictureClaim& claim, const ImageLimits& limits);
 DecodedPicture decode_webp(const std::string& path, std::span<const std::uint8_t> bytes,
                            const ImageLimits& limits);
-/// `any_primaries`: the caller knows the colour space, so chromaticities other than Rec.709's are no error.
-DecodedPicture decode_exr(const std::string& path, std::span<const std::uint8_t> bytes,
-                          const ImageLimits& limits, bool any_primaries);
+/// `bytes` is changed (see exr_opaque.h). `any_primaries`: the caller knows the colour space, so
+/// chromaticities other than Rec.709's are no error.
+DecodedPicture decode_exr(const std::string& path, std::span<std::uint8_t> bytes, const ImageLimits& limits,
+                          bool any_primaries);
 
 /// The bytes of an EXR or a WebP file. The picture is as it is to be stored: `image` linear with associated
 /// alpha for EXR and `type` kHalf or kFloat; sRGB, 8 bit and lossless, at most 16383

@@ -229,15 +229,26 @@ TEST_CASE("hostile: limits are the caller's") {
     }
 }
 
-// An attribute as long as 2 GB in a short file: OpenEXR would take the memory first.
-TEST_CASE("hostile: an EXR attribute longer than the file") {
+// OpenEXR would take the memory first: for an attribute of 2 GB in a short file, and for one that hides
+// behind another whose size is not its type's.
+TEST_CASE("hostile: EXR attributes longer than the file, openly and hidden") {
     const TempFolder folder;
-    Bytes bytes = bytes_of({"\x76\x2f\x31\x01\x02\0\0\0owner\0string\0\xFF\xFF\xFF\x7F", 25});
-    bytes.resize(300, 'x');
-    save(folder / "l.exr", bytes);
-    const long before = peak_kilobytes();
-    CHECK(error_of([&] { read_image(folder / "l.exr"); }) == ErrorCode::kBadFile);
-    CHECK(peak_kilobytes() - before < 30000);
+    const std::string_view version = {"\x76\x2f\x31\x01\x02\0\0\0", 8};
+    const std::string_view string = {"owner\0string\0\xFF\xFF\xFF\x7F", 17};
+    // A "float" of 21 bytes, after which the header ends; OpenEXR would read 4 and go on with the string.
+    const std::string_view shell = {"x\0float\0\x15\0\0\0\0\0\0\0", 16};
+    for (const std::string_view before : {std::string_view(), shell}) {
+        Bytes bytes(300, 'x');
+        std::size_t at = 0;
+        for (const std::string_view part : {version, before, string, std::string_view("\0", 1)}) {
+            std::copy(part.begin(), part.end(), bytes.begin() + static_cast<std::ptrdiff_t>(at));
+            at += part.size();
+        }
+        save(folder / "l.exr", bytes);
+        const long peak = peak_kilobytes();
+        CHECK(error_of([&] { read_image(folder / "l.exr"); }) == ErrorCode::kBadFile);
+        CHECK(peak_kilobytes() - peak < 30000);
+    }
 }
 
 TEST_CASE("hostile: paths that lead to no picture") {

@@ -3,6 +3,7 @@
 #include <OpenEXR/ImfFrameBuffer.h>
 #include <OpenEXR/ImfHeader.h>
 #include <OpenEXR/ImfOutputFile.h>
+#include <OpenEXR/ImfPreviewImage.h>
 #include <OpenEXR/ImfStandardAttributes.h>
 #include <OpenEXR/ImfTiledOutputFile.h>
 #include <doctest/doctest.h>
@@ -319,6 +320,27 @@ TEST_CASE("read: an EXR's channels come colour first, then by name") {
     CHECK(read.channel_names == Names{"R", "G", "B", "A", "Z", "normal.X"});
     CHECK(read.pixel(1, 1)[4] == 411);  // Z is no colour: not divided by alpha
     CHECK(read.pixel(1, 1)[0] == doctest::Approx(311.0 / 11));
+}
+
+// Attributes of other software are no hindrance, whatever their type.
+TEST_CASE("read: an EXR with a preview and unusual attributes") {
+    const TempFolder folder;
+    Imf::Header header(2, 2);
+    header.channels().insert("Y", Imf::Channel(Imf::FLOAT));
+    const std::vector<Imf::PreviewRgba> preview(12, Imf::PreviewRgba(1, 2, 3));
+    header.setPreviewImage(Imf::PreviewImage(4, 3, preview.data()));
+    Imf::addKeyCode(header, Imf::KeyCode(1, 2, 3));
+    Imf::addMultiView(header, {"left", "right"});
+    Imf::addOwner(header, "someone");
+    const std::vector<float> samples = {1, 2, 3, 4};
+    Imf::FrameBuffer buffer;
+    buffer.insert("Y", Imf::Slice::Make(Imf::FLOAT, samples.data(), {0, 0}, 2, 2));
+    {
+        Imf::OutputFile file((folder / "p.exr").c_str(), header);
+        file.setFrameBuffer(buffer);
+        file.writePixels(2);
+    }
+    CHECK(read_image(folder / "p.exr").data == samples);
 }
 
 TEST_CASE("read: what an EXR can hold and a picture cannot") {
