@@ -1,12 +1,18 @@
 # Warnings and sanitizers as one interface target that every target of ours links privately.
 add_library(imgmesh_compiler INTERFACE)
 target_compile_options(imgmesh_compiler INTERFACE -Wall -Wextra -Wshadow -Wconversion)
+if(CMAKE_CXX_COMPILER_ID STREQUAL GNU AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
+  # False alarms of g++ 12 in std::string's operator+ (GCC bug 105651).
+  target_compile_options(imgmesh_compiler INTERFACE -Wno-restrict)
+endif()
 if(CMAKE_CXX_COMPILER_ID MATCHES Clang)
   # Eigen's and the standard library's sizes are signed and unsigned; g++ does not ask for this either.
   target_compile_options(imgmesh_compiler INTERFACE -Wno-sign-conversion)
 endif()
 # Results are the same bytes on any machine of one architecture: no contraction of a*b+c that depends on flags.
 target_compile_options(imgmesh_compiler INTERFACE -ffp-contract=off)
+# The note on passing 32-byte vectors does not concern functions that are always inlined (libcore/base/simd.h).
+target_compile_options(imgmesh_compiler INTERFACE -Wno-psabi)
 # Nobody reads errno or floating-point flags; without them loops with a choice in them become vector code. No result changes.
 target_compile_options(imgmesh_compiler INTERFACE -fno-trapping-math -fno-math-errno)
 if(IMGMESH_WERROR)

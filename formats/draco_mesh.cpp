@@ -40,7 +40,7 @@ void quantize_positions(draco::ExpertEncoder& encoder, int attribute, const Stor
             high[i] = std::max(high[i], p[i]);
         }
     const float extent = std::max(high[0] - low[0], high[1] - low[1]);
-    const int bits = std::bit_width(static_cast<std::uint32_t>(extent / kPositionStep));
+    const auto bits = static_cast<int>(std::bit_width(static_cast<std::uint32_t>(extent / kPositionStep)));
     const float range = static_cast<float>((1 << bits) - 1) * kPositionStep;
     encoder.SetAttributeExplicitQuantization(attribute, bits, 3, low.data(), range);
 }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <string_view>
+#include <utility>
 
 #include "formats/finding_codes.h"
 #include "libcore/base/error.h"
@@ -13,10 +14,16 @@ namespace {
 constexpr std::uint32_t kMagic = 20000630;
 constexpr std::uint32_t kFlagTiled = 0x200, kFlagLongNames = 0x400, kFlagMultiPart = 0x1000;
 constexpr std::size_t kMaxName = 255;
-// The longest of ours, the channel list, has about 80 bytes; other software adds comments and matrices.
 constexpr std::uint32_t kMaxAttributeBytes = 65536;
-// Long since enough for other software's attributes, and the walk stays short.
 constexpr int kMaxAttributes = 1000;
+
+// OpenEXR reads attributes of these types with their natural size whatever size the header says, so another
+// size would set it off from this walk.
+constexpr std::pair<std::string_view, std::uint32_t> kFixedSizes[] = {
+    {"box2f", 16},   {"box2i", 16},   {"chromaticities", 32}, {"compression", 1}, {"double", 8},
+    {"float", 4},    {"int", 4},      {"lineOrder", 1},       {"m33f", 36},       {"m44f", 64},
+    {"rational", 8}, {"tiledesc", 9}, {"timecode", 8},        {"v2f", 8},         {"v2i", 8},
+    {"v3f", 12},     {"v3i", 12}};
 
 class Walker {
   public:
@@ -41,24 +48,42 @@ class Walker {
         rest_ = rest_.subspan(count);
         return taken;
     }
-    // At the zero byte that ends a header.
+    // At the zero byte that ends a header or a list of channels.
     bool at_end() const { return !rest_.empty() && rest_[0] == 0; }
+    std::size_t left() const { return rest_.size(); }
 
   private:
     std::span<const std::uint8_t> rest_;
 };
+
+// A channel list ends with an empty name; OpenEXR goes by that and not by the size either.
+bool is_channel_list(std::span<const std::uint8_t> value) {
+    constexpr std::size_t kChannelBytes = 16;  // type, linearity, sampling
+    Walker in(value);
+    while (!in.at_end()) {
+        in.name();
+        in.take(kChannelBytes);
+    }
+    return in.left() == 1;
+}
+
+void check_attribute(std::string_view type, std::span<const std::uint8_t> value) {
+    if (type == "string") return;
+    if (type == "chlist" && is_channel_list(value)) return;
+    for (const auto& [known, size] : kFixedSizes)
+        if (type == known && value.size() == size) return;
+    refuse("layers.header", cat("the EXR has an attribute of type ", type, " with ", value.size(), " bytes"));
+}
 
 void check_part(Walker& in) {
     for (int i = 0; !in.at_end(); ++i) {
         if (i == kMaxAttributes) refuse("layers.header", cat("more than ", kMaxAttributes, " attributes"));
         in.name();
         const std::string_view type = in.name();
-        if (type == "preview" || type == "idmanifest" || type == "deepImageState")
-            refuse("layers.header", cat("the EXR has an attribute of type ", type));
         const std::uint32_t size = in.number();
         if (size > kMaxAttributeBytes)
             refuse("layers.header", cat("an attribute of ", size, " bytes, at most ", kMaxAttributeBytes));
-        in.take(size);
+        check_attribute(type, in.take(size));
     }
     in.take(1);
 }

@@ -7,8 +7,9 @@
 namespace imgmesh {
 
 /// Walks the headers and refuses what would make OpenEXR take memory or run code that a container never
-/// needs: attributes that are longer than 64 kB or than the file, types with decoders of their own (preview,
-/// id manifest, deep image state), deep data, more than `max_parts` parts. Throws FindingError.
+/// needs: attributes longer than 64 kB or than the file, or of other types than strings, the channel list and
+/// a few of fixed size (a preview, an id manifest or a string vector has sizes of its own inside), deep data,
+/// more than `max_parts` parts. Throws FindingError.
 void check_exr_header(std::span<const std::uint8_t> bytes, int max_parts);
 
 }  // namespace imgmesh

@@ -135,7 +135,8 @@ json root_extension(const Asset& asset, int layers_view) {
         const auto* number = std::get_if<double>(&value);
         if (name == kGenerator || (number && !std::isfinite(*number)))
             throw Error(ErrorCode::kInternal, cat("cannot store the build parameter ", name));
-        std::visit([&](const auto& v) { build[name] = v; }, value);
+        json& member = build[name];
+        std::visit([&](const auto& v) { member = v; }, value);
     }
     build[kGenerator] = asset.generator;
     json layers = {{"mimeType", kLayersMimeType}};

@@ -32,6 +32,10 @@ void check(const BuildParams& p) {
             cat("geometry weight is ", p.geometry_weight, ", expected a finite number above 0"));
     require(positive(p.color_weight),
             cat("color weight is ", p.color_weight, ", expected a finite number above 0"));
+    // Quadrics are single precision: products of two sums over all pixels must neither overflow nor vanish.
+    const double lambda = p.geometry_weight / p.color_weight;
+    require(lambda >= 1e-9 && lambda <= 1e9,
+            cat("geometry weight / color weight is ", lambda, ", expected 1e-9 to 1e9"));
     require(std::isfinite(p.projection_color_weight) && p.projection_color_weight >= 0,
             cat("projection color weight is ", p.projection_color_weight,
                 ", expected a finite number, 0 or more"));

@@ -157,10 +157,13 @@ Vec3f linear_from_luv(const Vec3f& luv) {
 Vec3f in_gamut(const Vec3f& luv) {
     // Less than half a 16-bit code beyond counts as inside, so that a result is never projected again.
     constexpr float kSlack = 4e-6f;
-    const auto inside = [](const Vec3f& linear) {
-        return linear.minCoeff() >= -kSlack && linear.maxCoeff() <= 1 + kSlack;
+    const auto inside = [](const Vec3f& color) {
+        const Vec3f linear = linear_from_luv(color);
+        // Without lightness there is no chroma: linear_from_luv makes (0, u, v) the black that it is not.
+        return linear.minCoeff() >= -kSlack && linear.maxCoeff() <= 1 + kSlack &&
+               (color[0] > 0 || (color[1] == 0 && color[2] == 0));
     };
-    if (inside(linear_from_luv(luv))) return luv;
+    if (inside(luv)) return luv;
     // Towards a grey of the same lightness the gamut is always reached; bisect for where.
     const Vec3f grey(std::clamp(luv[0], 0.0f, 100.0f), 0, 0);
     Vec3f best = luv_from_linear(linear_from_luv(luv).cwiseMax(0.0f).cwiseMin(1.0f));
@@ -171,7 +174,7 @@ Vec3f in_gamut(const Vec3f& luv) {
         float low = 0, high = 1;
         for (int step = 0; step < 12; ++step) {
             const float middle = 0.5f * (low + high);
-            (inside(linear_from_luv(center + middle * (rim - center))) ? low : high) = middle;
+            (inside(center + middle * (rim - center)) ? low : high) = middle;
         }
         const Vec3f candidate = center + low * (rim - center);
         if ((candidate - luv).squaredNorm() < (best - luv).squaredNorm()) best = candidate;

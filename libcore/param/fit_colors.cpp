@@ -9,8 +9,16 @@ namespace imgmesh {
 namespace {
 
 // Source: projected block Gauss-Seidel. The features of one vertex share one weight, so its best colour is
-// the nearest one in gamut to its unconstrained best.
+// the one in gamut that is nearest to its unconstrained best. in_gamut() finds one close by, not the nearest:
+// where that is farther away than the colour at hand, the colour stays, and the error never rises.
 constexpr int C = 3;
+
+Vec3f color_of(const BaseMesh& mesh, Id v) {
+    return Vec3f(mesh.feature_of(v));
+}
+void set_color(BaseMesh& mesh, Id v, const Vec3f& color) {
+    std::copy(color.data(), color.data() + C, mesh.feature_of(v));
+}
 
 // What the pixels of one face say about its three corners: sums of w w' and of w feature'.
 struct FaceSums {
@@ -67,9 +75,10 @@ void fit_colors(BaseMesh& mesh, const FeatureImage& feature, const std::vector<F
     // The normal equations are those of a mass matrix: each pass shrinks an error to a third or less. More
     // than 6 passes change the RMS in the fourth digit.
     constexpr int kPasses = 6;
+    for (Id v = 0; v < mesh.vertex_count(); ++v) set_color(mesh, v, in_gamut(color_of(mesh, v)));
     for (int pass = 0; pass < kPasses; ++pass) {
         for (Id v = 0; v < mesh.vertex_count(); ++v) {
-            const Eigen::Map<const Vec3f> color(mesh.feature_of(v));
+            const Vec3f color = color_of(mesh, v);
             double diagonal = kPull;
             Vec3d rhs = kPull * color.cast<double>();
             for (std::size_t k = corners.first[v]; k < corners.first[v + 1]; ++k) {
@@ -79,10 +88,10 @@ void fit_colors(BaseMesh& mesh, const FeatureImage& feature, const std::vector<F
                 diagonal += sum.gram[a][a];
                 rhs += Vec3d(sum.rhs[a]);
                 for (const std::size_t b : {(a + 1) % 3, (a + 2) % 3})
-                    rhs -= sum.gram[a][b] * Eigen::Map<const Vec3f>(mesh.feature_of(face[b])).cast<double>();
+                    rhs -= sum.gram[a][b] * color_of(mesh, face[b]).cast<double>();
             }
-            const Vec3f next = in_gamut((rhs / diagonal).cast<float>());
-            std::copy(next.data(), next.data() + C, mesh.feature_of(v));
+            const Vec3f best = (rhs / diagonal).cast<float>(), next = in_gamut(best);
+            if ((next - best).squaredNorm() < (color - best).squaredNorm()) set_color(mesh, v, next);
         }
     }
 }

@@ -1,11 +1,16 @@
 // Source: docs/decisions/0002-relaxed-map.md. The paper tracks pixels through every collapse instead
 // (sec. 3.3).
+//
+// A pixel's step is written twice: move_pixel() says what happens, move_eight() does the same for eight
+// pixels side by side, bit for bit (a test compares them).
 #include "libcore/param/relax.h"
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "libcore/base/parallel.h"
+#include "libcore/base/simd.h"
 
 namespace imgmesh {
 namespace {
@@ -13,55 +18,196 @@ namespace {
 constexpr float kLongestStep = 0.5f;
 constexpr int kHalvings = 2;
 
-// Twice the area of the triangle p, q, r, positive in the orientation of (0,0), (1,0), (0,1).
-float area2(const Vec2f& p, const Vec2f& q, const Vec2f& r) {
-    return (q.x() - p.x()) * (r.y() - p.y()) - (q.y() - p.y()) * (r.x() - p.x());
-}
-
-// The images of the eight pixels around one, in cyclic order from the east over the south.
-struct Neighborhood {
-    Vec2f around[8];
-    bool inside[8];
-
-    // Each quad of the grid around p keeps its three triangles at p fat enough.
-    bool allows(const Vec2f& p) const {
-        for (int k = 0; k < 8; k += 2) {
-            const int m = (k + 2) % 8;
-            if (!inside[k] || !inside[m]) continue;
-            const Vec2f &a = around[k], &corner = around[k + 1], &b = around[m];
-            if (area2(p, a, b) < kLeastMovingArea || area2(p, a, corner) < kLeastMovingArea ||
-                area2(p, corner, b) < kLeastMovingArea)
-                return false;
-        }
-        return true;
-    }
-};
+// The eight pixels around one, from the east over the south. Straight neighbours are the even ones.
 constexpr int kStepX[8] = {1, 1, 0, -1, -1, -1, 0, 1};
 constexpr int kStepY[8] = {0, 1, 1, 1, 0, -1, -1, -1};
 
-Vec2f gauss_newton_step(const FaceField& field, const Vec2f& p, const float* color, const Vec2f& target,
-                        float mu) {
-    float jxx = mu, jxy = 0, jyy = mu;
-    float bx = mu * (target.x() - p.x()), by = mu * (target.y() - p.y());
-    const float dx = p.x() - field.ax, dy = p.y() - field.ay;
+// The formulas below take one pixel (T = float) or eight (T = Float8).
+
+// Twice the area of the triangle p, a, b, positive in the grid's own orientation.
+template <typename T>
+IMGMESH_INLINE T area2(T px, T py, T ax, T ay, T bx, T by) {
+    return (ax - px) * (by - py) - (ay - py) * (bx - px);
+}
+
+// The lesser one; `a` where b is not a number.
+template <typename T>
+IMGMESH_INLINE T lesser(T a, T b) {
+    return b < a ? b : a;
+}
+// `low` where x is not a number.
+template <typename T>
+IMGMESH_INLINE T clamped(T x, float low, float high) {
+    const T floor = T{} + low, ceiling = T{} + high;
+    x = x > floor ? x : floor;
+    return x < ceiling ? x : ceiling;
+}
+
+// The Gauss-Newton step (sx, sy) at (px, py) towards the face's colour there being the pixel's, and towards
+// (tx, ty). `field` holds the values of a FaceField.
+template <typename T>
+IMGMESH_INLINE void newton_step(const T* field, const T* color, T px, T py, T tx, T ty, float mu, T& sx,
+                                T& sy) {
+    T gxx = {}, gxy = {}, gyy = {}, bx = mu * (tx - px), by = mu * (ty - py);
+    const T dx = px - field[0], dy = py - field[1];
     for (int c = 0; c < 3; ++c) {
-        const float gx = field.fx[c], gy = field.fy[c];
-        const float e = field.f[c] + gx * dx + gy * dy - color[c];
-        jxx += gx * gx;
-        jxy += gx * gy;
-        jyy += gy * gy;
+        const T gx = field[9 + c], gy = field[12 + c];
+        const T e = field[6 + c] + gx * dx + gy * dy - color[c];
+        gxx += gx * gx;
+        gxy += gx * gy;
+        gyy += gy * gy;
         bx -= gx * e;
         by -= gy * e;
     }
-    const float det = jxx * jyy - jxy * jxy;  // >= mu^2
-    return {(jyy * bx - jxy * by) / det, (jxx * by - jxy * bx) / det};
+    // Sums of what is never negative. (Of J'J + mu I as one matrix, J'J steep and singular, only rounding
+    // would be left.)
+    T minor = gxx * gyy - gxy * gxy;
+    minor = minor > T{} ? minor : T{};
+    const T inverse = 1 / (mu * (mu + gxx + gyy) + minor);
+    sx = clamped(((gyy + mu) * bx - gxy * by) * inverse, -kLongestStep, kLongestStep);
+    sy = clamped(((gxx + mu) * by - gxy * bx) * inverse, -kLongestStep, kLongestStep);
 }
+
+// The least of the twelve triangles at (x, y) whose other corners are among the eight neighbours.
+template <typename T>
+IMGMESH_INLINE T least_area(T x, T y, const T* nx, const T* ny) {
+    T least = T{} + std::numeric_limits<float>::max();
+    for (int k = 0; k < 8; ++k)
+        least = lesser(least, area2(x, y, nx[k], ny[k], nx[(k + 1) % 8], ny[(k + 1) % 8]));
+    for (int k = 0; k < 8; k += 2)
+        least = lesser(least, area2(x, y, nx[k], ny[k], nx[(k + 2) % 8], ny[(k + 2) % 8]));
+    return least;
+}
+
+struct Sweep {
+    MovingPixels& pixels;
+    const std::vector<FaceField>& fields;
+    const std::vector<Face>& neighbors;
+    const FeatureImage& feature;
+    float mu;
+
+    void move_pixel(int x, int y) const {
+        const int w = pixels.width, h = pixels.height;
+        const std::size_t index = pixels.index(x, y);
+        // Pixels that do not exist are not-a-number, which is never the lesser.
+        float nx[8], ny[8], mean_x = 0, mean_y = 0, count = 0;
+        for (int k = 0; k < 8; ++k) {
+            const int i = x + kStepX[k], j = y + kStepY[k];
+            const bool inside = i >= 0 && i < w && j >= 0 && j < h;
+            const float dx = inside ? pixels.dx[pixels.index(i, j)] : std::numeric_limits<float>::quiet_NaN();
+            const float dy = inside ? pixels.dy[pixels.index(i, j)] : std::numeric_limits<float>::quiet_NaN();
+            nx[k] = static_cast<float>(i) + dx;
+            ny[k] = static_cast<float>(j) + dy;
+            if (k % 2 != 0 || !inside) continue;
+            mean_x += dx;
+            mean_y += dy;
+            ++count;
+        }
+        const float rest_x = static_cast<float>(x), rest_y = static_cast<float>(y);
+        const float px = rest_x + pixels.dx[index], py = rest_y + pixels.dy[index];
+        float sx, sy;
+        newton_step(&fields[pixels.face[index]].ax, feature.pixel(index), px, py, rest_x + mean_x / count,
+                    rest_y + mean_y / count, mu, sx, sy);
+        if (x == 0 || x == w - 1) sx = 0;
+        if (y == 0 || y == h - 1) sy = 0;
+        for (int half = 0; half <= kHalvings; ++half, sx *= 0.5f, sy *= 0.5f) {
+            const float qx = clamped(px + sx, 0, static_cast<float>(w - 1));
+            const float qy = clamped(py + sy, 0, static_cast<float>(h - 1));
+            if (!(least_area(qx, qy, nx, ny) >= kLeastMovingArea)) continue;
+            place(index, qx - rest_x, qy - rest_y);
+            pixels.face[index] = walk_to({qx, qy}, pixels.face[index], fields, neighbors);
+            return;
+        }
+    }
+
+    void place(std::size_t index, float dx, float dy) const {
+        pixels.dx[index] = dx;
+        pixels.dy[index] = dy;
+    }
+
+    // move_pixel() for (x, y), (x + 2, y), ... (x + 14, y), none of them on a side.
+    IMGMESH_INLINE void move_eight(int x, int y) const {
+        const std::size_t index = pixels.index(x, y);
+        Float8 field[2][8];
+        float colors[3][8];
+        for (std::size_t l = 0; l < 8; ++l) {
+            const float* f = &fields[pixels.face[index + 2 * l]].ax;
+            field[0][l] = load8(f);
+            field[1][l] = load8(f + 8);
+            for (int c = 0; c < 3; ++c) colors[c][l] = feature.pixel(index + 2 * l)[c];
+        }
+        const Float8 color[3] = {load8(colors[0]), load8(colors[1]), load8(colors[2])};
+        transpose8(field[0]);
+        transpose8(field[1]);
+        const Float8 rest_x = static_cast<float>(x) + Float8{0, 2, 4, 6, 8, 10, 12, 14};
+        const float rest_y = static_cast<float>(y);
+        Float8 nx[8], ny[8], mean_x = {}, mean_y = {};
+        for (int k = 0; k < 8; ++k) {
+            const std::size_t n = pixels.index(x + kStepX[k], y + kStepY[k]);
+            const Float8 dx = load8_every_other(&pixels.dx[n]), dy = load8_every_other(&pixels.dy[n]);
+            nx[k] = rest_x + static_cast<float>(kStepX[k]) + dx;
+            ny[k] = static_cast<float>(y + kStepY[k]) + dy;
+            if (k % 2 != 0) continue;
+            mean_x += dx;
+            mean_y += dy;
+        }
+        const Float8 px = rest_x + load8_every_other(&pixels.dx[index]);
+        const Float8 py = rest_y + load8_every_other(&pixels.dy[index]);
+        Float8 sx, sy;
+        newton_step(field[0], color, px, py, rest_x + mean_x / 4, rest_y + mean_y / 4, mu, sx, sy);
+        const float right = static_cast<float>(pixels.width - 1),
+                    bottom = static_cast<float>(pixels.height - 1);
+        Float8 to_x = px, to_y = py;
+        Int8 moved = {};
+        for (int half = 0; half <= kHalvings; ++half, sx *= 0.5f, sy *= 0.5f) {
+            const Float8 qx = clamped(px + sx, 0, right), qy = clamped(py + sy, 0, bottom);
+            const Int8 take = (least_area(qx, qy, nx, ny) >= kLeastMovingArea) & ~moved;
+            to_x = take ? qx : to_x;
+            to_y = take ? qy : to_y;
+            moved |= take;
+            int all = -1;
+            for (int l = 0; l < 8; ++l) all &= moved[l];
+            if (all) break;
+        }
+        const Float8 ex = to_x - field[0][0], ey = to_y - field[0][1];
+        const Float8 u = field[0][2] * ex + field[0][3] * ey, v = field[0][4] * ex + field[0][5] * ey;
+        const Float8 least_weight = lesser(lesser(u, v), 1 - u - v);
+        const Float8 dx = to_x - rest_x, dy = to_y - rest_y;
+        for (int l = 0; l < 8; ++l) {
+            if (!moved[l]) continue;
+            const std::size_t i = index + 2 * static_cast<std::size_t>(l);
+            place(i, dx[l], dy[l]);
+            if (least_weight[l] < 0)
+                pixels.face[i] = walk_to({to_x[l], to_y[l]}, pixels.face[i], fields, neighbors);
+        }
+    }
+
+    IMGMESH_INLINE void move_row(int y, int parity) const {
+        const int w = pixels.width;
+        int x = parity;
+        if (y > 0 && y < pixels.height - 1) {
+            if (x == 0) {
+                move_pixel(0, y);
+                x = 2;
+            }
+            for (; x + 16 < w; x += 16) move_eight(x, y);  // which reads up to x + 16
+        }
+        for (; x < w; x += 2) move_pixel(x, y);
+    }
+    void move_row_portably(int y, int parity) const { move_row(y, parity); }
+#if defined(__x86_64__)
+    __attribute__((target("avx2"))) void move_row_avx2(int y, int parity) const {
+        move_row(y, parity);
+    }
+#endif
+};
 
 }  // namespace
 
 MovingPixels resting_pixels(const PixelMap& trivial) {
-    MovingPixels pixels{trivial.width, trivial.height, {}, {}};
-    pixels.displacement.assign(trivial.coords.size(), Vec2f::Zero());
+    MovingPixels pixels{trivial.width, trivial.height, {}, {}, {}};
+    pixels.dx.assign(trivial.coords.size(), 0.0f);
+    pixels.dy.assign(trivial.coords.size(), 0.0f);
     pixels.face.reserve(trivial.coords.size());
     for (const PixelCoord& coord : trivial.coords) pixels.face.push_back(coord.face);
     return pixels;
@@ -69,50 +215,17 @@ MovingPixels resting_pixels(const PixelMap& trivial) {
 
 void relax(MovingPixels& pixels, const std::vector<FaceField>& fields, const std::vector<Face>& neighbors,
            const FeatureImage& feature, float smoothness, int sweeps) {
-    const int w = pixels.width, h = pixels.height;
-
-    const auto move_pixel = [&](int x, int y) {
-        const std::size_t index = pixels.index(x, y);
-        Neighborhood near;
-        Vec2f mean = Vec2f::Zero();
-        float count = 0;
-        for (int k = 0; k < 8; ++k) {
-            const int nx = x + kStepX[k], ny = y + kStepY[k];
-            near.inside[k] = nx >= 0 && nx < w && ny >= 0 && ny < h;
-            if (!near.inside[k]) continue;
-            const Vec2f& d = pixels.displacement[pixels.index(nx, ny)];
-            near.around[k] = Vec2f(static_cast<float>(nx), static_cast<float>(ny)) + d;
-            if (k % 2 == 0) {
-                mean += d;
-                ++count;
-            }
-        }
-        const Vec2f rest(static_cast<float>(x), static_cast<float>(y));
-        const Vec2f p = rest + pixels.displacement[index];
-        Vec2f step = gauss_newton_step(fields[pixels.face[index]], p, feature.pixel(index),
-                                       rest + mean / count, smoothness);
-        if (x == 0 || x == w - 1) step.x() = 0;
-        if (y == 0 || y == h - 1) step.y() = 0;
-        step *= std::min(1.0f, kLongestStep / std::max(step.norm(), 1e-20f));
-        for (int half = 0; half <= kHalvings; ++half, step *= 0.5f) {
-            const Vec2f q((p + step).cwiseMax(0.0f).cwiseMin(
-                Vec2f(static_cast<float>(w - 1), static_cast<float>(h - 1))));
-            if (!near.allows(q)) continue;
-            pixels.displacement[index] = q - rest;
-            pixels.face[index] = walk_to(q, pixels.face[index], fields, neighbors);
-            return;
-        }
-    };
-
-    for (int sweep = 0; sweep < sweeps; ++sweep)
+    const Sweep sweep{pixels, fields, neighbors, feature, smoothness};
+    auto move_row = &Sweep::move_row_portably;
+#if defined(__x86_64__)
+    if (__builtin_cpu_supports("avx2")) move_row = &Sweep::move_row_avx2;
+#endif
+    const int h = pixels.height;
+    for (int n = 0; n < sweeps; ++n)
         for (int parity = 0; parity < 4; ++parity)
-            // Blocks of even height keep pixels of one parity in different blocks apart.
             parallel_blocks(0, (h + 1) / 2, 16, [&](int first, int last) {
-                for (int row = first; row < last; ++row) {
-                    const int y = 2 * row + parity / 2;
-                    if (y >= h) break;
-                    for (int x = parity % 2; x < w; x += 2) move_pixel(x, y);
-                }
+                for (int row = first; row < last; ++row)
+                    if (const int y = 2 * row + parity / 2; y < h) (sweep.*move_row)(y, parity % 2);
             });
 }
 

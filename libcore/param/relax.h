@@ -14,14 +14,15 @@ namespace imgmesh {
 struct MovingPixels {
     int width = 0;
     int height = 0;
-    std::vector<Vec2f> displacement;  ///< image of the pixel less the pixel [pixels]
-    std::vector<Id> face;             ///< the face that the image lies in
+    std::vector<float> dx, dy;  ///< image of the pixel less the pixel [pixels]
+    std::vector<Id> face;       ///< the face that the image lies in
 
     std::size_t index(int x, int y) const {
         return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
     }
     Vec2f image_of(int x, int y) const {
-        return Vec2f(static_cast<float>(x), static_cast<float>(y)) + displacement[index(x, y)];
+        const std::size_t i = index(x, y);
+        return {static_cast<float>(x) + dx[i], static_cast<float>(y) + dy[i]};
     }
 };
 

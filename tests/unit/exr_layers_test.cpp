@@ -4,7 +4,9 @@
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
 #include <ImfOutputFile.h>
+#include <ImfPreviewImage.h>
 #include <ImfStringAttribute.h>
+#include <ImfStringVectorAttribute.h>
 #include <ImfTiledOutputFile.h>
 #include <doctest/doctest.h>
 
@@ -49,19 +51,20 @@ std::string finding(const Bytes& bytes, const ExpectedLayers& expected) {
 // Files as other software could write them.
 struct Foreign {
     Imf::Header header{kWidth, kHeight};
+    std::string version = "1.3";
     std::vector<std::uint32_t> face = std::vector<std::uint32_t>(kWidth * kHeight, 7);
     std::vector<float> u = std::vector<float>(kWidth * kHeight, 0.1f);
     std::vector<float> v = std::vector<float>(kWidth * kHeight, 0.7f);
 
     Foreign() {
         header.setName("lod0");
-        header.insert("imgmesh:version", Imf::StringAttribute("1.3"));
         header.compression() = Imf::ZIPS_COMPRESSION;
         header.channels().insert("face.id", Imf::Channel(Imf::UINT));
         header.channels().insert("bary.u", Imf::Channel(Imf::FLOAT));
         header.channels().insert("bary.v", Imf::Channel(Imf::FLOAT));
     }
     Bytes write(bool tiled = false) {
+        if (!version.empty()) header.insert("imgmesh:version", Imf::StringAttribute(version));
         const TemporaryFolder folder;
         Imf::FrameBuffer frame;
         const auto insert = [&](const char* name, Imf::PixelType type, void* data) {
@@ -166,13 +169,15 @@ TEST_CASE("layers: files of other software") {
               f.header.channels() = Imf::ChannelList();
               f.header.channels().insert("face.id", Imf::Channel(Imf::UINT));
           }) == "layers.channels");
-    CHECK(with([](Foreign& f) { f.header.insert("imgmesh:version", Imf::StringAttribute("2.0")); }) ==
-          "layers.version");
-    CHECK(with([](Foreign& f) { f.header.erase("imgmesh:version"); }) == "layers.version");
+    CHECK(with([](Foreign& f) { f.version = "2.0"; }) == "layers.version");
+    CHECK(with([](Foreign& f) { f.version = ""; }) == "layers.version");
     CHECK(with([](Foreign& f) { f.header.setName("lod1"); }) == "layers.parts");
     CHECK(with([](Foreign& f) { f.header.displayWindow().max.x += 1; }) == "layers.window");
     CHECK(with([](Foreign& f) { f.header.insert("note", Imf::StringAttribute(std::string(70000, 'x'))); }) ==
           "layers.header");
+    CHECK(with([](Foreign& f) { f.header.insert("names", Imf::StringVectorAttribute({"x"})); }) ==
+          "layers.header");
+    CHECK(with([](Foreign& f) { f.header.setPreviewImage(Imf::PreviewImage(2, 2)); }) == "layers.header");
     CHECK(with([](Foreign& f) { f.face[40] = kFaces; }) == "layers.face_range");
     CHECK(with([](Foreign& f) { f.face[40] = kNone; }) == "layers.mask");
     CHECK(with([](Foreign& f) {

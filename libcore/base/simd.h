@@ -1,0 +1,46 @@
+// Eight floats side by side, in the compiler's own vector types: two SSE registers or, inside a function
+// built for it, one AVX2 register. Arithmetic, comparison and choice (mask ? a : b) are operators of the
+// language, lane by lane.
+#pragma once
+
+#include <cstdint>
+#include <cstring>
+
+namespace imgmesh {
+
+using Float8 = float __attribute__((vector_size(32)));
+using Int8 = std::int32_t __attribute__((vector_size(32)));
+
+// Such vectors must not cross a call between functions built for different processors, so all of this is
+// inlined.
+#define IMGMESH_INLINE inline __attribute__((always_inline))
+
+IMGMESH_INLINE Float8 load8(const float* p) {
+    Float8 v;
+    std::memcpy(&v, p, sizeof v);
+    return v;
+}
+/// p[0], p[2], ... p[14]; reads p[15] too.
+IMGMESH_INLINE Float8 load8_every_other(const float* p) {
+    return __builtin_shufflevector(load8(p), load8(p + 8), 0, 2, 4, 6, 8, 10, 12, 14);
+}
+
+/// rows[i][j] <-> rows[j][i].
+IMGMESH_INLINE void transpose8(Float8 (&rows)[8]) {
+    Float8 a[8], b[8];
+    for (int i = 0; i < 8; i += 2) {
+        a[i] = __builtin_shufflevector(rows[i], rows[i + 1], 0, 8, 1, 9, 4, 12, 5, 13);
+        a[i + 1] = __builtin_shufflevector(rows[i], rows[i + 1], 2, 10, 3, 11, 6, 14, 7, 15);
+    }
+    for (int i = 0; i < 8; i += 4)
+        for (int k = 0; k < 2; ++k) {
+            b[i + 2 * k] = __builtin_shufflevector(a[i + k], a[i + k + 2], 0, 1, 8, 9, 4, 5, 12, 13);
+            b[i + 2 * k + 1] = __builtin_shufflevector(a[i + k], a[i + k + 2], 2, 3, 10, 11, 6, 7, 14, 15);
+        }
+    for (int i = 0; i < 4; ++i) {
+        rows[i] = __builtin_shufflevector(b[i], b[i + 4], 0, 1, 2, 3, 8, 9, 10, 11);
+        rows[i + 4] = __builtin_shufflevector(b[i], b[i + 4], 4, 5, 6, 7, 12, 13, 14, 15);
+    }
+}
+
+}  // namespace imgmesh

@@ -1,0 +1,263 @@
+// What must hold for the relaxed pixel map of any picture.
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "libcore/base/parallel.h"
+#include "libcore/collapse/collapse_edges.h"
+#include "libcore/param/relax.h"
+#include "libcore/param/trivial_map.h"
+#include "tests/support/sample_pictures.h"
+
+using namespace imgmesh;
+using namespace imgmesh::test;
+
+namespace {
+
+// A picture, its base mesh at `vertices`, and its pixels at rest.
+struct Scene {
+    FeatureImage feature;
+    BaseMesh mesh;
+    std::vector<FaceField> fields;
+    std::vector<Face> neighbors;
+    MovingPixels pixels;
+};
+
+Scene scene(FeatureImage feature, std::int64_t vertices) {
+    Scene out;
+    CollapseParams params;
+    params.target_vertices = vertices;
+    out.feature = std::move(feature);
+    out.mesh = collapse_edges(grid_mesh(out.feature), params).mesh;
+    out.fields = face_fields(out.mesh);
+    out.neighbors = face_neighbors(out.mesh);
+    out.pixels = resting_pixels(trivial_map(out.mesh, out.feature.width, out.feature.height));
+    return out;
+}
+
+void relax(Scene& s, float smoothness, int sweeps) {
+    imgmesh::relax(s.pixels, s.fields, s.neighbors, s.feature, smoothness, sweeps);
+}
+
+double area2(const Vec2f& p, const Vec2f& q, const Vec2f& r) {
+    const Vec2d a = (q - p).cast<double>(), b = (r - p).cast<double>();
+    return a.x() * b.y() - a.y() * b.x();
+}
+
+double least_area2(const MovingPixels& pixels) {
+    double least = 1;
+    for (int y = 0; y + 1 < pixels.height; ++y)
+        for (int x = 0; x + 1 < pixels.width; ++x) {
+            const Vec2f a = pixels.image_of(x, y), b = pixels.image_of(x + 1, y),
+                        c = pixels.image_of(x + 1, y + 1), d = pixels.image_of(x, y + 1);
+            for (const double area : {area2(a, b, c), area2(b, c, d), area2(c, d, a), area2(d, a, b)}) {
+                if (std::isnan(area)) return area;  // which no comparison would show
+                least = std::min(least, area);
+            }
+        }
+    return least;
+}
+
+void check_border(const MovingPixels& pixels) {
+    const int right = pixels.width - 1, bottom = pixels.height - 1;
+    for (int y = 0; y <= bottom; ++y)
+        for (int x = 0; x <= right; ++x) {
+            const Vec2f p = pixels.image_of(x, y);
+            if (x == 0 || x == right) CHECK(p.x() == static_cast<float>(x));
+            if (y == 0 || y == bottom) CHECK(p.y() == static_cast<float>(y));
+        }
+}
+
+// Each pixel's face is the one that it lies in, up to rounding.
+void check_faces(const Scene& s) {
+    for (int y = 0; y < s.pixels.height; ++y)
+        for (int x = 0; x < s.pixels.width; ++x) {
+            const Vec2f p = s.pixels.image_of(x, y);
+            REQUIRE(s.pixels.face[s.pixels.index(x, y)] < s.fields.size());
+            const FaceField& field = s.fields[s.pixels.face[s.pixels.index(x, y)]];
+            const float u = field.u(p.x(), p.y()), v = field.v(p.x(), p.y());
+            CHECK(std::min({u, v, 1 - u - v}) >= -1e-4f);
+        }
+}
+
+// Root mean square distance between the pixels' colours and the mesh's where they lie.
+double rms(const Scene& s) {
+    double sum = 0;
+    for (int y = 0; y < s.pixels.height; ++y)
+        for (int x = 0; x < s.pixels.width; ++x) {
+            const std::size_t index = s.pixels.index(x, y);
+            const FaceField& field = s.fields[s.pixels.face[index]];
+            const Vec2f p = s.pixels.image_of(x, y);
+            for (int c = 0; c < 3; ++c) {
+                const double e = double(field.f[c]) + double(field.fx[c] * (p.x() - field.ax)) +
+                                 double(field.fy[c] * (p.y() - field.ay)) - double(s.feature.pixel(index)[c]);
+                sum += e * e;
+            }
+        }
+    return std::sqrt(sum / static_cast<double>(s.pixels.face.size()));
+}
+
+// Rounding of positions moves an area by that much at most in pictures this small.
+constexpr double kSlack = 1e-4;
+
+}  // namespace
+
+TEST_CASE("relax: no triangle of pixels folds or thins out, however soft or hard the grid") {
+    for (const Kind kind : kAllKinds)
+        for (const float smoothness : {1e-12f, 1e-3f, 1.0f, 30.0f, 1e6f, 1e30f}) {
+            Scene s = scene(sample_feature(kind, 33, 26), 40);
+            for (int round = 0; round < 4; ++round) {
+                INFO(name_of(kind) << ", smoothness " << smoothness << ", round " << round);
+                relax(s, smoothness, 3);
+                CHECK(least_area2(s.pixels) >= double(kLeastMovingArea) - kSlack);
+                check_border(s.pixels);
+                check_faces(s);
+            }
+        }
+}
+
+// Grey pictures with steep diagonals make J'J singular and large: all is left to mu, which rounding may
+// drown.
+TEST_CASE("relax: a steep grey edge against the softest grid") {
+    FeatureImage feature{32, 32, 3, std::vector<float>(3 * 32 * 32)};
+    for (int y = 0; y < 32; ++y)
+        for (int x = 0; x < 32; ++x)
+            feature.pixel(static_cast<std::size_t>(32 * y + x))[0] = x + y > 30 ? 100 : 0;
+    for (const float smoothness : {1e-30f, 1e-12f, 1e-6f, 1e-3f}) {
+        INFO("smoothness " << smoothness);
+        Scene s = scene(feature, 60);
+        relax(s, smoothness, 8);
+        CHECK(least_area2(s.pixels) >= double(kLeastMovingArea) - kSlack);
+        check_border(s.pixels);
+        check_faces(s);
+    }
+}
+
+TEST_CASE("relax: small pictures, and those of two columns or rows") {
+    for (const auto& [w, h] : {std::pair{2, 2}, {2, 9}, {9, 2}, {3, 3}, {5, 4}}) {
+        INFO(w << " x " << h);
+        Scene s = scene(sample_feature(Kind::kNoise, w, h), 4);
+        relax(s, 1, 20);
+        CHECK(least_area2(s.pixels) >= double(kLeastMovingArea) - kSlack);
+        check_border(s.pixels);
+    }
+}
+
+TEST_CASE("relax: pixels move to where the mesh has their colour") {
+    for (const Kind kind : {Kind::kDisc, Kind::kNoise, Kind::kCheckerboard, Kind::kGradient}) {
+        INFO(name_of(kind));
+        Scene s = scene(sample_feature(kind, 33, 26), 40);
+        const double at_rest = rms(s);
+        relax(s, 30, 16);
+        CHECK(rms(s) < at_rest);
+        if (kind == Kind::kDisc) CHECK(rms(s) < 0.9 * at_rest);
+    }
+}
+
+TEST_CASE("relax: a harder grid moves less, and one without colour not at all") {
+    double last = 1e9;
+    for (const float smoothness : {10.0f, 1e3f, 1e6f}) {
+        Scene s = scene(sample_feature(Kind::kDisc, 33, 26), 40);
+        relax(s, smoothness, 16);
+        double moved = 0;
+        for (std::size_t i = 0; i < s.pixels.dx.size(); ++i)
+            moved += std::hypot(double(s.pixels.dx[i]), double(s.pixels.dy[i]));
+        CHECK(moved < last);
+        last = moved;
+    }
+    Scene flat = scene(sample_feature(Kind::kConstant, 20, 20), 30);
+    relax(flat, 30, 8);
+    for (const std::vector<float>* d : {&flat.pixels.dx, &flat.pixels.dy})
+        for (const float moved : *d) CHECK(std::abs(moved) < 1e-3f);
+}
+
+TEST_CASE("relax: the same bits for any number of threads") {
+    // Tall enough for several blocks of rows.
+    const Scene start = scene(sample_feature(Kind::kNoise, 40, 150), 200);
+    Scene one = start;
+    {
+        const ThreadLimit limit(1);
+        relax(one, 10, 8);
+    }
+    for (const int threads : {2, 3}) {
+        const ThreadLimit limit(threads);
+        Scene other = start;
+        relax(other, 10, 8);
+        CHECK(other.pixels.dx == one.pixels.dx);
+        CHECK(other.pixels.dy == one.pixels.dy);
+        CHECK(other.pixels.face == one.pixels.face);
+    }
+}
+
+// Pixels far enough from a side move eight at a time, the others one by one. In one sweep a pixel learns
+// nothing from further away than its neighbours' neighbours: cut off there, the same pixels move one by one.
+TEST_CASE("relax: eight pixels at a time move like one by one, to the bit") {
+    constexpr int kNarrow = 17;  // no room for eight
+    for (const Kind kind : {Kind::kNoise, Kind::kDisc, Kind::kCheckerboard})
+        for (const float smoothness : {1e-3f, 1.0f, 30.0f})
+            for (const int sweeps_before : {0, 3}) {
+                INFO(name_of(kind) << ", smoothness " << smoothness << ", after " << sweeps_before);
+                Scene wide = scene(sample_feature(kind, 60, 24), 80);
+                relax(wide, smoothness, sweeps_before);
+                Scene narrow = wide;
+                narrow.feature = {kNarrow, 24, 3, {}};
+                narrow.pixels = {kNarrow, 24, {}, {}, {}};
+                for (int y = 0; y < 24; ++y)
+                    for (int x = 0; x < kNarrow; ++x) {
+                        const std::size_t i = wide.pixels.index(x, y);
+                        narrow.pixels.dx.push_back(wide.pixels.dx[i]);
+                        narrow.pixels.dy.push_back(wide.pixels.dy[i]);
+                        narrow.pixels.face.push_back(wide.pixels.face[i]);
+                        narrow.feature.data.insert(narrow.feature.data.end(), wide.feature.pixel(i),
+                                                   wide.feature.pixel(i) + 3);
+                    }
+                relax(wide, smoothness, 1);
+                relax(narrow, smoothness, 1);
+                for (int y = 0; y < 24; ++y)
+                    for (int x = 0; x <= (y % 2 == 0 ? 14 : 12); ++x) {
+                        const std::size_t i = wide.pixels.index(x, y), j = narrow.pixels.index(x, y);
+                        INFO("pixel " << x << " " << y);
+                        CHECK(wide.pixels.dx[i] == narrow.pixels.dx[j]);
+                        CHECK(wide.pixels.dy[i] == narrow.pixels.dy[j]);
+                        CHECK(wide.pixels.face[i] == narrow.pixels.face[j]);
+                    }
+            }
+}
+
+TEST_CASE("face fields: weights and colours at the corners, neighbours across the edges") {
+    const Scene s = scene(sample_feature(Kind::kNoise, 20, 20), 40);
+    for (std::size_t f = 0; f < s.mesh.faces.size(); ++f) {
+        const FaceField& field = s.fields[f];
+        for (std::size_t k = 0; k < 3; ++k) {
+            const Vec2f p = s.mesh.position[s.mesh.faces[f][k]];
+            CHECK(field.u(p.x(), p.y()) == doctest::Approx(k == 1 ? 1 : 0).epsilon(1e-4));
+            CHECK(field.v(p.x(), p.y()) == doctest::Approx(k == 2 ? 1 : 0).epsilon(1e-4));
+            for (int c = 0; c < 3; ++c)
+                CHECK(field.f[c] + field.fx[c] * (p.x() - field.ax) + field.fy[c] * (p.y() - field.ay) ==
+                      doctest::Approx(s.mesh.feature_of(s.mesh.faces[f][k])[c]).epsilon(1e-3));
+            // The face across the edge opposite corner k has its two ends, the other way round.
+            const Id across = s.neighbors[f][k], from = s.mesh.faces[f][(k + 1) % 3],
+                     to = s.mesh.faces[f][(k + 2) % 3];
+            int seen = 0;
+            for (std::size_t g = 0; g < s.mesh.faces.size(); ++g)
+                for (std::size_t m = 0; m < 3; ++m)
+                    if (s.mesh.faces[g][m] == to && s.mesh.faces[g][(m + 1) % 3] == from) {
+                        CHECK(across == g);
+                        ++seen;
+                    }
+            if (seen == 0) CHECK(across == kNone);
+        }
+    }
+}
+
+TEST_CASE("walk_to: from any face to the one that holds the point") {
+    const Scene s = scene(sample_feature(Kind::kDisc, 20, 20), 40);
+    std::mt19937 random(1);
+    for (int n = 0; n < 500; ++n) {
+        const Vec2f p(static_cast<float>(random() % 1901) / 100, static_cast<float>(random() % 1901) / 100);
+        const FaceField& field =
+            s.fields[walk_to(p, static_cast<Id>(random() % s.fields.size()), s.fields, s.neighbors)];
+        const float u = field.u(p.x(), p.y()), v = field.v(p.x(), p.y());
+        CHECK(std::min({u, v, 1 - u - v}) >= -1e-5f);
+    }
+}
