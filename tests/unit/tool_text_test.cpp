@@ -3,7 +3,7 @@
 #include <sstream>
 
 #include "libcore/base/error.h"
-#include "tools/common/options.h"
+#include "tools/common/numbers.h"
 #include "tools/common/text.h"
 
 using namespace imgmesh;

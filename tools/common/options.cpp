@@ -1,51 +1,8 @@
 #include "tools/common/options.h"
 
 #include <algorithm>
-#include <charconv>
-#include <cmath>
 
 namespace imgmesh {
-namespace {
-
-// Converts all of `text` or nothing.
-template <typename Value>
-bool parse_whole(const std::string& text, Value& value) {
-    const char* const end = text.data() + text.size();
-    const auto [stop, error] = std::from_chars(text.data(), end, value);
-    return error == std::errc() && stop == end;
-}
-
-[[noreturn]] void refuse(const std::string& name, const std::string& text, const std::string& expected) {
-    throw Error(ErrorCode::kUsage, cat(name, " '", text, "': expected ", expected));
-}
-
-std::string describe(const CountRange& range) {
-    if (range.most >= std::numeric_limits<int>::max()) return cat("a whole number, at least ", range.least);
-    return cat("a whole number from ", range.least, " to ", range.most);
-}
-
-std::string describe(const NumberRange& range) {
-    std::string words = cat("a number ", range.open ? "above " : "of at least ", range.least);
-    if (std::isfinite(range.most)) words += cat(" and at most ", range.most);
-    return words;
-}
-
-}  // namespace
-
-std::int64_t parse_count(const std::string& name, const std::string& text, const CountRange& range) {
-    std::int64_t value = 0;
-    if (!parse_whole(text, value) || value < range.least || value > range.most)
-        refuse(name, text, describe(range));
-    return value;
-}
-
-double parse_number(const std::string& name, const std::string& text, const NumberRange& range) {
-    double value = 0;
-    if (!parse_whole(text, value) || !std::isfinite(value) || value > range.most ||
-        (range.open ? value <= range.least : value < range.least))
-        refuse(name, text, describe(range));
-    return value;
-}
 
 bool same_name(const std::string& a, const std::string& b) {
     const auto lower = [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; };

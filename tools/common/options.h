@@ -1,5 +1,4 @@
-// Options that read their values strictly: what is not wholly a value is refused with Error(kUsage), in a
-// line that names the option, the value and what is expected.
+// Options that read their values strictly: anything else is refused with Error(kUsage) in one line.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -7,35 +6,15 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
-#include <optional>
 #include <string>
 #include <type_traits>
 #include <utility>
 #include <vector>
 
 #include "libcore/base/error.h"
+#include "tools/common/numbers.h"
 
 namespace imgmesh {
-
-inline constexpr double kNoLimit = std::numeric_limits<double>::infinity();
-
-/// Whole numbers from `least` to `most`.
-struct CountRange {
-    std::int64_t least = 0;
-    std::int64_t most = std::numeric_limits<std::int64_t>::max();
-};
-
-/// Finite numbers from `least` to `most`; without `least` itself where `open`.
-struct NumberRange {
-    double least = 0;
-    double most = kNoLimit;
-    bool open = false;
-};
-
-/// `text` as a value of option `name`. Plain decimal digits; no sign but '-', no space, no other base.
-std::int64_t parse_count(const std::string& name, const std::string& text, const CountRange& range);
-/// Decimal with optional exponent; neither infinite nor nan.
-double parse_number(const std::string& name, const std::string& text, const NumberRange& range);
 
 /// An option that calls `take` with its one value. `name` is the long option, perhaps after a short one.
 CLI::Option* add_value(CLI::App& app, const std::string& name, const std::string& type,
