@@ -62,8 +62,8 @@ class Collapser {
             const std::int64_t collapses_before = collapses_;
             postponed_ = false;
             const int side = far_from_done() ? kTile : std::max(width_, height_);
-            for (int y = 0; y < height_; y += side)
-                for (int x = 0; x < width_; x += side) {
+            for (int y = 0; y < height_ && !done(); y += side)
+                for (int x = 0; x < width_ && !done(); x += side) {
                     file_tile(x, y, side);
                     drain();
                 }
@@ -130,9 +130,6 @@ class Collapser {
         return rings_[edge.i].version == edge.version_i && rings_[edge.j].version == edge.version_j;
     }
 
-    bool far_from_done() const {
-        return vertices_ > kTiledAbove * target_.vertices && faces_ > kTiledAbove * target_.faces;
-    }
     bool done() const { return vertices_ <= target_.vertices || faces_ <= target_.faces; }
     double fraction_done() const {
         const auto start = static_cast<double>(rings_.size()), left = static_cast<double>(vertices_);
@@ -274,19 +271,40 @@ class Collapser {
         file_batch();
     }
 
-    // The median cost of a sample of edges, so that the first window holds about half of them.
-    float first_threshold() const {
+    // The costs of edges of some vertices all over the picture; of those that may collapse, in ascending
+    // order.
+    std::vector<float> sampled_costs() const {
         constexpr std::size_t kSampled = 4096;
+        const std::size_t step = std::max<std::size_t>(1, static_cast<std::size_t>(vertices_) / kSampled);
         std::vector<float> costs;
-        for (std::size_t i = 0; i < rings_.size(); i += std::max<std::size_t>(1, rings_.size() / kSampled)) {
-            const Id v = static_cast<Id>(i), n = rings_[i].neighbor[0];
+        std::size_t live = 0;
+        for (Id v = 0; v < rings_.size(); ++v) {
+            if (!rings_[v].live() || live++ % step != 0) continue;
+            const Id n = rings_[v].neighbor[0];
             const float cost = minimiser(v, n, merged(quadrics_[v], quadrics_[n])).cost;
             if (cost < kNever) costs.push_back(cost);
         }
-        if (costs.empty()) return 1.0f;
-        const auto middle = costs.begin() + static_cast<std::ptrdiff_t>(costs.size() / 2);
-        std::nth_element(costs.begin(), middle, costs.end());
-        return std::max(*middle, std::numeric_limits<float>::min());
+        std::sort(costs.begin(), costs.end());
+        return costs;
+    }
+
+    // The median, so that the first window holds about half of the edges.
+    float first_threshold() const {
+        const std::vector<float> costs = sampled_costs();
+        return costs.empty() ? 1.0f : std::max(costs[costs.size() / 2], std::numeric_limits<float>::min());
+    }
+
+    // Whether the window may be worked off tile by tile: not where it could reach the goal, as the first
+    // tiles would then pay for all.
+    bool far_from_done() const {
+        const std::vector<float> costs = sampled_costs();
+        const auto below = std::lower_bound(costs.begin(), costs.end(), threshold_) - costs.begin();
+        const double left =
+            1 - static_cast<double>(below) / static_cast<double>(std::max<std::size_t>(1, costs.size()));
+        const auto far = [&](std::int64_t now, std::int64_t goal) {
+            return now > kTiledAbove * goal && left * static_cast<double>(now) > static_cast<double>(goal);
+        };
+        return far(vertices_, target_.vertices) && far(faces_, target_.faces);
     }
 
     int width_, height_;
