@@ -103,24 +103,24 @@ class Streams(CliCase):
 
     def test_progress_on_a_terminal(self):
         self.assertEqual(self.on_terminal("in.png", "-o", "a.glb"), "", "a bar for work below a second")
-        picture_files.png(self.folder / "large.png", picture_files.noise(900, 700))
-        shown = self.on_terminal("large.png", "-o", "a.glb")
+        picture_files.png(self.folder / "large.png", picture_files.noise(1200, 900))
+        shown = self.on_terminal("large.png", "-o", "a.glb", "--threads", "1")
         self.assertRegex(shown, r"\r\[[#.]{30}\] \d+% [a-z]")
         self.assertTrue(shown.endswith("\r\x1b[K"), "the bar is still there")
         percents = [int(p.split("%")[0]) for p in shown.split("] ")[1:]]
         self.assertEqual(percents, sorted(percents))
         self.assertLessEqual(percents[-1], 100)
-        self.assertEqual(self.on_terminal("large.png", "-o", "a.glb", "--quiet"), "")
+        self.assertEqual(self.on_terminal("large.png", "-o", "a.glb", "--threads", "1", "--quiet"), "")
 
     def test_no_progress_elsewhere(self):
-        picture_files.png(self.folder / "large.png", picture_files.noise(900, 700))
-        self.run_ok("imgmesh-build", "large.png", "-o", "a.glb")
+        picture_files.png(self.folder / "large.png", picture_files.noise(1200, 900))
+        self.run_ok("imgmesh-build", "large.png", "-o", "a.glb", "--threads", "1")
 
     def test_killed_run_leaves_no_partial_file(self):
-        picture_files.png(self.folder / "large.png", picture_files.noise(900, 700))
+        picture_files.png(self.folder / "large.png", picture_files.noise(1200, 900))
         before = self.files()
         for name in (signal.SIGTERM, signal.SIGINT):
-            process = subprocess.Popen([str(BIN / "imgmesh-build"), "large.png", "-o", "a.glb"], cwd=self.folder,
+            process = subprocess.Popen([str(BIN / "imgmesh-build"), "large.png", "-o", "a.glb", "--threads", "1"], cwd=self.folder,
                                        stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
             with self.assertRaises(subprocess.TimeoutExpired):
                 process.wait(0.5)
