@@ -47,11 +47,33 @@ void add_options(CLI::App& app, Options& o) {
         add_count(app, "--vertices", o.params.stop.vertices, {4}, "Stop at this many vertices");
     CLI::Option* const error =
         add_number(app, "--error", o.params.stop.error, {0}, "Stop before a quadric error above this");
-    add_number(app, "--density", o.params.stop.density, {0, 100, true},
-               cat("Stop at this many vertices, in percent of the pixels (default ", stop.density, ")"))
+    CLI::Option* const density =
+        add_number(app, "--density", o.params.stop.density, {0, 100, true},
+                   cat("Stop at this many vertices, in percent of the pixels (default ", stop.density, ")"));
+    density->excludes(faces)->excludes(vertices)->excludes(error);
+    CLI::Option* const levels =
+        add_count(app, "--levels", o.params.levels.count, {1, kMaxLevels},
+                  "Levels of the pyramid, each with a quarter of the faces of the one before (default 1)");
+    CLI::Option* const level_faces = add_list<std::int64_t>(
+        app, "--level-faces", o.params.levels.faces,
+        [](const std::string& item) { return parse_count("--level-faces", item, {2}); },
+        "Faces of each level, as 8000,2000,500");
+    CLI::Option* const level_errors = add_list<double>(
+        app, "--level-errors", o.params.levels.errors,
+        [](const std::string& item) { return parse_number("--level-errors", item, {0}); },
+        "Quadric error of each level, as 100,1000");
+    level_faces->excludes(levels)->excludes(faces)->excludes(vertices)->excludes(error)->excludes(density);
+    level_errors->excludes(level_faces)
+        ->excludes(levels)
         ->excludes(faces)
         ->excludes(vertices)
-        ->excludes(error);
+        ->excludes(error)
+        ->excludes(density);
+    add_count(app, "--max-cluster", o.params.max_cluster, {3},
+              "Pixels a face has at most, whatever the limits above say");
+    add_number(
+        app, "--min-quality", o.params.min_quality, {0, 0.8},
+        "Least q = 4 sqrt(3) area / sum of squared edges of a triangle, whatever the limits above say");
     const BuildParams params;
     add_number(app, "--geometry-weight", o.params.geometry_weight, {0, kNoLimit, true},
                cat("Weight of geometry in the quadrics (default ", params.geometry_weight, ")"));
@@ -125,25 +147,31 @@ Report build_one(const Job& job, const Options& o, const Context& context, const
 
     // The figures are those of what a reader gets.
     const Container written = read_container(job.output);
-    const Level& level = written.mesh_image.levels.front();
+    Report levels = Report::array();
+    for (std::size_t k = 0; k < written.mesh_image.levels.size(); ++k) {
+        const Level& level = written.mesh_image.levels[k];
+        levels.push_back({{"vertices", level.mesh.vertex_count()},
+                          {"faces", level.mesh.faces.size()},
+                          {"error", level.error},
+                          {"map_rms", result.report.levels[k].map_rms},
+                          {"gouraud_rms", result.report.levels[k].gouraud_rms},
+                          {"flipped_pixel_triangles", map_quality(level.mesh, level.map).flipped_triangles},
+                          {"mean_edge_ratio", mesh_quality(level.mesh).mean_edge_ratio}});
+    }
     const double bytes = static_cast<double>(written.facts.total_bytes);
     const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
-    return {{"input", job.input},
-            {"output", job.output},
-            {"width", image.width},
-            {"height", image.height},
-            {"color_space", color_space_name(image.color_space)},
-            {"alpha", image.channel("A") >= 0 ? "ignored" : "none"},
-            {"vertices", level.mesh.vertex_count()},
-            {"faces", level.mesh.faces.size()},
-            {"error", level.error},
-            {"map_rms", result.report.map_rms},
-            {"gouraud_rms", result.report.gouraud_rms},
-            {"flipped_pixel_triangles", map_quality(level.mesh, level.map).flipped_triangles},
-            {"mean_edge_ratio", mesh_quality(level.mesh).mean_edge_ratio},
-            {"bytes", written.facts.total_bytes},
-            {"bytes_per_pixel", bytes / static_cast<double>(image.pixel_count())},
-            {"seconds", seconds.count()}};
+    Report report{{"input", job.input},
+                  {"output", job.output},
+                  {"width", image.width},
+                  {"height", image.height},
+                  {"color_space", color_space_name(image.color_space)},
+                  {"alpha", image.channel("A") >= 0 ? "ignored" : "none"}};
+    report.update(levels.front());  // the finest level's figures are the picture's
+    report.update({{"levels", levels},
+                   {"bytes", written.facts.total_bytes},
+                   {"bytes_per_pixel", bytes / static_cast<double>(image.pixel_count())},
+                   {"seconds", seconds.count()}});
+    return report;
 }
 
 // The share of all pictures that is done, from the shares of each, which come from several threads.
@@ -207,6 +235,12 @@ void print(const Report& report, std::ostream& out) {
         table.add("mesh", cat(image["vertices"], " vertices, ", image["faces"], " faces"));
         table.add("error",
                   cat("map ", number("map_rms"), ", Gouraud ", number("gouraud_rms"), " L*u*v* RMS"));
+        for (std::size_t k = 1; k < image["levels"].size(); ++k) {
+            const Report& level = image["levels"][k];
+            table.add(cat("level ", k), cat(level["vertices"], " vertices, ", level["faces"], " faces, map ",
+                                            format_number(level["map_rms"].get<double>()), ", Gouraud ",
+                                            format_number(level["gouraud_rms"].get<double>())));
+        }
         table.add("edge ratio", number("mean_edge_ratio"));
         table.add("flipped", cat(image["flipped_pixel_triangles"], " pixel triangles"));
         table.add("file", cat(format_bytes(image["bytes"].get<std::uint64_t>()), ", ",

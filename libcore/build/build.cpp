@@ -1,9 +1,11 @@
 #include "libcore/build/build.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
 #include "libcore/base/error.h"
+#include "libcore/build/params.h"
 #include "libcore/collapse/collapse_edges.h"
 #include "libcore/image/color.h"
 #include "libcore/mesh/grid_mesh.h"
@@ -14,114 +16,83 @@
 namespace imgmesh {
 namespace {
 
-void require(bool holds, const std::string& text) {
-    if (!holds) throw Error(ErrorCode::kUsage, text);
-}
-
-void check(const BuildParams& p) {
-    const auto positive = [](double x) { return std::isfinite(x) && x > 0; };
-    require(p.stop.faces.value_or(2) >= 2,
-            cat("faces is ", p.stop.faces.value_or(2), ", expected 2 or more"));
-    require(p.stop.vertices.value_or(4) >= 4,
-            cat("vertices is ", p.stop.vertices.value_or(4), ", expected 4 or more"));
-    require(p.stop.error.value_or(0) >= 0 && std::isfinite(p.stop.error.value_or(0)),
-            cat("error is ", p.stop.error.value_or(0), ", expected a finite number, 0 or more"));
-    require(positive(p.stop.density) && p.stop.density <= 100,
-            cat("density is ", p.stop.density, ", expected a percentage above 0, at most 100"));
-    require(positive(p.geometry_weight),
-            cat("geometry weight is ", p.geometry_weight, ", expected a finite number above 0"));
-    require(positive(p.color_weight),
-            cat("color weight is ", p.color_weight, ", expected a finite number above 0"));
-    // Quadrics are single precision: products of two sums over all pixels must neither overflow nor vanish.
-    const double lambda = p.geometry_weight / p.color_weight;
-    require(lambda >= 1e-9 && lambda <= 1e9,
-            cat("geometry weight / color weight is ", lambda, ", expected 1e-9 to 1e9"));
-    require(std::isfinite(p.projection_color_weight) && p.projection_color_weight >= 0,
-            cat("projection color weight is ", p.projection_color_weight,
-                ", expected a finite number, 0 or more"));
-}
-
-// Smoother gradients pay where vertices are far apart; figures in docs/paper-map.md.
-int smoothing_passes(double pixels_per_vertex) {
-    return pixels_per_vertex >= 250 ? 4 : pixels_per_vertex >= 66 ? 2 : pixels_per_vertex >= 12 ? 1 : 0;
-}
-
-CollapseTarget collapse_target(const BuildParams& params, double pixels) {
-    CollapseTarget out;
-    const StopParams& stop = params.stop;
-    out.faces = stop.faces.value_or(0);
-    out.vertices = stop.vertices.value_or(0);
-    if (stop.error) out.max_error = *stop.error / params.color_weight;
-    if (!stop.faces && !stop.vertices && !stop.error)
-        out.vertices =
-            std::max(std::int64_t{4}, static_cast<std::int64_t>(std::llround(pixels * stop.density / 100)));
-    return out;
-}
-
-CollapseParams collapse_params(const BuildParams& params, const CollapseTarget& target, double pixels) {
-    CollapseParams out;
-    out.geometry_weight = static_cast<float>(params.geometry_weight / params.color_weight);
-    const auto vertices = static_cast<double>(std::max(target.vertices, target.faces / 2));
-    // With an error alone the density is not known beforehand; the default's serves.
-    out.smoothing = smoothing_passes(vertices > 0 ? pixels / vertices : 100);
-    return out;
-}
-
-std::vector<BuildParameter> listed(const BuildParams& p, const CollapseParams& c, const PixelMap& map) {
-    std::vector<BuildParameter> out{{"metric", std::string("flattened")}};
-    if (p.stop.faces) out.emplace_back("faces", *p.stop.faces);
-    if (p.stop.vertices) out.emplace_back("vertices", *p.stop.vertices);
-    if (p.stop.error) out.emplace_back("error", *p.stop.error);
-    if (!p.stop.faces && !p.stop.vertices && !p.stop.error) out.emplace_back("density", p.stop.density);
-    out.emplace_back("geometry-weight", p.geometry_weight);
-    out.emplace_back("color-weight", p.color_weight);
-    out.emplace_back("projection-color-weight", p.projection_color_weight);
-    out.emplace_back("smoothing", std::int64_t{c.smoothing});
-    out.emplace_back("bary", std::string(map.precision == WeightPrecision::kHalf ? "half" : "float"));
-    return out;
-}
-
 // The colour channels that the mesh was made from, as the file had them.
 std::vector<std::string> color_channels(const Image& image) {
     return image.channel("R") >= 0 ? std::vector<std::string>{"R", "G", "B"} : std::vector<std::string>{"Y"};
 }
 
+// A part [begin, end] of the whole, as a progress of its own.
+Progress part_of(const Progress& whole, double begin, double end) {
+    if (!whole) return {};
+    return [=](double f, std::string_view stage) { whole(begin + f * (end - begin), stage); };
+}
+
+std::int64_t largest_patch(const Level& level) {
+    std::vector<std::int64_t> pixels(level.mesh.faces.size(), 0);
+    for (const PixelCoord& coord : level.map.coords)
+        if (coord.face != kNone) ++pixels[coord.face];
+    return *std::max_element(pixels.begin(), pixels.end());
+}
+
+// Collapse and maps with the collapse's limits as they stand.
+std::vector<Level> build_levels(const FeatureImage& feature, const BuildParams& params,
+                                const CollapseParams& collapse, std::span<const CollapseTarget> targets,
+                                BuildReport& report, const Progress& progress) {
+    std::vector<CollapseResult> collapsed =
+        collapse_edges(grid_mesh(feature), collapse, targets, part_of(progress, 0, 0.7));
+    FitParams fit;
+    fit.color_weight = params.projection_color_weight;
+    fit.bary = params.bary;
+    report = {collapsed.back().collapses, {}};
+    std::vector<Level> levels;
+    for (std::size_t k = 0; k < collapsed.size(); ++k) {
+        Level level{std::move(collapsed[k].mesh), {}, collapsed[k].error * params.color_weight};
+        const double share = 0.3 / static_cast<double>(collapsed.size()),
+                     begin = 0.7 + share * static_cast<double>(k);
+        level.map = fit_map(level.mesh, feature, fit, part_of(progress, begin, begin + share));
+        const PixelMap trivial = trivial_map(level.mesh, feature.width, feature.height);
+        report.levels.push_back(
+            {map_rms(level.mesh, level.map, feature), map_rms(level.mesh, trivial, feature)});
+        levels.push_back(std::move(level));
+    }
+    return levels;
+}
+
 }  // namespace
 
 BuildResult build_mesh_image(const Image& image, const BuildParams& params, const Progress& progress) {
-    check(params);
-    require(image.width >= 1 && image.height >= 1, "the picture is empty");
-    const auto stage = [&](double begin, double end) {
-        return progress ? Progress([=](double f, std::string_view name) {
-            progress(begin + f * (end - begin), name);
-        })
-                        : Progress();
-    };
+    check_params(params);
+    if (image.width < 1 || image.height < 1) throw Error(ErrorCode::kUsage, "the picture is empty");
     const FeatureImage feature = luv_image(image);
     for (const float f : feature.data)
         if (!std::isfinite(f))
             throw Error(ErrorCode::kUnsupported, "the picture has samples that are not finite");
 
     const auto pixels = static_cast<double>(image.pixel_count());
-    const CollapseTarget target = collapse_target(params, pixels);
-    const CollapseParams collapse = collapse_params(params, target, pixels);
-    CollapseResult collapsed = collapse_edges(grid_mesh(feature), collapse, target, stage(0.0, 0.7));
-
-    Level level{std::move(collapsed.mesh), {}, collapsed.error * params.color_weight};
-    FitParams fit;
-    fit.color_weight = params.projection_color_weight;
-    fit.bary = params.bary;
-    level.map = fit_map(level.mesh, feature, fit, stage(0.7, 1.0));
-
+    const std::vector<CollapseTarget> targets = collapse_targets(params, pixels);
+    CollapseParams collapse = collapse_params(params, targets.front(), pixels);
     BuildResult result;
-    result.report.collapses = collapsed.collapses;
-    result.report.map_rms = map_rms(level.mesh, level.map, feature);
-    result.report.gouraud_rms =
-        map_rms(level.mesh, trivial_map(level.mesh, image.width, image.height), feature);
+    std::vector<Level>& levels = result.mesh_image.levels;
+    if (params.max_cluster) collapse.max_face_area = static_cast<float>(*params.max_cluster);
+    for (;;) {
+        levels = build_levels(feature, params, collapse, targets, result.report, progress);
+        if (!params.max_cluster) break;
+        // The collapse bounds a face's area; the map decides how many pixels that becomes.
+        std::int64_t largest = 0;
+        for (const Level& level : levels) largest = std::max(largest, largest_patch(level));
+        if (largest <= *params.max_cluster) break;
+        if (collapse.max_face_area < 0.5f)
+            throw Error(ErrorCode::kUnsupported, cat("the map gathers ", largest,
+                                                     " pixels in a face of the dense mesh, more than the ",
+                                                     *params.max_cluster, " allowed"));
+        collapse.max_face_area *=
+            0.95f * static_cast<float>(*params.max_cluster) / static_cast<float>(largest);
+    }
     result.mesh_image.source = {image.width,       image.height,          image.color_space,
                                 image.sample_type, color_channels(image), false};
-    result.mesh_image.parameters = listed(params, collapse, level.map);
-    result.mesh_image.levels.push_back(std::move(level));
+    result.mesh_image.parameters = listed_params(params, collapse);
+    const bool half = levels.front().map.precision == WeightPrecision::kHalf;
+    result.mesh_image.parameters.emplace_back("bary", std::string(half ? "half" : "float"));
     if (progress) progress(1.0, "done");
     return result;
 }

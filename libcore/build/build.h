@@ -3,6 +3,7 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "libcore/base/progress.h"
 #include "libcore/image/image.h"
@@ -19,20 +20,37 @@ struct StopParams {
     double density = 1.0;  ///< percent of the pixels that stay vertices; in (0, 100]
 };
 
-struct BuildParams {
-    StopParams stop;
-    double geometry_weight = 3.0;  ///< lambda: geometry against colour in the quadrics [L*u*v*^2 / px^2]; > 0
-    double color_weight = 1.0;     ///< of colour in the quadrics; only the ratio of the two weights matters
-    double projection_color_weight =
-        1.0 / 30;                         ///< of colour against smoothness in the pixel map; 0: trivial map
-    std::optional<WeightPrecision> bary;  ///< none: half where the map stays a bijection so, else float
+inline constexpr int kMaxLevels = 32;
+
+/// The pyramid: nested base meshes of one run, each with a pixel map of its own.
+struct PyramidParams {
+    int count = 1;  ///< levels, each but the finest with a quarter of the faces of the one before; 1 to 32
+    std::vector<std::int64_t>
+        faces;  ///< instead: faces of each level, falling, >= 2; then StopParams do not count
+    std::vector<double>
+        errors;  ///< instead: quadric error of each level, rising; then StopParams do not count
 };
 
-/// Figures of a build, all measured on the finished levels as a reader gets them back.
+struct BuildParams {
+    StopParams stop;  ///< of the finest level
+    PyramidParams levels;
+    double geometry_weight = 3.0;  ///< lambda: geometry against colour in the quadrics [L*u*v*^2 / px^2]; > 0
+    double color_weight = 1.0;     ///< of colour in the quadrics; only the ratio counts, 1e-9 to 1e9
+    double projection_color_weight = 1.0 / 30;  ///< of colour against smoothness in the map; 0: trivial map
+    std::optional<WeightPrecision> bary;        ///< none: half where the map stays a bijection, else float
+    std::optional<std::int64_t> max_cluster;    ///< no face with more pixels than this; >= 3
+    double min_quality = 0;  ///< no triangle of a lesser q = 4 sqrt(3) area / sum of squared edges; 0 to 0.8
+};
+
+/// Figures of a level, measured on what a reader gets back.
+struct LevelReport {
+    double map_rms = 0;      ///< through the pixel map [L*u*v*]
+    double gouraud_rms = 0;  ///< base mesh drawn without the map [L*u*v*]
+};
+
 struct BuildReport {
     std::int64_t collapses = 0;
-    double map_rms = 0;      ///< of level 0, through the pixel map [L*u*v*]
-    double gouraud_rms = 0;  ///< of level 0, base mesh drawn without the map [L*u*v*]
+    std::vector<LevelReport> levels;
 };
 
 struct BuildResult {

@@ -57,6 +57,7 @@ class Collapser {
 
     void run(const CollapseTarget& target, const Progress& progress) {
         target_ = target;
+        target_.faces = std::max(target.faces, static_cast<std::int64_t>(target.face_share * static_cast<double>(faces_)));
         if (threshold_ == 0) threshold_ = first_threshold();
         while (!done()) {
             const std::int64_t collapses_before = collapses_;

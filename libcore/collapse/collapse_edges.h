@@ -17,6 +17,7 @@ namespace imgmesh {
 struct CollapseTarget {
     std::int64_t vertices = 0;  ///< at this many vertices
     std::int64_t faces = 0;     ///< or at this many faces
+    double face_share = 0;      ///< or at this share of the faces of the level before
     /// no collapse above this total quadric error [feature units^2 px^2]
     double max_error = std::numeric_limits<double>::infinity();
 };

@@ -208,8 +208,8 @@ TEST_CASE("build: the report's figures are those of what a reader gets") {
         const BuildResult built = build_mesh_image(image, with_density(5));
         const auto& [mesh, map, error] = built.mesh_image.levels[0];
         const FeatureImage feature = luv_image(image);
-        CHECK(built.report.map_rms == map_rms(mesh, map, feature));
-        CHECK(built.report.gouraud_rms == map_rms(mesh, trivial_map(mesh, 40, 30), feature));
+        CHECK(built.report.levels.front().map_rms == map_rms(mesh, map, feature));
+        CHECK(built.report.levels.front().gouraud_rms == map_rms(mesh, trivial_map(mesh, 40, 30), feature));
         CHECK(built.report.collapses == 40 * 30 - static_cast<std::int64_t>(mesh.vertex_count()));
         CHECK(mesh.vertex_count() == 60);
     }

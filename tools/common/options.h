@@ -49,6 +49,23 @@ CLI::Option* add_number(CLI::App& app, const std::string& name, Number& target, 
         [&target, name, range](const std::string& text) { target = parse_number(name, text, range); }, help);
 }
 
+/// A list, its items separated by commas, each read by `parse`.
+template <typename Item>
+CLI::Option* add_list(CLI::App& app, const std::string& name, std::vector<Item>& target,
+                      std::function<Item(const std::string&)> parse, const std::string& help) {
+    return add_value(
+        app, name, "LIST",
+        [&target, parse](const std::string& text) {
+            target.clear();
+            for (std::size_t at = 0; at <= text.size();) {
+                const std::size_t end = std::min(text.find(',', at), text.size());
+                target.push_back(parse(text.substr(at, end - at)));
+                at = end + 1;
+            }
+        },
+        help);
+}
+
 /// The names of `choices`, as in "half, float".
 template <typename Value>
 std::string choice_names(const std::vector<std::pair<std::string, Value>>& choices) {

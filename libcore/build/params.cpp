@@ -1,0 +1,131 @@
+#include "libcore/build/params.h"
+
+#include <cmath>
+#include <sstream>
+
+#include "libcore/base/error.h"
+
+namespace imgmesh {
+namespace {
+
+void require(bool holds, const std::string& text) {
+    if (!holds) throw Error(ErrorCode::kUsage, text);
+}
+
+// Smoother gradients pay where vertices are far apart; figures in docs/paper-map.md.
+int smoothing_passes(double pixels_per_vertex) {
+    return pixels_per_vertex >= 250 ? 4 : pixels_per_vertex >= 66 ? 2 : pixels_per_vertex >= 12 ? 1 : 0;
+}
+
+template <typename T>
+std::string joined(const std::vector<T>& values) {
+    std::ostringstream out;
+    for (std::size_t k = 0; k < values.size(); ++k) out << (k ? "," : "") << values[k];
+    return out.str();
+}
+
+// Whether the finest level ends where StopParams say.
+bool stops_by_itself(const BuildParams& p) {
+    return p.levels.faces.empty() && p.levels.errors.empty();
+}
+
+}  // namespace
+
+void check_params(const BuildParams& p) {
+    const auto positive = [](double x) { return std::isfinite(x) && x > 0; };
+    require(p.stop.faces.value_or(2) >= 2,
+            cat("faces is ", p.stop.faces.value_or(2), ", expected 2 or more"));
+    require(p.stop.vertices.value_or(4) >= 4,
+            cat("vertices is ", p.stop.vertices.value_or(4), ", expected 4 or more"));
+    require(p.stop.error.value_or(0) >= 0 && std::isfinite(p.stop.error.value_or(0)),
+            cat("error is ", p.stop.error.value_or(0), ", expected a finite number, 0 or more"));
+    require(positive(p.stop.density) && p.stop.density <= 100,
+            cat("density is ", p.stop.density, ", expected a percentage above 0, at most 100"));
+    require(positive(p.geometry_weight),
+            cat("geometry weight is ", p.geometry_weight, ", expected a finite number above 0"));
+    require(positive(p.color_weight),
+            cat("color weight is ", p.color_weight, ", expected a finite number above 0"));
+    // Quadrics are single precision: products of two sums over all pixels must neither overflow nor vanish.
+    const double lambda = p.geometry_weight / p.color_weight;
+    require(lambda >= 1e-9 && lambda <= 1e9,
+            cat("geometry weight / color weight is ", lambda, ", expected 1e-9 to 1e9"));
+    require(std::isfinite(p.projection_color_weight) && p.projection_color_weight >= 0,
+            cat("projection color weight is ", p.projection_color_weight,
+                ", expected a finite number, 0 or more"));
+    require(p.levels.count >= 1 && p.levels.count <= kMaxLevels,
+            cat("levels is ", p.levels.count, ", expected 1 to ", kMaxLevels));
+    require(p.levels.faces.size() <= kMaxLevels && p.levels.errors.size() <= kMaxLevels,
+            cat("there are more than ", kMaxLevels, " levels"));
+    for (std::size_t k = 0; k < p.levels.faces.size(); ++k) {
+        require(p.levels.faces[k] >= 2,
+                cat("faces of level ", k, " is ", p.levels.faces[k], ", expected 2 or more"));
+        require(
+            k == 0 || p.levels.faces[k] < p.levels.faces[k - 1],
+            cat("faces of level ", k, " is ", p.levels.faces[k], ", expected less than the level before"));
+    }
+    for (std::size_t k = 0; k < p.levels.errors.size(); ++k) {
+        require(
+            std::isfinite(p.levels.errors[k]) && p.levels.errors[k] >= 0,
+            cat("error of level ", k, " is ", p.levels.errors[k], ", expected a finite number, 0 or more"));
+        require(
+            k == 0 || p.levels.errors[k] > p.levels.errors[k - 1],
+            cat("error of level ", k, " is ", p.levels.errors[k], ", expected more than the level before"));
+    }
+    // The dense mesh has triangles of three pixels, and of q = 0.87.
+    require(p.max_cluster.value_or(3) >= 3,
+            cat("max cluster is ", p.max_cluster.value_or(3), ", expected 3 or more"));
+    require(p.min_quality >= 0 && p.min_quality <= 0.8,
+            cat("min quality is ", p.min_quality, ", expected 0 to 0.8"));
+}
+
+std::vector<CollapseTarget> collapse_targets(const BuildParams& params, double pixels) {
+    std::vector<CollapseTarget> targets;
+    for (const std::int64_t faces : params.levels.faces) targets.push_back({.faces = faces});
+    for (const double error : params.levels.errors)
+        targets.push_back({.max_error = error / params.color_weight});
+    if (!targets.empty()) return targets;
+
+    CollapseTarget finest;
+    const StopParams& stop = params.stop;
+    finest.faces = stop.faces.value_or(0);
+    finest.vertices = stop.vertices.value_or(0);
+    if (stop.error) finest.max_error = *stop.error / params.color_weight;
+    if (!stop.faces && !stop.vertices && !stop.error)
+        finest.vertices =
+            std::max(std::int64_t{4}, static_cast<std::int64_t>(std::llround(pixels * stop.density / 100)));
+    targets.push_back(finest);
+    for (int k = 1; k < params.levels.count; ++k) targets.push_back({.faces = 2, .face_share = 0.25});
+    return targets;
+}
+
+CollapseParams collapse_params(const BuildParams& params, const CollapseTarget& finest, double pixels) {
+    CollapseParams out;
+    out.geometry_weight = static_cast<float>(params.geometry_weight / params.color_weight);
+    out.min_shape = static_cast<float>(params.min_quality);
+    const auto vertices = static_cast<double>(std::max(finest.vertices, finest.faces / 2));
+    // With an error alone the density is not known beforehand; the default's serves.
+    out.smoothing = smoothing_passes(vertices > 0 ? pixels / vertices : 100);
+    return out;
+}
+
+std::vector<BuildParameter> listed_params(const BuildParams& p, const CollapseParams& collapse) {
+    std::vector<BuildParameter> out{{"metric", std::string("flattened")}};
+    if (stops_by_itself(p)) {
+        if (p.stop.faces) out.emplace_back("faces", *p.stop.faces);
+        if (p.stop.vertices) out.emplace_back("vertices", *p.stop.vertices);
+        if (p.stop.error) out.emplace_back("error", *p.stop.error);
+        if (!p.stop.faces && !p.stop.vertices && !p.stop.error) out.emplace_back("density", p.stop.density);
+        if (p.levels.count > 1) out.emplace_back("levels", std::int64_t{p.levels.count});
+    }
+    if (!p.levels.faces.empty()) out.emplace_back("level-faces", joined(p.levels.faces));
+    if (!p.levels.errors.empty()) out.emplace_back("level-errors", joined(p.levels.errors));
+    out.emplace_back("geometry-weight", p.geometry_weight);
+    out.emplace_back("color-weight", p.color_weight);
+    out.emplace_back("projection-color-weight", p.projection_color_weight);
+    out.emplace_back("smoothing", std::int64_t{collapse.smoothing});
+    if (p.max_cluster) out.emplace_back("max-cluster", *p.max_cluster);
+    if (p.min_quality > 0) out.emplace_back("min-quality", p.min_quality);
+    return out;
+}
+
+}  // namespace imgmesh

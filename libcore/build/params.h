@@ -1,0 +1,23 @@
+// What the parameters of a build mean to its stages.
+#pragma once
+
+#include <vector>
+
+#include "libcore/build/build.h"
+#include "libcore/collapse/collapse_edges.h"
+
+namespace imgmesh {
+
+/// Throws Error(kUsage) for the first parameter that is out of its range.
+void check_params(const BuildParams& params);
+
+/// The collapse's targets, finest level first, for a picture of that many pixels.
+std::vector<CollapseTarget> collapse_targets(const BuildParams& params, double pixels);
+
+/// The collapse's parameters, but for max_face_area.
+CollapseParams collapse_params(const BuildParams& params, const CollapseTarget& finest, double pixels);
+
+/// Every parameter that shaped the result, by its option's name.
+std::vector<BuildParameter> listed_params(const BuildParams& params, const CollapseParams& collapse);
+
+}  // namespace imgmesh
