@@ -5,8 +5,13 @@
 #include <vector>
 
 #include "libcore/image/image.h"
+#include "libcore/metrics/distribution.h"
 
 namespace imgmesh {
+
+/// Fixed bins for the errors of pixels, so that histograms of different pairs can stand side by side.
+inline constexpr Bins kLuvErrorBins{0, 20, 20};
+inline constexpr Bins kCiede2000Bins{0, 10, 20};
 
 struct ImageDifference {
     std::int64_t pixels = 0;       ///< compared: not wholly transparent (alpha 0) in either picture
