@@ -161,7 +161,7 @@ ImageDifference compare_inputs(const Input& a, const Input& b, const Options& o)
     return difference;
 }
 
-// The plot's bytes for a .svg or its picture for a .png: either is made before any file is written.
+// panels: of the errors of two files, or empty; the containers' measures follow them.
 Plot make_plot(const std::vector<Input>& inputs, const Options& o, std::vector<HistogramPanel> panels) {
     std::vector<std::string> names;
     std::vector<LevelQuality> qualities;
@@ -232,6 +232,7 @@ Report run(const Options& o, Context& context) {
     }
 
     context.progress(0.9, "write");
+    // The plot is drawn before any file is written: without a font there are no outputs at all.
     const bool svg = lower_extension(o.plot) == ".svg";
     const Plot plot = o.plot.empty() ? Plot() : make_plot(inputs, o, std::move(panels));
     const Image plot_image = o.plot.empty() || svg ? Image() : draw_plot(plot, o.plot);
