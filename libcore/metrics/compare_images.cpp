@@ -1,48 +1,129 @@
+#include "libcore/metrics/compare_images.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "libcore/base/error.h"
+#include "libcore/base/parallel.h"
 #include "libcore/image/color.h"
-#include "libcore/metrics/metrics.h"
+#include "libcore/metrics/ciede2000.h"
+#include "libcore/metrics/ssim.h"
 
 namespace imgmesh {
 namespace {
 
-// Where R, G and B stand; all three the same for grey. luv_image() has refused pictures with neither.
-std::array<int, 3> color_channels(const Image& image) {
-    const std::array<int, 3> rgb = {image.channel("R"), image.channel("G"), image.channel("B")};
-    if (std::min({rgb[0], rgb[1], rgb[2]}) >= 0) return rgb;
-    const int grey = image.channel("Y");
-    return {grey, grey, grey};
+constexpr int kGrainRows = 16;
+
+// The colours of a picture, whatever its channels are.
+class Colors {
+  public:
+    Colors(const Image& image, ColorSpace common)
+        : image_(image),
+          common_(common),
+          rgb_{image.channel("R"), image.channel("G"), image.channel("B")},
+          alpha_(image.channel("A")) {
+        if (std::min({rgb_[0], rgb_[1], rgb_[2]}) < 0) rgb_.fill(image.channel("Y"));
+        if (rgb_[0] < 0)
+            throw Error(ErrorCode::kUnsupported, "the picture has no colour: neither channels R, G, B nor Y");
+    }
+
+    bool transparent(int x, int y) const { return alpha_ >= 0 && image_.pixel(x, y)[alpha_] <= 0; }
+    Vec3f encoded(int x, int y) const {
+        const float* p = image_.pixel(x, y);
+        return {p[rgb_[0]], p[rgb_[1]], p[rgb_[2]]};
+    }
+    Vec3f linear(const Vec3f& encoded) const { return linear_from_encoded(image_.color_space, encoded); }
+    /// In the space that both pictures are compared in.
+    Vec3f common(const Vec3f& encoded, const Vec3f& linear) const {
+        return image_.color_space == common_ ? encoded : encoded_from_linear(common_, linear);
+    }
+
+  private:
+    const Image& image_;
+    ColorSpace common_;
+    std::array<int, 3> rgb_;
+    int alpha_;
+};
+
+float luma(const Vec3f& rgb) {
+    return 0.299f * rgb[0] + 0.587f * rgb[1] + 0.114f * rgb[2];  // ITU-R BT.601
+}
+
+struct RowSums {
+    std::int64_t pixels = 0, in_one_only = 0;
+    double rgb = 0, luv = 0, max_rgb = 0, max_luv = 0;
+};
+
+// Row y of both pictures: its sums, and its part of the errors and the lumas, which hold NaN so far.
+void compare_row(const Colors& a, const Colors& b, int width, int y, RowSums& sums, ImageDifference& result,
+                 std::vector<float>& luma_a, std::vector<float>& luma_b) {
+    std::size_t i = static_cast<std::size_t>(y) * static_cast<std::size_t>(width);
+    for (int x = 0; x < width; ++x, ++i) {
+        const bool hidden_a = a.transparent(x, y), hidden_b = b.transparent(x, y);
+        sums.in_one_only += hidden_a != hidden_b;
+        if (hidden_a || hidden_b) continue;
+        ++sums.pixels;
+        const Vec3f encoded_a = a.encoded(x, y), encoded_b = b.encoded(x, y);
+        const Vec3f linear_a = a.linear(encoded_a), linear_b = b.linear(encoded_b);
+        const Vec3f rgb_a = a.common(encoded_a, linear_a), rgb_b = b.common(encoded_b, linear_b);
+        const Vec3d rgb = rgb_a.cast<double>() - rgb_b.cast<double>();
+        const Vec3d luv = luv_from_linear(linear_a).cast<double>() - luv_from_linear(linear_b).cast<double>();
+        sums.rgb += rgb.squaredNorm();
+        sums.luv += luv.squaredNorm();
+        sums.max_rgb = std::max(sums.max_rgb, rgb.cwiseAbs().maxCoeff());
+        sums.max_luv = std::max(sums.max_luv, luv.norm());
+        result.luv[i] = static_cast<float>(luv.norm());
+        result.ciede2000[i] =
+            static_cast<float>(ciede2000(lab_from_linear(linear_a), lab_from_linear(linear_b)));
+        luma_a[i] = luma(rgb_a);
+        luma_b[i] = luma(rgb_b);
+    }
 }
 
 }  // namespace
+
+bool has_color(const Image& image) {
+    return image.channel("Y") >= 0 ||
+           std::min({image.channel("R"), image.channel("G"), image.channel("B")}) >= 0;
+}
 
 ImageDifference compare_images(const Image& a, const Image& b) {
     if (a.width != b.width || a.height != b.height)
         throw Error(ErrorCode::kUsage, cat("pictures differ in size: ", a.width, "x", a.height, " and ",
                                            b.width, "x", b.height));
-    const FeatureImage luv_a = luv_image(a), luv_b = luv_image(b);
-    const std::array<int, 3> channels_a = color_channels(a), channels_b = color_channels(b);
     ImageDifference result;
+    // Differences of linear light say little about what one sees, and would not compare with other pictures'.
+    if (a.color_space == b.color_space && a.color_space != ColorSpace::kLinear)
+        result.color_space = a.color_space;
+    const Colors colors_a(a, result.color_space), colors_b(b, result.color_space);
+
+    const std::vector<float> none(a.pixel_count(), std::numeric_limits<float>::quiet_NaN());
+    result.luv = result.ciede2000 = none;
+    std::vector<float> luma_a = none, luma_b = none;
+    // One sum a row, added in order: the same result for any number of threads.
+    std::vector<RowSums> rows(static_cast<std::size_t>(a.height));
+    parallel_blocks(0, a.height, kGrainRows, [&](int first, int last) {
+        for (int y = first; y < last; ++y)
+            compare_row(colors_a, colors_b, a.width, y, rows[static_cast<std::size_t>(y)], result, luma_a,
+                        luma_b);
+    });
     double sum_rgb = 0, sum_luv = 0;
-    for (int y = 0; y < a.height; ++y)
-        for (int x = 0; x < a.width; ++x) {
-            const float *pa = a.pixel(x, y), *pb = b.pixel(x, y), *la = luv_a.pixel(x, y),
-                        *lb = luv_b.pixel(x, y);
-            for (std::size_t c = 0; c < 3; ++c) {
-                const double rgb = double(pa[channels_a[c]]) - pb[channels_b[c]], luv = double(la[c]) - lb[c];
-                sum_rgb += rgb * rgb;
-                sum_luv += luv * luv;
-                result.max_rgb = std::max(result.max_rgb, std::abs(rgb));
-            }
-        }
-    if (a.pixel_count() > 0) {
-        result.rms_rgb = std::sqrt(sum_rgb / double(3 * a.pixel_count()));
-        result.rms_luv = std::sqrt(sum_luv / double(a.pixel_count()));
+    for (const RowSums& row : rows) {
+        result.pixels += row.pixels;
+        result.in_one_only += row.in_one_only;
+        sum_rgb += row.rgb;
+        sum_luv += row.luv;
+        result.max_rgb = std::max(result.max_rgb, row.max_rgb);
+        result.max_luv = std::max(result.max_luv, row.max_luv);
+    }
+    if (result.pixels > 0) {
+        result.rms_rgb = std::sqrt(sum_rgb / static_cast<double>(3 * result.pixels));
+        result.rms_luv = std::sqrt(sum_luv / static_cast<double>(result.pixels));
     }
     result.psnr = -20 * std::log10(result.rms_rgb);
+    result.ssim = mean_ssim(luma_a, luma_b, a.width, a.height);
     return result;
 }
 

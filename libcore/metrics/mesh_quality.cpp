@@ -1,12 +1,10 @@
-// Shape: edge ratio, radius ratio and q as in Field, "Qualitative measures for initial meshes", 2000.
 // Topology: every count follows from the list of half-edges sorted by their two ends.
 #include <algorithm>
-#include <cmath>
-#include <numbers>
 #include <numeric>
 #include <tuple>
 
 #include "libcore/metrics/metrics.h"
+#include "libcore/metrics/triangle_shape.h"
 
 namespace imgmesh {
 namespace {
@@ -88,35 +86,25 @@ void measure_topology(const BaseMesh& mesh, MeshQuality& q) {
 
 void measure_shape(const BaseMesh& mesh, MeshQuality& q) {
     std::int64_t positive = 0;
-    double least_angle = std::numbers::pi;
     q.min_shape = mesh.faces.empty() ? 0 : 1;
+    q.min_angle_deg = mesh.faces.empty() ? 0 : 60;
     for (const auto& [ia, ib, ic] : mesh.faces) {
-        const Vec2d a = mesh.position[ia].cast<double>(), b = mesh.position[ib].cast<double>(),
-                    c = mesh.position[ic].cast<double>();
-        const double area2 = signed_area2(mesh.position[ia], mesh.position[ib], mesh.position[ic]);
+        const Vec2f &a = mesh.position[ia], &b = mesh.position[ib], &c = mesh.position[ic];
+        const double area2 = signed_area2(a, b, c);
         q.area += area2 / 2;
         if (!(area2 > 0)) {
             ++q.flipped_faces;
-            q.min_shape = least_angle = 0;
+            q.min_shape = q.min_angle_deg = 0;
             continue;
         }
         ++positive;
-        double length[3] = {(b - c).norm(), (c - a).norm(), (a - b).norm()};
-        std::sort(length, length + 3);
-        const auto [shortest, middle, longest] = length;
-        const double perimeter = shortest + middle + longest;
-        q.mean_edge_ratio += longest / shortest;
-        // inradius = area2 / perimeter, circumradius = product of the sides / (2 area2)
-        q.mean_radius_ratio += 4 * area2 * area2 / (perimeter * shortest * middle * longest);
-        const double shape =
-            2 * std::sqrt(3.0) * area2 / (shortest * shortest + middle * middle + longest * longest);
-        q.mean_shape += shape;
-        q.min_shape = std::min(q.min_shape, shape);
-        // The least angle lies opposite the shortest side, between the two others.
-        const double cosine2 = middle * middle + longest * longest - shortest * shortest;
-        least_angle = std::min(least_angle, std::atan2(2 * area2, cosine2));
+        const TriangleShape s = triangle_shape(a, b, c);
+        q.mean_edge_ratio += s.edge_ratio;
+        q.mean_radius_ratio += s.radius_ratio;
+        q.mean_shape += s.shape;
+        q.min_shape = std::min(q.min_shape, s.shape);
+        q.min_angle_deg = std::min(q.min_angle_deg, s.min_angle_deg);
     }
-    if (!mesh.faces.empty()) q.min_angle_deg = least_angle * 180 / std::numbers::pi;
     if (positive == 0) return;
     for (double* mean : {&q.mean_edge_ratio, &q.mean_radius_ratio, &q.mean_shape}) *mean /= double(positive);
 }

@@ -1,4 +1,4 @@
-// Figures of merit: how good a mesh, a map, a reconstruction is.
+// Figures of merit: how good a mesh and a map are. Pictures against each other: compare_images.h.
 #pragma once
 
 #include <cstdint>
@@ -9,8 +9,8 @@
 
 namespace imgmesh {
 
-/// Shape of the triangles of a mesh. Means are over the faces of positive area; the least values take 0 for
-/// every other face. All zero for an empty mesh.
+/// Shape of the triangles of a mesh (measures as in triangle_shape.h). Means are over the faces of positive
+/// area; the least values take 0 for every other face. All zero for an empty mesh.
 struct MeshQuality {
     std::int64_t vertices = 0;  ///< all, also those of no face
     std::int64_t faces = 0;
@@ -58,16 +58,5 @@ std::vector<Vec2d> mapped_positions(const BaseMesh& mesh, const PixelMap& map);
 /// features and `reference`; pixels with map face kNone are left out (0 if all are). Face ids must be valid.
 /// Throws Error(kUsage) where sizes or channels differ.
 double map_rms(const BaseMesh& mesh, const PixelMap& map, const FeatureImage& reference);
-
-/// Pictures against each other, both as encoded in their colour space, over R, G, B of [0, 1]; grey counts as
-/// R = G = B, alpha is ignored. Throws Error(kUsage) where sizes differ, Error(kUnsupported) for a picture
-/// without colour.
-struct ImageDifference {
-    double rms_rgb = 0;  ///< over all samples, 0..1
-    double psnr = 0;     ///< 20 log10(1 / rms_rgb) [dB]; infinite when equal
-    double rms_luv = 0;  ///< root mean square Euclidean distance in L*u*v* per pixel
-    double max_rgb = 0;
-};
-ImageDifference compare_images(const Image& a, const Image& b);
 
 }  // namespace imgmesh

@@ -56,13 +56,15 @@ def huge_png(path, width=100000, height=100000):
     return path
 
 
-def write_float(path, samples, sample_type="float"):
+def write_float(path, samples, sample_type="float", names=None):
     """Writes through OpenImageIO, for EXR and TIFF."""
     samples = np.ascontiguousarray(samples, dtype=np.float32)
     height, width, channels = samples.shape
     out = oiio.ImageOutput.create(str(path))
-    if not out.open(str(path), oiio.ImageSpec(width, height, channels, sample_type)) or \
-            not out.write_image(samples) or not out.close():
+    stored = oiio.ImageSpec(width, height, channels, sample_type)
+    if names:
+        stored.channelnames = names
+    if not out.open(str(path), stored) or not out.write_image(samples) or not out.close():
         raise RuntimeError(out.geterror() or oiio.geterror())
     return path
 

@@ -4,7 +4,6 @@
 #include <limits>
 
 #include "libcore/base/error.h"
-#include "libcore/image/color.h"
 #include "libcore/metrics/metrics.h"
 #include "libcore/param/trivial_map.h"
 #include "tests/support/meshes.h"
@@ -202,28 +201,4 @@ TEST_CASE("map_rms: features linear in position are exact, an offset shows as it
     reference.height = 30;
     mesh.channels = 1;
     CHECK_THROWS_AS(map_rms(mesh, map, reference), Error);
-}
-
-TEST_CASE("compare_images: hand-made differences") {
-    Image a = make_image(2, 1, 3), b = a;
-    CHECK(compare_images(a, b).rms_rgb == 0);
-    CHECK(std::isinf(compare_images(a, b).psnr));
-    for (float& x : b.data) x = 1;
-    ImageDifference d = compare_images(a, b);
-    CHECK(d.rms_rgb == Approx(1));
-    CHECK(d.psnr == Approx(0));
-    CHECK(d.max_rgb == Approx(1));
-    CHECK(d.rms_luv == Approx(100));  // black and white are 100 apart in L*
-
-    b = a;
-    b.pixel(1, 0)[2] = 0.6f;  // one sample of six
-    d = compare_images(a, b);
-    CHECK(d.rms_rgb == Approx(0.6 / std::sqrt(6.0)));
-    CHECK(d.psnr == Approx(20 * std::log10(std::sqrt(6.0) / 0.6)));
-    CHECK(d.max_rgb == Approx(0.6));
-
-    Image grey = make_image(2, 1, 2);  // alpha does not count
-    grey.pixel(0, 0)[1] = 1;
-    CHECK(compare_images(a, grey).rms_rgb == 0);
-    CHECK_THROWS_AS(compare_images(a, make_image(1, 2, 3)), Error);
 }

@@ -1,0 +1,26 @@
+// Words in pictures. Target imgmesh_pictures.
+#pragma once
+
+#include <string>
+
+#include "libcore/image/image.h"
+
+namespace imgmesh {
+
+enum class TextAlign { kLeft, kCenter, kRight };
+
+/// A line of UTF-8 text; (x, y) is where its baseline begins, has its middle or ends [pixels].
+struct TextLabel {
+    int x = 0;
+    int y = 0;
+    int size = 12;  ///< height of the font [pixels]
+    TextAlign align = TextAlign::kLeft;
+    Vec3f color = Vec3f::Zero();  ///< as encoded in the picture
+    std::string text;
+};
+
+/// Draws the label over an RGB picture, in DejaVu Sans; what lies outside is cut off. Throws
+/// Error(kUnsupported) where that font is not installed.
+void draw_text(Image& image, const TextLabel& label);
+
+}  // namespace imgmesh

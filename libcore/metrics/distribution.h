@@ -1,0 +1,35 @@
+// Many numbers told in a few: mean, spread, percentiles, and a histogram over fixed bins.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+namespace imgmesh {
+
+/// `count` bins of one width over [low, high]. A value on an edge between two bins belongs to the upper one,
+/// `high` itself to the last.
+struct Bins {
+    double low = 0;
+    double high = 1;
+    int count = 1;
+};
+
+struct Distribution {
+    std::int64_t count = 0;  ///< values; with none, every figure below but the histogram is NaN
+    double mean = 0;
+    double deviation = 0;  ///< standard deviation of the values themselves (divided by count)
+    double min = 0;
+    /// Percentiles: linear between the values in order, the least being the 0th and the greatest the 100th.
+    double p5 = 0, p25 = 0, median = 0, p75 = 0, p95 = 0;
+    double max = 0;
+
+    Bins bins;
+    std::vector<std::int64_t> histogram;  ///< size bins.count
+    std::int64_t below = 0;               ///< values below bins.low
+    std::int64_t above = 0;               ///< values above bins.high
+};
+
+/// Values that are NaN are left out; the others must be finite. bins.low < bins.high, bins.count >= 1. O(n).
+Distribution distribution(std::vector<float> values, const Bins& bins);
+
+}  // namespace imgmesh

@@ -1,0 +1,49 @@
+// Histograms as a drawing of boxes and words, which becomes an SVG or a picture.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "formats/image_text.h"
+#include "libcore/image/image.h"
+#include "libcore/metrics/distribution.h"
+
+namespace imgmesh {
+
+struct HistogramSeries {
+    std::size_t name = 0;  ///< index of its name; decides the colour
+    Distribution distribution;
+};
+
+/// One measure; its series stand side by side in each bin, so all have the same bins.
+struct HistogramPanel {
+    std::string title;
+    std::vector<HistogramSeries> series;
+};
+
+struct PlotBox {
+    int x, y, width, height;  ///< [pixels], y down
+    Vec3f color;              ///< sRGB
+};
+
+/// Boxes are drawn in order, labels over them, on white.
+struct Plot {
+    int width = 0;
+    int height = 0;
+    std::vector<PlotBox> boxes;
+    std::vector<TextLabel> labels;
+};
+
+/// The names as a legend, then the panels in rows of three. Heights are shares of a series' values, so that
+/// series of different counts compare; what lies outside the bins is told in words. At most three names.
+Plot histogram_plot(const std::vector<std::string>& names, const std::vector<HistogramPanel>& panels);
+
+/// The drawing as an SVG document.
+std::string plot_svg(const Plot& plot);
+
+/// The boxes of the drawing, `scale` times as large, as an RGB picture in sRGB; and the labels for it.
+Image plot_boxes(const Plot& plot, int scale);
+std::vector<TextLabel> plot_labels(const Plot& plot, int scale);
+
+}  // namespace imgmesh

@@ -1,0 +1,38 @@
+// What imgmesh-compare found, as the report's members, as text and as histograms.
+#pragma once
+
+#include <iosfwd>
+#include <string>
+#include <vector>
+
+#include "libcore/metrics/compare_images.h"
+#include "libcore/metrics/metrics.h"
+#include "libcore/metrics/quality_distributions.h"
+#include "tools/common/histogram_plot.h"
+#include "tools/common/tool_main.h"
+
+namespace imgmesh {
+
+/// All that is measured of one level of a container.
+struct LevelQuality {
+    std::size_t vertices = 0;
+    std::size_t faces = 0;
+    MeshDistributions mesh;
+    MapDistributions map;
+    MapQuality map_quality;
+};
+
+Report distribution_report(const Distribution& d);
+Report quality_report(const LevelQuality& quality);
+/// luv, ciede2000: the distributions of the difference's errors of pixels.
+Report difference_report(const ImageDifference& difference, const Distribution& luv,
+                         const Distribution& ciede2000);
+
+/// The measures of `qualities` as panels, with one series each. names: of each quality, an index into the
+/// plot's names.
+std::vector<HistogramPanel> quality_panels(const std::vector<LevelQuality>& qualities,
+                                           const std::vector<std::size_t>& names);
+
+void print_comparison(const Report& report, std::ostream& out);
+
+}  // namespace imgmesh

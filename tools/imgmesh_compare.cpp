@@ -1,0 +1,263 @@
+// imgmesh-compare: two pictures or containers against each other, or the quality of a container.
+#include <algorithm>
+#include <filesystem>
+#include <limits>
+#include <optional>
+
+#include "formats/atomic_file.h"
+#include "formats/container.h"
+#include "formats/image_io.h"
+#include "libcore/image/color.h"
+#include "libcore/metrics/error_image.h"
+#include "libcore/recon/draw.h"
+#include "tools/common/names.h"
+#include "tools/common/options.h"
+#include "tools/common/output.h"
+#include "tools/common/text.h"
+#include "tools/compare_report.h"
+
+namespace fs = std::filesystem;
+using namespace imgmesh;
+
+namespace {
+
+// Kodak photographs at 1 % vertices have an RMS of 4.5: their usual errors are dark, what one sees is bright.
+constexpr double kErrorRange = 20;
+// Of plots as PNG, whose letters would be coarse at the size that suits an SVG.
+constexpr int kPngScale = 2;
+
+struct Options {
+    std::vector<std::string> inputs;
+    std::optional<DrawMode> mode;
+    std::optional<std::int64_t> level;
+    std::optional<ColorSpace> color_space;
+    std::optional<double> tolerance;
+    std::string error_image;
+    std::optional<double> error_range;
+    std::string plot;
+};
+
+Choices<DrawMode> mode_choices() {
+    return {{"map", DrawMode::kMap}, {"gouraud", DrawMode::kGouraud}};
+}
+
+void add_file(CLI::App& app, const std::string& name, std::string& path, const std::string& help) {
+    add_value(
+        app, name, "FILE",
+        [&path, name](const std::string& text) {
+            if (text.empty()) throw Error(ErrorCode::kUsage, cat(name, " '': expected a file name"));
+            path = text;
+        },
+        help);
+}
+
+void add_options(CLI::App& app, Options& o) {
+    add_inputs(app, "INPUT", o.inputs,
+               "One container (.glb, .gltf), or two files to compare: pictures or containers");
+    add_choice(app, "--mode", o.mode, mode_choices(), "How a container is drawn (default map)");
+    add_count(app, "--level", o.level, {0, std::numeric_limits<int>::max()},
+              "Level of a container's pyramid, 0 the finest (default 0)");
+    add_choice(app, "--color-space", o.color_space, color_space_choices(),
+               "Of the pictures' numbers, whatever their files say");
+    add_number(app, "--tolerance", o.tolerance, {0},
+               "Exit with 7 where the RMS in L*u*v* is above this (default none: exit with 0)");
+    add_file(app, "--error-image", o.error_image,
+             "Picture to write of the errors in L*u*v*: black none, then blue, red, orange, white");
+    add_number(app, "--error-range", o.error_range, {0, kNoLimit, true},
+               cat("Error that the error image shows white (default ", kErrorRange, ")"));
+    add_file(app, "--plot", o.plot, "Histograms to write (.svg, .png)");
+}
+
+bool is_container(const std::string& path) {
+    const std::string extension = lower_extension(path);
+    return extension == ".glb" || extension == ".gltf";
+}
+
+// Throws Error(kUsage) for what can be seen to be wrong before any file is read.
+void check_options(const Options& o) {
+    const auto refuse = [](const std::string& text) { throw Error(ErrorCode::kUsage, text); };
+    const bool pair = o.inputs.size() == 2;
+    if (o.inputs.size() > 2) refuse(cat(o.inputs[2], ": expected one container or two files"));
+    if (!pair && !is_container(o.inputs[0]))
+        refuse(cat(o.inputs[0], ": expected a second file, or a container (.glb, .gltf) alone"));
+    for (const auto& [name, given] :
+         {std::pair{"--mode", o.mode.has_value()}, std::pair{"--color-space", o.color_space.has_value()},
+          std::pair{"--tolerance", o.tolerance.has_value()},
+          std::pair{"--error-image", !o.error_image.empty()}})
+        if (given && !pair) refuse(cat(name, ": expected two files to compare"));
+    const bool containers = std::any_of(o.inputs.begin(), o.inputs.end(), is_container);
+    const bool pictures = !std::all_of(o.inputs.begin(), o.inputs.end(), is_container);
+    if ((o.mode || o.level) && !containers)
+        refuse(cat(o.mode ? "--mode" : "--level", ": expected a container (.glb, .gltf) among the files"));
+    if (o.color_space && !pictures) refuse("--color-space: expected a picture among the files");
+    if (o.error_range && o.error_image.empty()) refuse("--error-range: expected --error-image as well");
+    if (!o.error_image.empty() && !can_write_image(o.error_image))
+        refuse(cat("--error-image ", o.error_image, ": expected the name of a picture, as in .png"));
+    const std::string plot = lower_extension(o.plot);
+    if (!o.plot.empty() && plot != ".svg" && plot != ".png")
+        refuse(cat("--plot ", o.plot, ": expected a name in .svg or .png"));
+    const auto absolute = [](const std::string& path) { return fs::absolute(path).lexically_normal(); };
+    if (!o.plot.empty() && !o.error_image.empty() && absolute(o.plot) == absolute(o.error_image))
+        refuse(cat("--plot ", o.plot, ": is the error image as well"));
+}
+
+struct Input {
+    std::vector<std::string> files;
+    Image image;  // only where two files are compared
+    std::optional<LevelQuality> quality;
+    Report report;
+};
+
+Input load_picture(const std::string& path, const Options& o) {
+    Input input{{path}, read_image(path, o.color_space), {}, {}};
+    if (!has_color(input.image))
+        throw Error(ErrorCode::kUnsupported,
+                    cat(path, ": the picture has no colour: neither channels R, G, B nor Y"));
+    input.report = {{"input", path},
+                    {"kind", "picture"},
+                    {"width", input.image.width},
+                    {"height", input.image.height},
+                    {"color_space", color_space_name(input.image.color_space)}};
+    return input;
+}
+
+Input load_container(const std::string& path, const Options& o) {
+    const Container container = read_container(path);
+    const MeshImage& m = container.mesh_image;
+    const auto index = static_cast<std::size_t>(o.level.value_or(0));
+    if (index >= m.levels.size())
+        throw Error(ErrorCode::kUsage,
+                    cat("--level ", index, ": ", path, " has levels 0 to ", m.levels.size() - 1));
+    const Level& level = m.levels[index];
+    Input input;
+    input.files = container.facts.files;
+    input.report = {{"input", path},
+                    {"kind", "container"},
+                    {"width", m.source.width},
+                    {"height", m.source.height},
+                    {"color_space", color_space_name(m.source.color_space)},
+                    {"level", index}};
+    if (o.inputs.size() == 2) {
+        const DrawMode mode = o.mode.value_or(DrawMode::kMap);
+        input.image = draw(m, static_cast<int>(index), {mode});
+        input.report["mode"] = name_of(mode_choices(), mode);
+    }
+    input.quality = LevelQuality{level.mesh.vertex_count(), level.mesh.faces.size(),
+                                 mesh_distributions(level.mesh), map_distributions(level.mesh, level.map),
+                                 map_quality(level.mesh, level.map, m.source.has_mask)};
+    input.report.update(quality_report(*input.quality));
+    return input;
+}
+
+ImageDifference compare_inputs(const Input& a, const Input& b, const Options& o) {
+    const auto size = [](const Image& image) { return cat(image.width, " x ", image.height); };
+    if (size(a.image) != size(b.image))
+        throw Error(ErrorCode::kBadFile, cat(o.inputs[0], " has ", size(a.image), " pixels, ", o.inputs[1],
+                                             " has ", size(b.image), "; expected the same size"));
+    ImageDifference difference = compare_images(a.image, b.image);
+    if (difference.pixels == 0)
+        throw Error(ErrorCode::kBadFile,
+                    cat(o.inputs[0], " and ", o.inputs[1], ": no pixel is visible in both"));
+    return difference;
+}
+
+// panels: of the errors of two files, or empty; the containers' measures follow them.
+Plot make_plot(const std::vector<Input>& inputs, const Options& o, std::vector<HistogramPanel> panels) {
+    std::vector<std::string> names;
+    std::vector<LevelQuality> qualities;
+    std::vector<std::size_t> places;
+    for (std::size_t i = 0; i < inputs.size(); ++i) {
+        if (!inputs[i].quality) continue;
+        places.push_back(names.size());
+        qualities.push_back(*inputs[i].quality);
+        names.push_back(o.inputs[i]);
+    }
+    for (HistogramPanel& panel : panels)
+        for (HistogramSeries& series : panel.series) series.name = names.size();
+    if (!panels.empty()) names.push_back(cat(o.inputs[0], " against ", o.inputs[1]));
+    for (HistogramPanel& panel : quality_panels(qualities, places)) panels.push_back(std::move(panel));
+    return histogram_plot(names, panels);
+}
+
+Image draw_plot(const Plot& plot, const std::string& path) {
+    Image image = plot_boxes(plot, kPngScale);
+    try {
+        for (const TextLabel& label : plot_labels(plot, kPngScale)) draw_text(image, label);
+    } catch (const Error& e) {
+        throw Error(e.code(), cat(path, ": ", e.what(), "; .svg needs no font"));
+    }
+    return image;
+}
+
+void write_text(const std::string& path, const std::string& text, bool overwrite) {
+    AtomicFile file(path, overwrite);
+    file.write({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
+    file.commit();
+}
+
+Report run(const Options& o, Context& context) {
+    check_options(o);
+    for (const std::string& output : {o.error_image, o.plot})
+        if (!output.empty()) check_output(output, context.overwrite);
+
+    std::vector<Input> inputs;
+    Report reports = Report::array();
+    for (const std::string& path : o.inputs) {
+        context.progress(0.3 * static_cast<double>(inputs.size()), "read");
+        inputs.push_back(is_container(path) ? load_container(path, o) : load_picture(path, o));
+        check_distinct(inputs.back().files, {o.error_image, o.plot});
+        reports.push_back(inputs.back().report);
+    }
+    Report report = {{"inputs", reports}};
+
+    context.progress(0.6, "compare");
+    std::vector<HistogramPanel> panels;
+    std::optional<ImageDifference> difference;
+    if (inputs.size() == 2) {
+        difference = compare_inputs(inputs[0], inputs[1], o);
+        const Distribution luv = distribution(difference->luv, kLuvErrorBins);
+        const Distribution ciede2000 = distribution(difference->ciede2000, kCiede2000Bins);
+        panels = {{"error in L*u*v*", {{0, luv}}}, {"CIEDE2000", {{0, ciede2000}}}};
+        report["difference"] = difference_report(*difference, luv, ciede2000);
+    }
+    if (o.tolerance) {
+        const bool within = difference->rms_luv <= *o.tolerance;
+        report["tolerance"] = *o.tolerance;
+        report["within_tolerance"] = within;
+        if (!within)
+            context.failures.push_back(
+                {ErrorCode::kDifferent,
+                 cat(o.inputs[0], " and ", o.inputs[1], " differ: RMS ", format_number(difference->rms_luv),
+                     " in L*u*v*, more than --tolerance ", *o.tolerance)});
+    }
+
+    context.progress(0.9, "write");
+    // The plot is drawn before any file is written: without a font there are no outputs at all.
+    const bool svg = lower_extension(o.plot) == ".svg";
+    const Plot plot = o.plot.empty() ? Plot() : make_plot(inputs, o, std::move(panels));
+    const Image plot_image = o.plot.empty() || svg ? Image() : draw_plot(plot, o.plot);
+    if (!o.error_image.empty()) {
+        const double range = o.error_range.value_or(kErrorRange);
+        write_image(o.error_image,
+                    error_image(difference->luv, inputs[0].image.width, inputs[0].image.height, range),
+                    {context.overwrite, {}});
+        report["error_image"] = o.error_image;
+        report["error_range"] = range;
+    }
+    if (!o.plot.empty()) {
+        if (svg)
+            write_text(o.plot, plot_svg(plot), context.overwrite);
+        else
+            write_image(o.plot, plot_image, {context.overwrite, {}});
+        report["plot"] = o.plot;
+    }
+    return report;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    return tool_main<Options>(
+        "imgmesh-compare", "Compare pictures and containers; tell the quality of a container's mesh and map.",
+        argc, argv, add_options, run, print_comparison);
+}
