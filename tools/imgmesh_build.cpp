@@ -79,6 +79,12 @@ void add_options(CLI::App& app, Options& o) {
                cat("Weight of geometry in the quadrics (default ", params.geometry_weight, ")"));
     add_number(app, "--color-weight", o.params.color_weight, {0, kNoLimit, true},
                cat("Weight of colour in the quadrics (default ", params.color_weight, ")"));
+    add_choice<bool, bool>(
+        app, "--quadrics", o.params.rebuild_quadrics, {{"accumulated", false}, {"rebuilt", true}},
+        "Summed up from the pixels on, or taken anew from the mesh at every halving (default accumulated)");
+    add_choice<bool, bool>(
+        app, "--priority", o.params.total_priority, {{"increment", false}, {"total", true}},
+        "Edges go by the error that a collapse adds, or by its total, as in the paper (default increment)");
     add_number(app, "--projection-color-weight", o.params.projection_color_weight, {0},
                cat("Weight of colour in the pixel map, 0 for the trivial map (default ",
                    format_number(params.projection_color_weight), ")"));

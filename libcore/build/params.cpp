@@ -101,6 +101,8 @@ std::vector<CollapseTarget> collapse_targets(const BuildParams& params, double p
 CollapseParams collapse_params(const BuildParams& params, const CollapseTarget& finest, double pixels) {
     CollapseParams out;
     out.geometry_weight = static_cast<float>(params.geometry_weight / params.color_weight);
+    out.rebuild_quadrics = params.rebuild_quadrics;
+    out.total_priority = params.total_priority;
     out.min_shape = static_cast<float>(params.min_quality);
     const auto vertices = static_cast<double>(std::max(finest.vertices, finest.faces / 2));
     // With an error alone the density is not known beforehand; the default's serves.
@@ -121,6 +123,8 @@ std::vector<BuildParameter> listed_params(const BuildParams& p, const CollapsePa
     if (!p.levels.errors.empty()) out.emplace_back("level-errors", joined(p.levels.errors));
     out.emplace_back("geometry-weight", p.geometry_weight);
     out.emplace_back("color-weight", p.color_weight);
+    out.emplace_back("quadrics", std::string(p.rebuild_quadrics ? "rebuilt" : "accumulated"));
+    out.emplace_back("priority", std::string(p.total_priority ? "total" : "increment"));
     out.emplace_back("projection-color-weight", p.projection_color_weight);
     out.emplace_back("smoothing", std::int64_t{collapse.smoothing});
     if (p.max_cluster) out.emplace_back("max-cluster", *p.max_cluster);

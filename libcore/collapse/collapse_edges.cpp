@@ -39,13 +39,14 @@ float snapped(float x) {
 
 struct Placement {
     float x = 0, y = 0;
-    float cost = kNever;  // what the merge adds to the error; kNever where it is not allowed
+    float cost = kNever;  // by which the edge is filed; kNever where the merge is not allowed
 };
 
 class Collapser {
   public:
     Collapser(const GridMesh& grid, const CollapseParams& params)
-        : width_(grid.feature.width),
+        : params_(params),
+          width_(grid.feature.width),
           height_(grid.feature.height),
           rings_(ring_mesh(grid)),
           quadrics_(vertex_quadrics(grid, smoothed(grid.feature, params.smoothing), params.geometry_weight)),
@@ -53,13 +54,16 @@ class Collapser {
           // q = 4 sqrt(3) area / sum, with twice the area at hand
           shape_limit_(params.min_shape / (2 * std::sqrt(3.0f))),
           vertices_(static_cast<std::int64_t>(rings_.size())),
+          next_rebuild_(vertices_ / 2),
           faces_(std::int64_t{2} * (grid.feature.width - 1) * (grid.feature.height - 1)) {}
 
     void run(const CollapseTarget& target, const Progress& progress) {
         target_ = target;
-        target_.faces = std::max(target.faces, static_cast<std::int64_t>(target.face_share * static_cast<double>(faces_)));
+        target_.faces = std::max(target.faces,
+                                 static_cast<std::int64_t>(target.face_share * static_cast<double>(faces_)));
         if (threshold_ == 0) threshold_ = first_threshold();
         while (!done()) {
+            if (params_.rebuild_quadrics && vertices_ <= next_rebuild_) rebuild_quadrics();
             const std::int64_t collapses_before = collapses_;
             postponed_ = false;
             const int side = far_from_done() ? kTile : std::max(width_, height_);
@@ -163,12 +167,18 @@ class Collapser {
         } else if (fixed == kFixedY) {
             place.x = snapped(sum.px - sum.sxy * (place.y - sum.py) / sum.sxx);
         }
-        place.cost = added_error(i, j, sum, place);
+        place.cost = cost_at(i, j, sum, place);
         return place;
     }
 
-    float added_error(Id i, Id j, const Quadric<C>& sum, const Placement& place) const {
-        return std::max(0.0f, sum.at(place.x, place.y) - quadrics_[i].error - quadrics_[j].error);
+    float cost_at(Id i, Id j, const Quadric<C>& sum, const Placement& place) const {
+        return priority(i, j, sum.at(place.x, place.y) - quadrics_[i].error - quadrics_[j].error);
+    }
+
+    // What an edge is filed by, from what its merge adds to the error.
+    float priority(Id i, Id j, float added) const {
+        added = std::max(0.0f, added);
+        return params_.total_priority ? added + (quadrics_[i].error + quadrics_[j].error) : added;
     }
 
     bool star_is_fat(const MergedRing& ring, bool border, float x, float y) const {
@@ -198,7 +208,7 @@ class Collapser {
             {0.5f * (a.x + b.x), 0.5f * (a.y + b.y)}, {a.x, a.y}, {b.x, b.y}};
         for (const auto& [cx, cy] : candidates) {
             Placement p{fixed & kFixedX ? x : snapped(cx), fixed & kFixedY ? y : snapped(cy), 0};
-            p.cost = added_error(i, j, sum, p);
+            p.cost = cost_at(i, j, sum, p);
             if (p.cost < best.cost && star_is_fat(ring, fixed != 0, p.x, p.y)) best = p;
         }
         return best;
@@ -249,14 +259,16 @@ class Collapser {
 
     void file_batch() {
         batch_.evaluate();
-        for (int lane = 0; lane < batch_size_; ++lane)
-            file_at(batch_edges_[lane].first, batch_edges_[lane].second, batch_.increment(lane));
+        for (int lane = 0; lane < batch_size_; ++lane) {
+            const auto [i, j] = batch_edges_[lane];
+            file_at(i, j, priority(i, j, batch_.increment(lane)));
+        }
         batch_size_ = 0;
     }
 
     void file_at(Id i, Id j, float cost) {
         if (cost < threshold_)
-            queue_.push(std::max(cost, 0.0f), {i, j, rings_[i].version, rings_[j].version});
+            queue_.push(cost, {i, j, rings_[i].version, rings_[j].version});
         else if (cost < kNever)
             postponed_ = true;
     }
@@ -289,6 +301,12 @@ class Collapser {
         return costs;
     }
 
+    void rebuild_quadrics() {
+        quadrics_ = current_quadrics(rings_, quadrics_, params_.geometry_weight);
+        threshold_ = first_threshold();
+        next_rebuild_ = vertices_ / 2;
+    }
+
     // The median, so that the first window holds about half of the edges.
     float first_threshold() const {
         const std::vector<float> costs = sampled_costs();
@@ -308,6 +326,7 @@ class Collapser {
         return far(vertices_, target_.vertices) && far(faces_, target_.faces);
     }
 
+    CollapseParams params_;
     int width_, height_;
     RingMesh rings_;
     std::vector<Quadric<C>> quadrics_;
@@ -319,7 +338,7 @@ class Collapser {
     float threshold_ = 0;     // of the current window
     float area2_limit_, shape_limit_;
     CollapseTarget target_;
-    std::int64_t vertices_, faces_, collapses_ = 0;
+    std::int64_t vertices_, next_rebuild_, faces_, collapses_ = 0;
     double error_ = 0;
 };
 

@@ -25,6 +25,10 @@ struct CollapseTarget {
 struct CollapseParams {
     float geometry_weight = 3.0f;  ///< lambda, against colour [feature^2 / px^2]; > 0
     int smoothing = 2;             ///< passes of `smoothed` on the copy that gradients are taken from
+    /// quadrics are taken anew from the mesh whenever its vertices have halved, instead of summed up from the
+    /// pixels on
+    bool rebuild_quadrics = false;
+    bool total_priority = false;  ///< edges go by the total error (the paper), not by what a merge adds to it
     /// no new triangle larger than this [px^2]
     float max_face_area = std::numeric_limits<float>::infinity();
     /// nor of a lesser q = 4 sqrt(3) area / sum of squared edges (1 is best); 0 leaves only the guard against

@@ -17,10 +17,10 @@ struct Accumulator {
     float gx[C] = {}, gy[C] = {};
     float gxx = 0, gxy = 0, gyy = 0;
 
-    // A face of the grid: corners at 0, (ax, ay) and (bx, by), features less those of the vertex `da`, `db`.
+    // A face: corners at 0, (ax, ay) and (bx, by), features less those of the vertex `da`, `db`.
     void add(float ax, float ay, const float* da, float bx, float by, const float* db) {
-        const float det = ax * by - ay * bx;  // +-1: every face is half a pixel
-        const float a = 0.5f;
+        const float det = ax * by - ay * bx;  // negative, as y grows downwards
+        const float a = -0.5f * det;
         const float cx = (ax + bx) / 3, cy = (ay + by) / 3;
         area += a;
         tx += a * cx;
@@ -86,6 +86,32 @@ std::vector<Quadric<3>> vertex_quadrics(const GridMesh& grid, const FeatureImage
                 }
                 quadrics[v] = sum.finish(ring.x, ring.y, grid.feature.pixel(v), lambda);
             }
+        }
+    });
+    return quadrics;
+}
+
+std::vector<Quadric<3>> current_quadrics(const RingMesh& rings, const std::vector<Quadric<3>>& before,
+                                         float lambda) {
+    std::vector<Quadric<C>> quadrics(rings.size());
+    parallel_blocks(0, static_cast<int>(rings.size()), 1 << 14, [&](int first, int last) {
+        for (std::size_t v = static_cast<std::size_t>(first); v < static_cast<std::size_t>(last); ++v) {
+            const Ring& ring = rings[v];
+            if (!ring.live()) continue;
+            float s[C], d[kMaxValence][C], ox[kMaxValence], oy[kMaxValence];
+            for (int c = 0; c < C; ++c) s[c] = before[v].feature(c, ring.x, ring.y);
+            for (int k = 0; k < ring.valence; ++k) {
+                const Ring& n = rings[ring.neighbor[k]];
+                ox[k] = n.x - ring.x;
+                oy[k] = n.y - ring.y;
+                for (int c = 0; c < C; ++c) d[k][c] = before[ring.neighbor[k]].feature(c, n.x, n.y) - s[c];
+            }
+            Accumulator sum;
+            for (int k = 0; k < ring.valence - (ring.border() ? 1 : 0); ++k) {
+                const int m = k + 1 == ring.valence ? 0 : k + 1;
+                sum.add(ox[k], oy[k], d[k], ox[m], oy[m], d[m]);
+            }
+            quadrics[v] = sum.finish(ring.x, ring.y, s, lambda);
         }
     });
     return quadrics;

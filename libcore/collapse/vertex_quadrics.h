@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "libcore/collapse/quadric.h"
+#include "libcore/collapse/ring_mesh.h"
 #include "libcore/mesh/grid_mesh.h"
 
 namespace imgmesh {
@@ -17,5 +18,10 @@ namespace imgmesh {
 /// lambda            geometry against colour [feature^2 / px^2], > 0
 /// return            one quadric a vertex, in the grid's order
 std::vector<Quadric<3>> vertex_quadrics(const GridMesh& grid, const FeatureImage& gradients, float lambda);
+
+/// The same over the faces of the mesh as it stands, positions from `rings`, colours from the quadrics
+/// `before`.
+std::vector<Quadric<3>> current_quadrics(const RingMesh& rings, const std::vector<Quadric<3>>& before,
+                                         float lambda);
 
 }  // namespace imgmesh

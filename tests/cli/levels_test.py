@@ -49,13 +49,19 @@ class Levels(CliCase):
         round_faces = self.built("--faces", "100", "--min-quality", "0.6")
         self.assertLess(round_faces["mean_edge_ratio"], free["mean_edge_ratio"])
 
+    def test_variants_of_the_metric_are_recorded(self):
+        self.built("--faces", "100", "--quadrics", "rebuilt", "--priority", "total")
+        build = self.report("imgmesh-info", "p.glb")["build"]
+        self.assertEqual((build["quadrics"], build["priority"]), ("rebuilt", "total"))
+
     def test_bad_values(self):
         for args in (["--levels", "0"], ["--levels", "33"], ["--levels", "x"], ["--level-faces", ""],
                      ["--level-faces", "100,"], ["--level-faces", "100,200"], ["--level-faces", "100,100"],
                      ["--level-faces", "10,1"], ["--level-errors", "2,1"], ["--level-errors", "nan"],
                      ["--max-cluster", "2"], ["--min-quality", "0.9"], ["--min-quality", "-1"],
                      ["--levels", "2", "--level-faces", "9,4"], ["--faces", "9", "--level-faces", "9,4"],
-                     ["--level-faces", "9,4", "--level-errors", "1,2"]):
+                     ["--level-faces", "9,4", "--level-errors", "1,2"],
+                     ["--quadrics", "none"], ["--priority", ""]):
             with self.subTest(args):
                 result = self.run_tool("imgmesh-build", "p.png", "-o", "p.glb", *args)
                 self.assert_error_lines("imgmesh-build", result, 2, 1)

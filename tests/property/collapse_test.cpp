@@ -6,6 +6,7 @@
 
 #include "libcore/base/parallel.h"
 #include "libcore/collapse/collapse_edges.h"
+#include "libcore/collapse/vertex_quadrics.h"
 #include "libcore/metrics/metrics.h"
 #include "tests/support/sample_pictures.h"
 
@@ -233,5 +234,33 @@ TEST_CASE("collapse: no face is larger or thinner than the limits allow") {
         for (const auto& [a, b, c] : result.mesh.faces)
             CHECK(signed_area2(result.mesh.position[a], result.mesh.position[b], result.mesh.position[c]) <=
                   18);
+    }
+}
+
+TEST_CASE("collapse: rebuilt quadrics and total priority give sound meshes of their own") {
+    for (const Kind kind : {Kind::kNoise, Kind::kDisc}) {
+        INFO(name_of(kind));
+        const FeatureImage feature = sample_feature(kind, 40, 30);
+        const CollapseTarget target = to_vertices(100);
+        const BaseMesh plain = collapse(feature, target).mesh;
+        for (const CollapseParams& params :
+             {CollapseParams{.rebuild_quadrics = true}, CollapseParams{.total_priority = true}}) {
+            const BaseMesh mesh = collapse(feature, target, params).mesh;
+            check_sound(mesh, {40, 30});
+            CHECK(mesh.vertex_count() == 100);
+            CHECK(mesh.position != plain.position);
+        }
+    }
+}
+
+// On the dense mesh both say the same: the mesh is the picture.
+TEST_CASE("quadrics of the current mesh are those of the dense one before anything has collapsed") {
+    const GridMesh grid = grid_mesh(sample_feature(Kind::kNoise, 9, 7));
+    const auto dense = vertex_quadrics(grid, grid.feature, 2.5f);
+    const auto current = current_quadrics(ring_mesh(grid), dense, 2.5f);
+    for (std::size_t v = 0; v < dense.size(); ++v) {
+        const float x = static_cast<float>(v % 9) + 0.3f, y = static_cast<float>(v / 9) - 0.4f;
+        const float color[3] = {50, 10, -20};
+        CHECK(current[v].at(x, y, color) == doctest::Approx(dense[v].at(x, y, color)).epsilon(1e-4));
     }
 }
