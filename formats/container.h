@@ -31,6 +31,10 @@ void write_container(const std::string& path, const MeshImage& mesh_image,
 /// beside it. Throws Error(kUsage) for another extension.
 std::vector<std::string> container_files(const std::string& path);
 
+/// Whether a container stands at `path` that refers to the files of container_files(path). Only then may a
+/// writer replace the ones beside it: anything else of these names may be somebody's picture.
+bool owns_its_files(const std::string& path);
+
 /// What read_container refuses before it takes memory.
 struct ContainerLimits {
     std::uint64_t max_bytes = std::uint64_t{8} << 30;

@@ -72,10 +72,11 @@ BaseMesh load_level(const AssetLevel& level, View buffer) {
 }
 
 std::vector<LayerPart> load_layers(const Asset& asset, View bytes) {
-    ExpectedLayers expected{asset.source.width, asset.source.height, {}, {}, asset.source.has_mask};
+    ExpectedLayers expected{asset.source.width, asset.source.height, {}, {}, {}, asset.source.has_mask};
     for (std::size_t k = 0; k < asset.levels.size(); ++k) {
         expected.parts.push_back(level_name(k));
         expected.faces.push_back(asset.levels[k].faces);
+        expected.topologies.push_back(asset.levels[k].topology);
     }
     return decode_exr_layers(bytes, expected);
 }

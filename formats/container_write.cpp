@@ -91,9 +91,7 @@ void write_glb(const std::string& path, Asset& asset, std::vector<std::uint8_t> 
 void write_gltf(const std::string& path, Asset& asset, const std::vector<std::uint8_t>& buffer,
                 const std::vector<std::uint8_t>& layers, bool overwrite) {
     const std::vector<std::string> names = container_files(path);
-    // Files of these names that belong to no container, such as the picture it is made from, are not
-    // replaced.
-    const bool overwrite_others = overwrite && std::filesystem::exists(path);
+    const bool overwrite_others = overwrite && owns_its_files(path);
     AtomicFile gltf(path, overwrite);
     AtomicFile bin(names[1], overwrite_others), exr(names[2], overwrite_others);
     asset.buffer_name = std::filesystem::path(names[1]).filename().string();
@@ -116,6 +114,20 @@ std::vector<std::string> container_files(const std::string& path) {
     return {path, stem + ".bin", stem + ".exr"};
 }
 
+bool owns_its_files(const std::string& path) {
+    const std::vector<std::string> names = container_files(path);
+    if (names.size() == 1) return true;
+    try {
+        constexpr std::uint64_t kMaxJsonBytes = 1 << 24;  // ours have a few kilobytes
+        const std::vector<std::uint8_t> bytes = read_file(path, kMaxJsonBytes);
+        const Asset asset = asset_from_json({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, {});
+        return asset.buffer_name == std::filesystem::path(names[1]).filename() &&
+               asset.layers_name == std::filesystem::path(names[2]).filename();
+    } catch (const std::exception&) {
+        return false;  // absent, or no container that a reader accepts
+    }
+}
+
 void write_container(const std::string& path, const MeshImage& mesh_image, const ContainerOptions& options) {
     const Spelling spelling = spelling_of(path);
     check_writable(mesh_image);
@@ -127,8 +139,9 @@ void write_container(const std::string& path, const MeshImage& mesh_image, const
     std::vector<std::uint8_t> buffer;
     std::vector<LayerPart> parts;
     for (const Level& level : mesh_image.levels) {
-        parts.push_back({level_name(parts.size()), level.map, {}});
+        parts.push_back({level_name(parts.size()), level.map, {}, {}});
         asset.levels.push_back(store_level(level, options.draco, buffer, parts.back().map));
+        parts.back().topology = asset.levels.back().topology;
     }
     parts.front().visits = mesh_image.visits;
     const std::vector<std::uint8_t> layers = encode_exr_layers(parts);

@@ -26,6 +26,7 @@ namespace imgmesh {
 namespace {
 
 constexpr const char* kVersionName = "imgmesh:version";
+constexpr const char* kTopologyName = "imgmesh:topology";
 constexpr const char* kVersion = "1.0";
 constexpr const char *kFace = "face.id", *kU = "bary.u", *kV = "bary.v", *kVisits = "visit.count";
 // Deflate never packs more than this many bytes into one.
@@ -99,6 +100,7 @@ Imf::Header header_of(const LayerPart& part) {
     header.setType(Imf::SCANLINEIMAGE);
     header.compression() = Imf::ZIP_COMPRESSION;
     header.insert(kVersionName, Imf::StringAttribute(kVersion));
+    if (!part.topology.empty()) header.insert(kTopologyName, Imf::StringAttribute(part.topology));
     const Imf::PixelType weight = part.map.precision == WeightPrecision::kHalf ? Imf::HALF : Imf::FLOAT;
     header.channels().insert(kFace, Imf::Channel(Imf::UINT));
     header.channels().insert(kU, Imf::Channel(weight));
@@ -199,7 +201,10 @@ LayerPart read_part(Imf::MultiPartInputFile& file, int index, const ExpectedLaye
     const Imf::Header& header = file.header(index);
     const std::size_t pixels =
         static_cast<std::size_t>(expected.width) * static_cast<std::size_t>(expected.height);
-    LayerPart part{expected.parts[which], {expected.width, expected.height, {}, WeightPrecision::kFloat}, {}};
+    LayerPart part{expected.parts[which],
+                   {expected.width, expected.height, {}, WeightPrecision::kFloat},
+                   {},
+                   expected.topologies[which]};
     part.map.coords.resize(pixels);
     Imf::FrameBuffer frame;  // OpenEXR turns HALF into FLOAT
     frame.insert(kFace, slice(Imf::UINT, &part.map.coords[0].face, sizeof(PixelCoord), expected.width));
@@ -235,6 +240,10 @@ std::vector<LayerPart> read_parts(std::span<const std::uint8_t> bytes, const Exp
             ++index;
         if (index == file.parts()) refuse("layers.parts", cat("the EXR has no part ", name));
         check_header(file.header(index), name, expected);
+        const auto* topology = file.header(index).findTypedAttribute<Imf::StringAttribute>(kTopologyName);
+        if (topology && topology->value() != expected.topologies[which])
+            refuse("layers.topology", cat(name, " was made for a mesh of hash ", topology->value(), ", not ",
+                                          expected.topologies[which]));
         parts.push_back(read_part(file, index, expected, which));
     }
     return parts;

@@ -56,6 +56,7 @@ inline constexpr Finding kFindings[] = {
     {"layers.version", "an imgmesh:version that this reader does not know", ErrorCode::kUnsupported},
     {"layers.type", "a part is neither scanline nor tiled in one level of small tiles"},
     {"layers.parts", "the parts are not the levels"},
+    {"layers.topology", "a part was made for another mesh"},
     {"layers.window", "a part's window is not the picture"},
     {"layers.compression", "a compression other than none, ZIPS and ZIP"},
     {"layers.channels", "a channel is missing, unknown, subsampled or of another type"},

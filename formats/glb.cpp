@@ -38,7 +38,8 @@ std::vector<std::uint8_t> pack_glb(std::string_view json, std::span<const std::u
     std::vector<std::uint8_t> bytes;
     bytes.reserve(total);
     const auto put = [&](std::size_t value) {
-        for (int shift = 0; shift < 32; shift += 8) bytes.push_back(static_cast<std::uint8_t>(value >> shift));
+        for (int shift = 0; shift < 32; shift += 8)
+            bytes.push_back(static_cast<std::uint8_t>(value >> shift));
     };
     put(kMagic);
     put(2);

@@ -143,7 +143,7 @@ BuildResult build_named(const std::string& input, const Image& image, const Buil
 Report build_one(const Job& job, const Options& o, const Context& context, const Progress& progress) {
     const auto start = std::chrono::steady_clock::now();
     // What stands beside a .gltf is replaced only where there is one that it belongs to.
-    const bool replace_others = context.overwrite && fs::exists(job.output);
+    const bool replace_others = context.overwrite && owns_its_files(job.output);
     for (const std::string& file : container_files(job.output))
         check_output(file, file == job.output ? context.overwrite : replace_others);
     const Image image = read_image(job.input, o.color_space);

@@ -63,10 +63,12 @@ std::vector<Level> build_levels(const FeatureImage& feature, const BuildParams& 
 BuildResult build_mesh_image(const Image& image, const BuildParams& params, const Progress& progress) {
     check_params(params);
     if (image.width < 1 || image.height < 1) throw Error(ErrorCode::kUsage, "the picture is empty");
-    const FeatureImage feature = luv_image(image);
-    for (const float f : feature.data)
-        if (!std::isfinite(f))
+    for (const float sample : image.data)
+        if (!std::isfinite(sample))
             throw Error(ErrorCode::kUnsupported, "the picture has samples that are not finite");
+    // A container's colours are codes of [0, 1]. What lies outside could only mislead the fit: L*u*v* of
+    // negative light has no bound.
+    const FeatureImage feature = luv_image(image, Range::kClipped);
 
     const auto pixels = static_cast<double>(image.pixel_count());
     const std::vector<CollapseTarget> targets = collapse_targets(params, pixels);

@@ -61,9 +61,9 @@ struct BuildResult {
 };
 
 /// picture -> L*u*v* -> dense mesh -> collapse -> base mesh -> pixel map -> least-squares colours.
-/// A side of one pixel counts as a strip one pixel wide (docs/format.md). Alpha is ignored.
-/// Same result for any number of threads. Throws Error(kUsage) for a parameter out of range,
-/// Error(kUnsupported) for a picture without colour channels or with values that are not finite.
+/// Linear light is clipped to [0, 1]. A side of one pixel counts as a strip one pixel wide (docs/format.md).
+/// Alpha is ignored. Same result for any number of threads. Throws Error(kUsage) for a parameter out of
+/// range, Error(kUnsupported) for a picture without colour channels or with values that are not finite.
 BuildResult build_mesh_image(const Image& image, const BuildParams& params, const Progress& progress = {});
 
 }  // namespace imgmesh

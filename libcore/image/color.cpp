@@ -199,7 +199,7 @@ Vec3f storable_color(const Vec3f& luv) {
     return color_from_codes(color_codes(luv));
 }
 
-FeatureImage luv_image(const Image& image) {
+FeatureImage luv_image(const Image& image, Range range) {
     const int r = image.channel("R"), g = image.channel("G"), b = image.channel("B"),
               grey = image.channel("Y");
     const bool color = r >= 0 && g >= 0 && b >= 0;
@@ -212,7 +212,9 @@ FeatureImage luv_image(const Image& image) {
             float* dst = out.pixel(static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width));
             for (int x = 0; x < image.width; ++x, in += image.channels, dst += 3) {
                 const Vec3f encoded = color ? Vec3f(in[r], in[g], in[b]) : Vec3f::Constant(in[grey]);
-                const Vec3f luv = luv_from_linear(linear_from_encoded(image.color_space, encoded));
+                Vec3f linear = linear_from_encoded(image.color_space, encoded);
+                if (range == Range::kClipped) linear = linear.cwiseMax(0.0f).cwiseMin(1.0f);
+                const Vec3f luv = luv_from_linear(linear);
                 std::copy(luv.data(), luv.data() + 3, dst);
             }
         }

@@ -41,8 +41,11 @@ Vec3f storable_color(const Vec3f& luv);
 std::array<std::uint16_t, 3> color_codes(const Vec3f& luv);
 Vec3f color_from_codes(const std::array<std::uint16_t, 3>& codes);
 
+/// What luv_image does with linear light outside [0, 1].
+enum class Range { kAny, kClipped };
+
 /// Colour of every pixel as L*u*v*. One channel (grey) counts as R = G = B; alpha is ignored.
 /// Throws Error(kUnsupported) where the picture has neither R, G, B nor Y.
-FeatureImage luv_image(const Image& image);
+FeatureImage luv_image(const Image& image, Range range = Range::kAny);
 
 }  // namespace imgmesh

@@ -147,5 +147,24 @@ class Unwritable(CliCase):
         self.assertEqual(self.files(), before)
 
 
+    def test_files_of_another_gltf_are_kept(self):
+        """An x.gltf that does not refer to x.exr gives no right to replace it."""
+        picture_files.png(self.folder / "p.png", picture_files.noise(20, 15, seed=1))
+        (self.folder / "x.exr").write_bytes(b"a picture of somebody's")
+        (self.folder / "x.gltf").write_text(
+            '{"asset":{"version":"2.0"},"buffers":[{"uri":"geometry.bin","byteLength":1}]}')
+        before = self.files()
+        result = self.run_tool("imgmesh-build", "p.png", "-o", "x.gltf")
+        self.assert_error_lines("imgmesh-build", result, 3, 1)
+        self.assertEqual(self.files(), before)
+
+    def test_layers_of_another_mesh_are_refused(self):
+        for name, seed in (("a", 1), ("b", 2)):
+            picture_files.png(self.folder / "p.png", picture_files.noise(40, 30, seed=seed))
+            self.build("p.png", "--vertices", "60", output=f"{name}.gltf")
+        (self.folder / "a.exr").write_bytes((self.folder / "b.exr").read_bytes())
+        self.assert_error("imgmesh-info", ["a.gltf"], 4, "a.gltf", "layers.")
+
+
 if __name__ == "__main__":
     main()

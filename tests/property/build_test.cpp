@@ -250,3 +250,20 @@ TEST_CASE("build: progress rises from 0 to 1") {
     });
     CHECK(last == 1);
 }
+
+// L*u*v* of negative light has no bound, so an unclipped sample would outweigh the whole picture.
+TEST_CASE("build: light outside 0 and 1 is clipped") {
+    Image clipped = make_image(24, 18, 3);
+    clipped.color_space = ColorSpace::kLinear;
+    clipped.sample_type = SampleType::kFloat;
+    for (std::size_t i = 0; i < clipped.data.size(); ++i)
+        clipped.data[i] = static_cast<float>(i * 7 % 11) / 10.0f;
+    Image wild = clipped;
+    for (float& sample : wild.data) {
+        if (sample == 0.0f) sample = -3e38f;
+        if (sample == 1.0f) sample = 1e30f;
+    }
+    const BuildResult expected = build_mesh_image(clipped, {}), built = build_mesh_image(wild, {});
+    CHECK(built.report.levels.front().map_rms == expected.report.levels.front().map_rms);
+    CHECK(built.mesh_image.levels.front().mesh.feature == expected.mesh_image.levels.front().mesh.feature);
+}

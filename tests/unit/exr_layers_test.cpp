@@ -28,14 +28,18 @@ std::vector<LayerPart> random_parts(WeightPrecision precision, bool mask) {
     std::mt19937 random(5);
     std::vector<LayerPart> parts;
     for (const char* name : {"lod0", "lod1", "lod2"})
-        parts.push_back({name, random_map(kWidth, kHeight, kFaces, precision, mask, random), {}});
+        parts.push_back(
+            {name, random_map(kWidth, kHeight, kFaces, precision, mask, random), {}, cat("hash of ", name)});
     for (int i = 0; i < kWidth * kHeight; ++i) parts[0].visits.push_back(static_cast<Id>(random()));
     return parts;
 }
 
 ExpectedLayers expect(const std::vector<LayerPart>& parts) {
-    ExpectedLayers expected{kWidth, kHeight, {}, std::vector<std::uint64_t>(parts.size(), kFaces), true};
-    for (const LayerPart& part : parts) expected.parts.push_back(part.name);
+    ExpectedLayers expected{kWidth, kHeight, {}, std::vector<std::uint64_t>(parts.size(), kFaces), {}, true};
+    for (const LayerPart& part : parts) {
+        expected.parts.push_back(part.name);
+        expected.topologies.push_back(part.topology);
+    }
     return expected;
 }
 
@@ -86,7 +90,7 @@ struct Foreign {
         }
         return read_file(folder.file("x.exr"), 1 << 20);
     }
-    ExpectedLayers expected{kWidth, kHeight, {"lod0"}, {kFaces}, false};
+    ExpectedLayers expected{kWidth, kHeight, {"lod0"}, {kFaces}, {"hash"}, false};
 };
 
 }  // namespace
@@ -131,6 +135,7 @@ TEST_CASE("layers: what does not fit the container is refused by its code") {
     CHECK(with([](ExpectedLayers& e) { e.width = 8; }) == "layers.window");
     CHECK(with([](ExpectedLayers& e) { e.width = e.height = 100000; }) == "layers.size");
     CHECK(with([](ExpectedLayers& e) { e.parts[1] = "lod7"; }) == "layers.parts");
+    CHECK(with([](ExpectedLayers& e) { e.topologies[1] = "another"; }) == "layers.topology");
     CHECK(with([](ExpectedLayers& e) {
               e.parts.push_back("lod3");
               e.faces.push_back(1);

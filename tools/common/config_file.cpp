@@ -21,7 +21,7 @@ class StrictConfig : public CLI::ConfigBase {
         std::vector<CLI::ConfigItem> options;
         std::set<std::string> seen;
         std::string line;
-        for (int number = 1; std::getline(input, line); ++number) {
+        for (int number = 1; next_line(input, line); ++number) {
             std::size_t at = skip_space(line, 0);
             if (at == line.size() || line[at] == '#') continue;
             const auto refuse = [&](const std::string& what) {
@@ -54,6 +54,20 @@ class StrictConfig : public CLI::ConfigBase {
     }
 
   private:
+    // std::getline with a bound: a device would give a line without end.
+    bool next_line(std::istream& input, std::string& line) const {
+        constexpr std::size_t kLongest = 1 << 16;
+        line.clear();
+        for (int c; (c = input.get()) != std::istream::traits_type::eof();) {
+            if (c == '\n') return true;
+            line += static_cast<char>(c);
+            if (line.size() > kLongest)
+                throw Error(ErrorCode::kUsage, cat(app_.get_config_ptr()->as<std::string>(),
+                                                   ": a line of more than ", kLongest, " bytes"));
+        }
+        return !line.empty();
+    }
+
     static std::size_t skip_space(const std::string& line, std::size_t at) {
         while (at < line.size() && (line[at] == ' ' || line[at] == '\t' || line[at] == '\r')) ++at;
         return at;
