@@ -72,11 +72,10 @@ BaseMesh load_level(const AssetLevel& level, View buffer) {
 }
 
 std::vector<LayerPart> load_layers(const Asset& asset, View bytes) {
-    ExpectedLayers expected{asset.source.width, asset.source.height, {}, {}, {}, asset.source.has_mask};
+    ExpectedLayers expected{asset.source.width, asset.source.height, {}, {}, asset.source.has_mask};
     for (std::size_t k = 0; k < asset.levels.size(); ++k) {
         expected.parts.push_back(level_name(k));
         expected.faces.push_back(asset.levels[k].faces);
-        expected.topologies.push_back(asset.levels[k].topology);
     }
     return decode_exr_layers(bytes, expected);
 }
@@ -118,9 +117,13 @@ Container read(const std::string& path, const ContainerLimits& limits) {
     MeshImage& image = container.mesh_image;
     // Pixels come first: that so many are there bounds what the meshes may claim.
     std::vector<LayerPart> parts = load_layers(asset, layers);
-    for (std::size_t k = 0; k < parts.size(); ++k)
-        image.levels.push_back(
-            {load_level(asset.levels[k], buffer), std::move(parts[k].map), asset.levels[k].error});
+    for (std::size_t k = 0; k < parts.size(); ++k) {
+        const AssetLevel& level = asset.levels[k];
+        image.levels.push_back({load_level(level, buffer), std::move(parts[k].map), level.error});
+        if (!parts[k].topology.empty() && parts[k].topology != level.topology)
+            refuse("layers.topology", cat(parts[k].name, " was made for a mesh of hash ", parts[k].topology,
+                                          ", the mesh has ", level.topology));
+    }
     image.visits = std::move(parts[0].visits);
     image.source = std::move(asset.source);
     image.generator = std::move(asset.generator);

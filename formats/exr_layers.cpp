@@ -201,10 +201,8 @@ LayerPart read_part(Imf::MultiPartInputFile& file, int index, const ExpectedLaye
     const Imf::Header& header = file.header(index);
     const std::size_t pixels =
         static_cast<std::size_t>(expected.width) * static_cast<std::size_t>(expected.height);
-    LayerPart part{expected.parts[which],
-                   {expected.width, expected.height, {}, WeightPrecision::kFloat},
-                   {},
-                   expected.topologies[which]};
+    LayerPart part{
+        expected.parts[which], {expected.width, expected.height, {}, WeightPrecision::kFloat}, {}, {}};
     part.map.coords.resize(pixels);
     Imf::FrameBuffer frame;  // OpenEXR turns HALF into FLOAT
     frame.insert(kFace, slice(Imf::UINT, &part.map.coords[0].face, sizeof(PixelCoord), expected.width));
@@ -214,6 +212,8 @@ LayerPart read_part(Imf::MultiPartInputFile& file, int index, const ExpectedLaye
         part.visits.resize(pixels);
         frame.insert(kVisits, slice(Imf::UINT, part.visits.data(), sizeof(Id), expected.width));
     }
+    if (const auto* topology = header.findTypedAttribute<Imf::StringAttribute>(kTopologyName))
+        part.topology = topology->value();
     Imf::InputPart in(file, index);
     in.setFrameBuffer(frame);
     in.readPixels(0, expected.height - 1);
@@ -240,10 +240,6 @@ std::vector<LayerPart> read_parts(std::span<const std::uint8_t> bytes, const Exp
             ++index;
         if (index == file.parts()) refuse("layers.parts", cat("the EXR has no part ", name));
         check_header(file.header(index), name, expected);
-        const auto* topology = file.header(index).findTypedAttribute<Imf::StringAttribute>(kTopologyName);
-        if (topology && topology->value() != expected.topologies[which])
-            refuse("layers.topology", cat(name, " was made for a mesh of hash ", topology->value(), ", not ",
-                                          expected.topologies[which]));
         parts.push_back(read_part(file, index, expected, which));
     }
     return parts;

@@ -27,10 +27,9 @@ std::vector<std::uint8_t> encode_exr_layers(const std::vector<LayerPart>& parts)
 struct ExpectedLayers {
     int width = 0;
     int height = 0;
-    std::vector<std::string> parts;       ///< names, in the order wanted back
-    std::vector<std::uint64_t> faces;     ///< per part: every face.id is below, or kNone
-    std::vector<std::string> topologies;  ///< per part: hash of the mesh that the map must be made for
-    bool has_mask = false;                ///< kNone is allowed
+    std::vector<std::string> parts;    ///< names, in the order wanted back
+    std::vector<std::uint64_t> faces;  ///< per part: every face.id is below, or kNone
+    bool has_mask = false;             ///< kNone is allowed
 };
 
 /// Decodes and checks the parts. Safe for any bytes: everything in the headers is compared with `expected`
