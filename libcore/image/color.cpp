@@ -3,6 +3,7 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <cmath>
 #include <utility>
@@ -199,12 +200,44 @@ Vec3f storable_color(const Vec3f& luv) {
     return color_from_codes(color_codes(luv));
 }
 
+namespace {
+
+// decode_curve of the 256 values that an 8-bit sample has, as floats.
+class DecodeTable {
+  public:
+    explicit DecodeTable(ColorSpace space) : space_(space) {
+        for (std::size_t k = 0; k < value_.size(); ++k)
+            value_[k] = static_cast<float>(decode_curve(space, double(static_cast<float>(k) / 255.0f)));
+    }
+    // Any other value is decoded as it is.
+    float operator()(float encoded) const {
+        const float code = encoded * 255.0f;
+        const auto k = static_cast<std::size_t>(code >= 0 && code <= 255 ? code + 0.5f : 0);
+        if (static_cast<float>(k) / 255.0f == encoded) return value_[k];
+        return static_cast<float>(
+            std::copysign(decode_curve(space_, std::abs(double(encoded))), double(encoded)));
+    }
+
+  private:
+    ColorSpace space_;
+    std::array<float, 256> value_;
+};
+
+// Whether a space has sRGB's primaries, so that decoding its curve gives linear light.
+bool has_srgb_primaries(ColorSpace space) {
+    return space != ColorSpace::kAdobeRgb && space != ColorSpace::kDisplayP3;
+}
+
+}  // namespace
+
 FeatureImage luv_image(const Image& image, Range range) {
     const int r = image.channel("R"), g = image.channel("G"), b = image.channel("B"),
               grey = image.channel("Y");
     const bool color = r >= 0 && g >= 0 && b >= 0;
     if (!color && grey < 0)
         throw Error(ErrorCode::kUnsupported, "the picture has no colour: neither channels R, G, B nor Y");
+    const DecodeTable decode(image.color_space);
+    const bool tabulated = image.sample_type == SampleType::kUint8 && has_srgb_primaries(image.color_space);
     FeatureImage out{image.width, image.height, 3, std::vector<float>(image.pixel_count() * 3)};
     parallel_blocks(0, image.height, 16, [&](int first, int last) {
         for (int y = first; y < last; ++y) {
@@ -212,7 +245,8 @@ FeatureImage luv_image(const Image& image, Range range) {
             float* dst = out.pixel(static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width));
             for (int x = 0; x < image.width; ++x, in += image.channels, dst += 3) {
                 const Vec3f encoded = color ? Vec3f(in[r], in[g], in[b]) : Vec3f::Constant(in[grey]);
-                Vec3f linear = linear_from_encoded(image.color_space, encoded);
+                Vec3f linear = tabulated ? Vec3f(decode(encoded[0]), decode(encoded[1]), decode(encoded[2]))
+                                         : linear_from_encoded(image.color_space, encoded);
                 if (range == Range::kClipped) linear = linear.cwiseMax(0.0f).cwiseMin(1.0f);
                 const Vec3f luv = luv_from_linear(linear);
                 std::copy(luv.data(), luv.data() + 3, dst);

@@ -51,3 +51,18 @@ TEST_CASE("storable colours: every stored code reads back as itself") {
     }
     CHECK(color_codes(luv_from_linear({2, -0.1f, 0.25f})) == std::array<std::uint16_t, 3>{65535, 0, 16384});
 }
+
+TEST_CASE("luv image: the table for 8-bit samples changes no bit") {
+    for (const ColorSpace space :
+         {ColorSpace::kSrgb, ColorSpace::kRec709, ColorSpace::kGamma22, ColorSpace::kAdobeRgb}) {
+        Image image = make_image(256, 3, 3);
+        image.color_space = space;
+        for (std::size_t i = 0; i < image.data.size(); ++i)
+            image.data[i] = static_cast<float>(i * 37 % 256) / 255.0f;
+        image.data[5] = 0.1234f;  // no code at all
+        image.data[6] = -0.25f;
+        Image plain = image;
+        plain.sample_type = SampleType::kFloat;
+        CHECK(luv_image(image).data == luv_image(plain).data);
+    }
+}
