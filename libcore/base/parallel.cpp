@@ -6,6 +6,13 @@
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
+#if defined(__SANITIZE_THREAD__)
+#include <atomic>
+#include <exception>
+#include <mutex>
+#include <thread>
+#endif
+
 namespace imgmesh {
 
 struct ThreadLimit::Control {
@@ -21,6 +28,28 @@ int hardware_threads() {
     return std::max(1, tbb::info::default_concurrency());
 }
 
+#if defined(__SANITIZE_THREAD__)
+// The distribution's TBB is not built for ThreadSanitizer, which sees races wherever it hands work over.
+// Plain threads show the races that are ours.
+void parallel_blocks(int begin, int end, int grain, const std::function<void(int, int)>& body) {
+    std::atomic<int> next{begin};
+    std::exception_ptr failure;
+    std::mutex failure_mutex;
+    const auto work = [&] {
+        try {
+            for (int first; (first = next.fetch_add(grain)) < end;) body(first, std::min(first + grain, end));
+        } catch (...) {
+            const std::lock_guard lock(failure_mutex);
+            failure = std::current_exception();
+        }
+    };
+    {
+        const std::jthread other(work);
+        work();
+    }
+    if (failure) std::rethrow_exception(failure);
+}
+#else
 void parallel_blocks(int begin, int end, int grain, const std::function<void(int, int)>& body) {
     if (begin >= end) return;
     const int blocks = (end - begin + grain - 1) / grain;
@@ -33,5 +62,6 @@ void parallel_blocks(int begin, int end, int grain, const std::function<void(int
         });
     });
 }
+#endif
 
 }  // namespace imgmesh
