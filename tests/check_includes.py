@@ -105,7 +105,7 @@ CASES = [
     ("formats/a.cpp", "nlohmann/json.hpp", False),
     ("tools/a.cpp", "CLI/CLI.hpp", False),
     ("tools/a.cpp", "libcore/build/build.h", False),
-    ("tools/a.cpp", "tests/support/temp_folder.h", True),
+    ("tools/a.cpp", "tests/support/temporary_folder.h", True),
     ("tools/a.cpp", "tbb/parallel_for.h", True),
 ]
 

@@ -1,6 +1,7 @@
 // The base mesh: the small triangle mesh that stands for a picture.
 #pragma once
 
+#include <utility>
 #include <vector>
 
 #include "libcore/base/types.h"
@@ -37,5 +38,8 @@ inline double signed_area2(const Vec2f& a, const Vec2f& b, const Vec2f& c) {
     const double acx = double(c.x()) - a.x(), acy = double(c.y()) - a.y();
     return aby * acx - abx * acy;
 }
+
+/// Every edge once, its lower vertex first, in ascending order.
+std::vector<std::pair<Id, Id>> mesh_edges(const BaseMesh& mesh);
 
 }  // namespace imgmesh

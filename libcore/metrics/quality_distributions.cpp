@@ -11,15 +11,8 @@ namespace {
 
 // Edges at each vertex in use.
 std::vector<float> valences(const BaseMesh& mesh) {
-    std::vector<std::pair<Id, Id>> edges;
-    edges.reserve(mesh.faces.size() * 3);
-    for (const auto& [a, b, c] : mesh.faces)
-        for (const auto& [p, q] : {std::pair(a, b), std::pair(b, c), std::pair(c, a)})
-            edges.push_back(std::minmax(p, q));
-    std::sort(edges.begin(), edges.end());
-    edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
     std::vector<float> valence(mesh.vertex_count());
-    for (const auto& [p, q] : edges) {
+    for (const auto& [p, q] : mesh_edges(mesh)) {
         ++valence[p];
         ++valence[q];
     }

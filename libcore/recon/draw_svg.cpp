@@ -74,13 +74,7 @@ void append_faces(std::string& out, const BaseMesh& mesh, const std::vector<Vec2
 }
 
 void append_edges(std::string& out, const BaseMesh& mesh, const std::vector<Vec2d>& points) {
-    std::vector<std::pair<Id, Id>> edges;
-    edges.reserve(mesh.faces.size() * 3);
-    for (const auto& [a, b, c] : mesh.faces)
-        for (const auto& [p, q] : {std::pair(a, b), std::pair(b, c), std::pair(c, a)})
-            edges.push_back(std::minmax(p, q));
-    std::sort(edges.begin(), edges.end());
-    edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+    const std::vector<std::pair<Id, Id>> edges = mesh_edges(mesh);
     out += "<path fill=\"none\" stroke=\"#12263a\" stroke-width=\".6\" stroke-linecap=\"round\" d=\"";
     for (std::size_t e = 0; e < edges.size(); ++e) {
         if (e % 16 == 0) out += '\n';

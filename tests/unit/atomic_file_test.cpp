@@ -34,7 +34,7 @@ ErrorCode code_of(const auto& action) {
 
 TEST_CASE("atomic file: appears with commit, and without it nothing stays") {
     const TemporaryFolder folder;
-    const std::string path = folder.file("a b.txt");
+    const std::string path = folder / "a b.txt";
     {
         AtomicFile file(path, true);
         file.write(Bytes{1, 2, 3, 4});
@@ -55,7 +55,7 @@ TEST_CASE("atomic file: appears with commit, and without it nothing stays") {
 
 TEST_CASE("atomic file: does not overwrite unless told to, not even at the last moment") {
     const TemporaryFolder folder;
-    const std::string path = folder.file("x");
+    const std::string path = folder / "x";
     AtomicFile late(path, false);
     AtomicFile first(path, false);
     first.write(Bytes{1});
@@ -69,9 +69,9 @@ TEST_CASE("atomic file: devices, folders and missing folders are refused, links 
     const TemporaryFolder folder;
     CHECK(code_of([&] { AtomicFile("/dev/null", true); }) == ErrorCode::kIo);
     CHECK(code_of([&] { AtomicFile(folder.path().string(), true); }) == ErrorCode::kIo);
-    CHECK(code_of([&] { AtomicFile(folder.file("no/such/folder"), true); }) == ErrorCode::kIo);
+    CHECK(code_of([&] { AtomicFile(folder / "no/such/folder", true); }) == ErrorCode::kIo);
 
-    const std::string target = folder.file("target"), link = folder.file("link");
+    const std::string target = folder / "target", link = folder / "link";
     AtomicFile(target, true).commit();
     fs::create_symlink(target, link);
     AtomicFile file(link, true);
@@ -88,7 +88,7 @@ TEST_CASE("atomic file: a killed process leaves nothing behind") {
         if (child == 0) {
             ::signal(signal, SIG_DFL);  // doctest has handlers of its own
             remove_temporaries_on_signals();
-            AtomicFile file(folder.file("x"), true);
+            AtomicFile file(folder / "x", true);
             file.write(Bytes{1});
             if (entries(folder.path()) == 1) ::raise(signal);
             ::_exit(1);
@@ -103,12 +103,12 @@ TEST_CASE("atomic file: a killed process leaves nothing behind") {
 
 TEST_CASE("read_file: limits and errors") {
     const TemporaryFolder folder;
-    CHECK(code_of([&] { read_file(folder.file("none"), 10); }) == ErrorCode::kIo);
+    CHECK(code_of([&] { read_file(folder / "none", 10); }) == ErrorCode::kIo);
     CHECK(code_of([&] { read_file(folder.path().string(), 10); }) == ErrorCode::kIo);
-    AtomicFile file(folder.file("x"), true);
+    AtomicFile file(folder / "x", true);
     file.write(Bytes(11, 1));
     file.commit();
-    CHECK(code_of([&] { read_file(folder.file("x"), 10); }) == ErrorCode::kBadFile);
-    CHECK(read_file(folder.file("x"), 11).size() == 11);
+    CHECK(code_of([&] { read_file(folder / "x", 10); }) == ErrorCode::kBadFile);
+    CHECK(read_file(folder / "x", 11).size() == 11);
     CHECK(code_of([&] { read_file("/dev/zero", 1000); }) == ErrorCode::kBadFile);
 }

@@ -54,7 +54,7 @@ std::string refusal(const std::string& path, const ContainerLimits& limits = {})
 // A .gltf whose JSON can be changed.
 struct Broken {
     TemporaryFolder folder;
-    std::string path = folder.file("x.gltf");
+    std::string path = folder / "x.gltf";
 
     explicit Broken(DracoMode mode = DracoMode::kOff) {
         write_container(path, random_mesh_image(20, 15, 2, WeightPrecision::kHalf, true, 5), {mode, true});
@@ -232,26 +232,25 @@ TEST_CASE("refusals: URIs leave the folder in no spelling") {
 
 TEST_CASE("refusals: a mesh or layers that are not those the container was made with") {
     Broken file;
-    const Bytes bin = read_bytes(file.folder.file("x.bin"));
+    const Bytes bin = read_bytes(file.folder / "x.bin");
     Bytes changed = bin;
     std::swap_ranges(changed.begin(), changed.begin() + 12, changed.begin() + 12);  // two faces swapped
-    write_bytes(file.folder.file("x.bin"), changed);
+    write_bytes(file.folder / "x.bin", changed);
     CHECK(refusal(file.path) == "mesh.topology");
-    write_bytes(file.folder.file("x.bin"), bin);
+    write_bytes(file.folder / "x.bin", bin);
     CHECK(refusal(file.path) == "");
     // A picture of the same size, but of another mesh.
-    write_container(file.folder.file("y.gltf"),
-                    random_mesh_image(20, 15, 1, WeightPrecision::kHalf, true, 6));
-    std::filesystem::copy_file(file.folder.file("y.exr"), file.folder.file("x.exr"),
+    write_container(file.folder / "y.gltf", random_mesh_image(20, 15, 1, WeightPrecision::kHalf, true, 6));
+    std::filesystem::copy_file(file.folder / "y.exr", file.folder / "x.exr",
                                std::filesystem::copy_options::overwrite_existing);
     CHECK(refusal(file.path) == "layers.parts");
-    std::filesystem::remove(file.folder.file("x.exr"));
+    std::filesystem::remove(file.folder / "x.exr");
     CHECK_THROWS_WITH_AS(read_container(file.path), doctest::Contains("x.exr: cannot read"), Error);
 }
 
 TEST_CASE("refusals: bytes, chunks, depth and limits") {
     const TemporaryFolder folder;
-    const std::string path = folder.file("x.glb");
+    const std::string path = folder / "x.glb";
     const MeshImage image = random_mesh_image(20, 15, 2, WeightPrecision::kHalf, true, 5);
     write_container(path, image);
     const Bytes good = read_bytes(path);
@@ -292,7 +291,7 @@ TEST_CASE("refusals: bytes, chunks, depth and limits") {
 
 TEST_CASE("refusals: truncated and flipped containers give an Error, never a crash") {
     const TemporaryFolder folder;
-    const std::string path = folder.file("x.glb");
+    const std::string path = folder / "x.glb";
     std::mt19937 random(8);
     for (const DracoMode mode : {DracoMode::kEdgebreaker, DracoMode::kSequential, DracoMode::kOff}) {
         write_container(path, random_mesh_image(20, 15, 2, WeightPrecision::kHalf, true, 5), {mode, true});

@@ -97,7 +97,7 @@ TEST_CASE("container: what is read back is what was written, for every spelling,
                     MeshImage image =
                         random_mesh_image(width, height, 1 + int(seed % 3), precision, mask, seed);
                     if (seed % 3 == 0) image.visits.assign(image.levels[0].map.coords.size(), seed);
-                    const std::string path = folder.file(cat("a b\u00fc%", seed, extension));
+                    const std::string path = folder / cat("a b\u00fc%", seed, extension);
                     INFO(path);
                     write_container(path, image, {mode, true});
                     const Container back = read_container(path);
@@ -113,7 +113,7 @@ TEST_CASE("container: what is read back is what was written, for every spelling,
                     CHECK(back.facts.mesh_bytes + back.facts.layer_bytes < size);
                     // What was read is already in the order that Draco chose for it: everything is lossless
                     // now.
-                    const std::string again = folder.file(cat("again", extension));
+                    const std::string again = folder / cat("again", extension);
                     write_container(again, back.mesh_image, {DracoMode::kOff, true});
                     check_same(image, read_container(again).mesh_image);
                 }
@@ -124,15 +124,15 @@ TEST_CASE("container: what is read back is what was written, for every spelling,
 TEST_CASE("container: .glb and .gltf turn into each other without loss, and writing is deterministic") {
     const TemporaryFolder folder;
     const MeshImage image = random_mesh_image(30, 20, 2, WeightPrecision::kHalf, true, 99);
-    write_container(folder.file("a.glb"), image);
-    write_container(folder.file("b.glb"), image);
-    CHECK(bytes_of(folder.file("a.glb")) == bytes_of(folder.file("b.glb")));
+    write_container(folder / "a.glb", image);
+    write_container(folder / "b.glb", image);
+    CHECK(bytes_of(folder / "a.glb") == bytes_of(folder / "b.glb"));
     // A sequential mesh keeps its order, so whole files can be compared.
     const ContainerOptions sequential{DracoMode::kSequential, true};
-    write_container(folder.file("a.glb"), image, sequential);
-    write_container(folder.file("c.gltf"), read_container(folder.file("a.glb")).mesh_image, sequential);
-    write_container(folder.file("b.glb"), read_container(folder.file("c.gltf")).mesh_image, sequential);
-    CHECK(bytes_of(folder.file("a.glb")) == bytes_of(folder.file("b.glb")));
+    write_container(folder / "a.glb", image, sequential);
+    write_container(folder / "c.gltf", read_container(folder / "a.glb").mesh_image, sequential);
+    write_container(folder / "b.glb", read_container(folder / "c.gltf").mesh_image, sequential);
+    CHECK(bytes_of(folder / "a.glb") == bytes_of(folder / "b.glb"));
 }
 
 // The check above must be able to fail: pixels mapped through a wrong permutation are not the same picture.
@@ -160,8 +160,8 @@ TEST_CASE("container: vertices without a face are dropped by edgebreaker and not
     image.levels[0].mesh.position.push_back({3, 3});
     image.levels[0].mesh.feature.insert(image.levels[0].mesh.feature.end(), {0, 0, 0});
     for (const DracoMode mode : {DracoMode::kEdgebreaker, DracoMode::kSequential, DracoMode::kOff}) {
-        write_container(folder.file("x.glb"), image, {mode, true});
-        check_same(image, read_container(folder.file("x.glb")).mesh_image);
+        write_container(folder / "x.glb", image, {mode, true});
+        check_same(image, read_container(folder / "x.glb").mesh_image);
     }
 }
 
@@ -170,7 +170,7 @@ TEST_CASE("container: usage and files that are there already") {
     const MeshImage image = random_mesh_image(9, 9, 1, WeightPrecision::kHalf, false, 3);
     const auto code = [&](const char* name, bool overwrite) {
         try {
-            write_container(folder.file(name), image, {DracoMode::kEdgebreaker, overwrite});
+            write_container(folder / name, image, {DracoMode::kEdgebreaker, overwrite});
         } catch (const Error& error) {
             return error.code();
         }
@@ -185,12 +185,12 @@ TEST_CASE("container: usage and files that are there already") {
     CHECK(code("x.gltf", false) == ErrorCode::kIo);
     CHECK(code("x.gltf", true) == ErrorCode::kOk);
     // photo.exr may be the picture that the container is made from.
-    AtomicFile photo(folder.file("photo.exr"), true);
+    AtomicFile photo(folder / "photo.exr", true);
     photo.commit();
     CHECK(code("photo.gltf", true) == ErrorCode::kIo);
-    CHECK(bytes_of(folder.file("photo.exr")).empty());
-    CHECK_FALSE(fs::exists(folder.file("photo.bin")));
-    CHECK_THROWS_AS(read_container(folder.file("missing.glb")), Error);
+    CHECK(bytes_of(folder / "photo.exr").empty());
+    CHECK_FALSE(fs::exists(folder / "photo.bin"));
+    CHECK_THROWS_AS(read_container(folder / "missing.glb"), Error);
 }
 
 TEST_CASE("container: the writer refuses parts that do not fit each other") {
@@ -198,7 +198,7 @@ TEST_CASE("container: the writer refuses parts that do not fit each other") {
     const auto refused = [&](const auto& change) {
         MeshImage image = random_mesh_image(9, 9, 2, WeightPrecision::kHalf, true, 3);
         change(image);
-        CHECK_THROWS_AS(write_container(folder.file("x.glb"), image), Error);
+        CHECK_THROWS_AS(write_container(folder / "x.glb", image), Error);
         CHECK(fs::is_empty(folder.path()));
     };
     refused([](MeshImage& m) { m.levels.clear(); });

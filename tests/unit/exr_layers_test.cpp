@@ -77,15 +77,15 @@ struct Foreign {
         insert("bary.v", Imf::FLOAT, v.data());
         insert("G", Imf::FLOAT, v.data());
         if (tiled) {
-            Imf::TiledOutputFile file(folder.file("x.exr").c_str(), header);
+            Imf::TiledOutputFile file((folder / "x.exr").c_str(), header);
             file.setFrameBuffer(frame);
             file.writeTiles(0, file.numXTiles() - 1, 0, file.numYTiles() - 1);
         } else {
-            Imf::OutputFile file(folder.file("x.exr").c_str(), header);
+            Imf::OutputFile file((folder / "x.exr").c_str(), header);
             file.setFrameBuffer(frame);
             file.writePixels(header.dataWindow().max.y - header.dataWindow().min.y + 1);
         }
-        return read_file(folder.file("x.exr"), 1 << 20);
+        return read_file(folder / "x.exr", 1 << 20);
     }
     ExpectedLayers expected{kWidth, kHeight, {"lod0"}, {kFaces}, false};
 };

@@ -7,7 +7,7 @@
 #include "formats/image_io.h"
 #include "formats/picture_probe.h"
 #include "tests/support/picture_files.h"
-#include "tests/support/temp_folder.h"
+#include "tests/support/temporary_folder.h"
 
 using namespace imgmesh;
 using Bytes = std::vector<std::uint8_t>;
@@ -22,7 +22,7 @@ namespace {
 const char* const kNames[] = {"a.png", "a.jpg", "a.tif", "a.exr", "a.webp", "a.gif",
                               "a.bmp", "a.ppm", "a.tga", "a.hdr", "a.jp2",  "a.heic"};
 
-Bytes sample_file(const TempFolder& folder, const std::string& name) {
+Bytes sample_file(const TemporaryFolder& folder, const std::string& name) {
     const Image image = random_picture(64, 48, 3, 255, 7);
     write_with_oiio(folder / name, image,
                     name == "a.exr" || name == "a.hdr" ? OIIO::TypeFloat : OIIO::TypeUInt8);
@@ -48,7 +48,7 @@ long peak_kilobytes() {
 // Never half a picture: a prefix is an error, or (where only what follows the pixels is gone) the whole
 // picture.
 TEST_CASE("hostile: truncated files at many lengths") {
-    const TempFolder folder;
+    const TemporaryFolder folder;
     for (const std::string name : kNames) {
         const Bytes whole = sample_file(folder, name);
         const Image picture = read_image(folder / name);
@@ -71,7 +71,7 @@ TEST_CASE("hostile: truncated files at many lengths") {
 }
 
 TEST_CASE("hostile: flipped bytes give an error or a picture of a permitted size") {
-    const TempFolder folder;
+    const TemporaryFolder folder;
     ImageLimits limits;
     limits.max_pixels = 1 << 20;
     for (const std::string name : kNames) {
@@ -96,7 +96,7 @@ TEST_CASE("hostile: flipped bytes give an error or a picture of a permitted size
 }
 
 TEST_CASE("hostile: random bytes, alone and behind every signature, are no picture") {
-    const TempFolder folder;
+    const TemporaryFolder folder;
     std::mt19937 random(3);
     const std::string_view signatures[] = {"",
                                            "\x89PNG\r\n\x1a\n",
@@ -132,7 +132,7 @@ TEST_CASE("hostile: random bytes, alone and behind every signature, are no pictu
 }
 
 TEST_CASE("hostile: absurd sizes are refused before memory is taken") {
-    const TempFolder folder;
+    const TemporaryFolder folder;
     const auto little = [](std::uint32_t value, int count) {
         Bytes out;
         for (int i = 0; i < count; ++i) out.push_back(static_cast<std::uint8_t>(value >> (8 * i)));
@@ -214,7 +214,7 @@ TEST_CASE("hostile: absurd sizes are refused before memory is taken") {
 }
 
 TEST_CASE("hostile: limits are the caller's") {
-    const TempFolder folder;
+    const TemporaryFolder folder;
     for (const std::string name : kNames) {
         INFO(name);
         sample_file(folder, name);  // 64x48 RGB
@@ -232,7 +232,7 @@ TEST_CASE("hostile: limits are the caller's") {
 // OpenEXR would take the memory first: for an attribute of 2 GB in a short file, and for one that hides
 // behind another whose size is not its type's.
 TEST_CASE("hostile: EXR attributes longer than the file, openly and hidden") {
-    const TempFolder folder;
+    const TemporaryFolder folder;
     const std::string_view version = {"\x76\x2f\x31\x01\x02\0\0\0", 8};
     const std::string_view string = {"owner\0string\0\xFF\xFF\xFF\x7F", 17};
     // A "float" of 21 bytes, after which the header ends; OpenEXR would read 4 and go on with the string.
@@ -252,7 +252,7 @@ TEST_CASE("hostile: EXR attributes longer than the file, openly and hidden") {
 }
 
 TEST_CASE("hostile: paths that lead to no picture") {
-    const TempFolder folder;
+    const TemporaryFolder folder;
     CHECK(error_of([&] { read_image(folder / "missing.png"); }) == ErrorCode::kIo);
     CHECK(error_of([&] { read_image(folder / ""); }) == ErrorCode::kIo);
     CHECK(error_of([&] { read_image(""); }) == ErrorCode::kIo);

@@ -13,13 +13,13 @@
 #include "formats/icc_profile.h"
 #include "formats/image_io.h"
 #include "tests/support/picture_files.h"
-#include "tests/support/temp_folder.h"
+#include "tests/support/temporary_folder.h"
 
 using namespace imgmesh;
 using Names = std::vector<std::string>;
 
 TEST_CASE("read: integers of lossless formats come back exactly, with names and sample type") {
-    const TempFolder folder;
+    const TemporaryFolder folder;
     struct Case {
         const char* name;
         int channels;
@@ -47,7 +47,7 @@ TEST_CASE("read: integers of lossless formats come back exactly, with names and 
 }
 
 TEST_CASE("read: Netpbm by hand: plain text, bits and 16 bits") {
-    const TempFolder folder;
+    const TemporaryFolder folder;
     const auto read = [&](const std::string& text) {
         save(folder / "n.pnm", {text.begin(), text.end()});
         return read_image(folder / "n.pnm");
@@ -62,7 +62,7 @@ TEST_CASE("read: Netpbm by hand: plain text, bits and 16 bits") {
 }
 
 TEST_CASE("read: floats stay, and are linear") {
-    const TempFolder folder;
+    const TemporaryFolder folder;
     Image made = random_picture(9, 5, 3);
     made.data[0] = 17.5f;
     made.data[1] = -0.25f;
@@ -82,7 +82,7 @@ TEST_CASE("read: floats stay, and are linear") {
 }
 
 TEST_CASE("read: lossy formats come back alike, and a content under a wrong name too") {
-    const TempFolder folder;
+    const TemporaryFolder folder;
     Image made = make_image(64, 48, 3);
     for (int y = 0; y < 48; ++y)
         for (int x = 0; x < 64; ++x)
@@ -111,7 +111,7 @@ TEST_CASE("read: lossy formats come back alike, and a content under a wrong name
 // the first row is the top and the first column the left side, 2 top right, 3 bottom right, 4 bottom left, 5
 // left top, 6 right top, 7 right bottom, 8 left bottom.
 TEST_CASE("read: all eight EXIF orientations") {
-    const TempFolder folder;
+    const TemporaryFolder folder;
     Image stored = make_image(3, 2, 1);
     stored.data = {0, 1, 2, 3, 4, 5};
     for (float& x : stored.data) x *= 51.0f / 255;
@@ -135,7 +135,7 @@ TEST_CASE("read: all eight EXIF orientations") {
 }
 
 TEST_CASE("read: associated alpha is divided out, and nothing where it is zero") {
-    const TempFolder folder;
+    const TemporaryFolder folder;
     Image made = make_image(3, 1, 4);
     made.data = {0.4f, 0.2f, 0.1f, 0.5f, 0.3f, 0.2f, 0.1f, 0, 0.7f, 0.8f, 0.9f, 1};
     const std::vector<float> expected = {0.8f, 0.4f, 0.2f, 0.5f, 0.3f, 0.2f, 0.1f, 0, 0.7f, 0.8f, 0.9f, 1};
@@ -151,7 +151,7 @@ TEST_CASE("read: associated alpha is divided out, and nothing where it is zero")
 }
 
 TEST_CASE("read: the colour space is the caller's, else the profile's, else the file's") {
-    const TempFolder folder;
+    const TemporaryFolder folder;
     const Image made = random_picture(5, 4, 3);
     for (const ColorSpace space : {ColorSpace::kSrgb, ColorSpace::kLinear, ColorSpace::kRec709,
                                    ColorSpace::kGamma22, ColorSpace::kAdobeRgb, ColorSpace::kDisplayP3}) {
@@ -221,7 +221,7 @@ void write_exr(const std::string& path, const Imath::Box2i& shown, const Imath::
 }  // namespace
 
 TEST_CASE("read: CMYK, bits and palettes become RGB or grey") {
-    const TempFolder folder;
+    const TemporaryFolder folder;
     Image ink = make_image(4, 4, 4);
     for (std::size_t i = 0; i < ink.data.size(); i += 4) ink.data[i] = 1;  // cyan alone
     write_with_oiio(folder / "cmyk.tif", ink, OIIO::TypeUInt8, [](OIIO::ImageSpec& spec) {
@@ -258,7 +258,7 @@ TEST_CASE("read: CMYK, bits and palettes become RGB or grey") {
 
 // OpenImageIO writes no such WebP, so the chunks are put together here (WebP container specification).
 TEST_CASE("read: a WebP's orientation and profile") {
-    const TempFolder folder;
+    const TemporaryFolder folder;
     const Image stored = random_picture(6, 3, 3);
     write_image(folder / "w.webp", stored);
     const std::vector<std::uint8_t> plain = load(folder / "w.webp");
@@ -289,7 +289,7 @@ TEST_CASE("read: a WebP's orientation and profile") {
 
 // The display window is the picture; the data window may be smaller, larger, or elsewhere.
 TEST_CASE("read: an EXR's windows, tiles and compressions") {
-    const TempFolder folder;
+    const TemporaryFolder folder;
     const Imath::Box2i shown({2, 3}, {7, 8});
     for (const Imath::Box2i& stored :
          {Imath::Box2i({2, 3}, {7, 8}), Imath::Box2i({4, 5}, {5, 6}), Imath::Box2i({-1, -2}, {12, 11}),
@@ -314,7 +314,7 @@ TEST_CASE("read: an EXR's windows, tiles and compressions") {
 }
 
 TEST_CASE("read: an EXR's channels come colour first, then by name") {
-    const TempFolder folder;
+    const TemporaryFolder folder;
     write_exr(folder / "n.exr", {{0, 0}, {2, 2}}, {{0, 0}, {2, 2}}, {"A", "B", "G", "R", "Z", "normal.X"});
     const Image read = read_image(folder / "n.exr");
     CHECK(read.channel_names == Names{"R", "G", "B", "A", "Z", "normal.X"});
@@ -324,7 +324,7 @@ TEST_CASE("read: an EXR's channels come colour first, then by name") {
 
 // Attributes of other software are no hindrance, whatever their type.
 TEST_CASE("read: an EXR with a preview and unusual attributes") {
-    const TempFolder folder;
+    const TemporaryFolder folder;
     Imf::Header header(2, 2);
     header.channels().insert("Y", Imf::Channel(Imf::FLOAT));
     const std::vector<Imf::PreviewRgba> preview(12, Imf::PreviewRgba(1, 2, 3));
@@ -344,7 +344,7 @@ TEST_CASE("read: an EXR with a preview and unusual attributes") {
 }
 
 TEST_CASE("read: what an EXR can hold and a picture cannot") {
-    const TempFolder folder;
+    const TemporaryFolder folder;
     const auto write = [&](const Imf::Channel& channel, bool other_primaries) {
         Imf::Header header(4, 4);
         header.channels().insert("Y", channel);
@@ -370,7 +370,7 @@ TEST_CASE("read: what an EXR can hold and a picture cannot") {
 }
 
 TEST_CASE("read: the first sample that is no number is named") {
-    const TempFolder folder;
+    const TemporaryFolder folder;
     for (const std::string name : {"n.exr", "n.tif"}) {
         for (const float bad :
              {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {

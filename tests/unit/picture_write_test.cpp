@@ -6,12 +6,12 @@
 #include "formats/image_io.h"
 #include "libcore/image/color.h"
 #include "tests/support/picture_files.h"
-#include "tests/support/temp_folder.h"
+#include "tests/support/temporary_folder.h"
 
 using namespace imgmesh;
 
 TEST_CASE("write: integer codes come back exactly from every lossless format") {
-    const TempFolder folder;
+    const TemporaryFolder folder;
     for (const std::string name : {"a.png", "a.tif", "a.TIFF", "a.webp", "a.bmp", "a.ppm", "a.pnm",
                                    "mit Leerzeichen \xC3\xA4 \xE6\x97\xA5.png"}) {
         for (const int channels : {1, 2, 3, 4}) {
@@ -52,7 +52,7 @@ TEST_CASE("write: integer codes come back exactly from every lossless format") {
 }
 
 TEST_CASE("write: floats come back from EXR and TIFF, with alpha and any channels") {
-    const TempFolder folder;
+    const TemporaryFolder folder;
     Image image = random_picture(8, 5, 5);
     image.sample_type = SampleType::kFloat;
     image.color_space = ColorSpace::kLinear;
@@ -76,7 +76,7 @@ TEST_CASE("write: floats come back from EXR and TIFF, with alpha and any channel
 
 // Whatever the format does to the numbers, the light stays.
 TEST_CASE("write: colour spaces are noted or converted, and colours stay") {
-    const TempFolder folder;
+    const TemporaryFolder folder;
     for (const ColorSpace space : {ColorSpace::kSrgb, ColorSpace::kLinear, ColorSpace::kRec709,
                                    ColorSpace::kGamma22, ColorSpace::kAdobeRgb, ColorSpace::kDisplayP3}) {
         for (const SampleType type : {SampleType::kUint16, SampleType::kFloat}) {
@@ -109,7 +109,7 @@ TEST_CASE("write: colour spaces are noted or converted, and colours stay") {
 }
 
 TEST_CASE("write: rounds to the nearest code and clamps") {
-    const TempFolder folder;
+    const TemporaryFolder folder;
     Image image = make_image(4, 1, 1);
     image.data = {-0.5f, 1.5f, 100.4f / 255, 100.6f / 255};
     write_image(folder / "r.png", image);
@@ -121,7 +121,7 @@ TEST_CASE("write: rounds to the nearest code and clamps") {
 }
 
 TEST_CASE("write: an opaque alpha is left out where the format has none, transparency is refused") {
-    const TempFolder folder;
+    const TemporaryFolder folder;
     Image image = random_picture(4, 4, 4);
     for (std::size_t i = 3; i < image.data.size(); i += 4) image.data[i] = 1;
     write_image(folder / "o.jpg", image);
@@ -134,7 +134,7 @@ TEST_CASE("write: an opaque alpha is left out where the format has none, transpa
 }
 
 TEST_CASE("write: what the format cannot hold is refused, and leaves nothing") {
-    const TempFolder folder;
+    const TemporaryFolder folder;
     const Image image = random_picture(4, 4, 3);
     for (const std::string name : {"a.xyz", "a", "a.gltf", ".png"})
         CHECK(error_of([&] { write_image(folder / name, image); }) == ErrorCode::kUsage);
@@ -154,7 +154,7 @@ TEST_CASE("write: what the format cannot hold is refused, and leaves nothing") {
 }
 
 TEST_CASE("write: the same picture gives the same bytes") {
-    const TempFolder folder;
+    const TemporaryFolder folder;
     const Image image = random_picture(20, 10, 3);
     for (const std::string name : {"s.png", "s.jpg", "s.tif", "s.webp", "s.exr", "s.bmp", "s.ppm"}) {
         INFO(name);
@@ -172,7 +172,7 @@ TEST_CASE("write: the same picture gives the same bytes") {
 
 // The limit on a file's size stands for a full disk: both fail in write().
 TEST_CASE("write: a full disk, a missing folder and an existing file are errors that leave nothing") {
-    const TempFolder folder;
+    const TemporaryFolder folder;
     const Image image = random_picture(100, 100, 3);
     struct rlimit old = {};
     ::getrlimit(RLIMIT_FSIZE, &old);
