@@ -17,6 +17,8 @@ namespace imgmesh {
 
 template <int C>
 struct Quadric {
+    static constexpr int kChannels = C;
+
     float px = 0, py = 0;             ///< m_p, position of the minimiser [pixels]
     float s[C] = {};                  ///< m_s, its features
     float gx[C] = {}, gy[C] = {};     ///< G, mean gradient [feature / pixel]
@@ -40,6 +42,9 @@ struct Quadric {
         }
         return at(x, y) + weight * sum;
     }
+    /// The best y beside an imposed x, and the best x beside an imposed y.
+    float best_y(float x) const { return py - sxy * (x - px) / syy; }
+    float best_x(float y) const { return px - sxy * (y - py) / sxx; }
     /// The best feature c for position p.
     float feature(int c, float x, float y) const { return s[c] + gx[c] * (x - px) + gy[c] * (y - py); }
 };

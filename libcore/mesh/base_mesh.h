@@ -1,6 +1,7 @@
 // The base mesh: the small triangle mesh that stands for a picture.
 #pragma once
 
+#include <cmath>
 #include <utility>
 #include <vector>
 
@@ -11,6 +12,11 @@ namespace imgmesh {
 /// Vertex positions are multiples of this step [pixels], so that Draco's quantisation loses nothing
 /// (docs/format.md).
 inline constexpr float kPositionStep = 1.0f / 32.0f;
+
+/// The multiple of kPositionStep nearest to x [pixels].
+inline float snapped(float x) {
+    return std::round(x / kPositionStep) * kPositionStep;
+}
 
 /// An indexed triangle mesh over the image plane with features (colours) at its vertices.
 ///
