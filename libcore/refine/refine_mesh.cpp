@@ -42,7 +42,7 @@ RefineMesh::RefineMesh(const BaseMesh& mesh)
         low = low.cwiseMin(p);
         high = high.cwiseMax(p);
     }
-    fixed.assign(n, kFreeX);
+    fixed.assign(n, kFree);
     for (std::size_t f = 0; f < faces.size(); ++f)
         for (int i = 0; i < 3; ++i) {
             if (at(across[f], i) != kNone) continue;
@@ -166,7 +166,7 @@ void RefineMesh::flip(Id f, int i) {
 Id RefineMesh::split_face(Id f, const Vec2f& p, const Vec3f& c) {
     const auto [a, b, d] = faces[f];
     const auto [beyond_a, beyond_b, beyond_d] = across[f];
-    const Id v = new_vertex(p, c, kFreeX);
+    const Id v = new_vertex(p, c, kFree);
     const Id g = new_face({v, b, d}), h = new_face({v, d, a});
     faces[f] = {v, a, b};
     link(f, 0, beyond_d);
@@ -186,7 +186,7 @@ Id RefineMesh::split_edge(Id f, int i, const Vec2f& p, const Vec3f& c) {
     const Id beyond_oa = at(across[f], previous(i)), beyond_ob = at(across[f], next(i));
     const int j = g == kNone ? 0 : corner_towards(g, f);
     const auto side = static_cast<std::uint8_t>(fixed[a] & fixed[b]);
-    const Id v = new_vertex(p, c, g == kNone ? side : kFreeX);
+    const Id v = new_vertex(p, c, g == kNone ? side : kFree);
     const Id f2 = new_face({v, b, o});
     faces[f] = {v, o, a};
     face_of_[v] = face_of_[o] = face_of_[a] = f;

@@ -22,7 +22,7 @@ struct Star {
 class RefineMesh {
   public:
     /// Coordinates that a vertex keeps, as bits.
-    static constexpr std::uint8_t kFreeX = 0, kFixedX = 1, kFixedY = 2, kFixed = 3;
+    static constexpr std::uint8_t kFree = 0, kFixedX = 1, kFixedY = 2, kFixed = 3;
 
     /// `mesh` has three channels and faces of positive area. Vertices of its outline may slide along where
     /// the outline runs straight on along one side of its bounding box; all others of the outline are fixed.
