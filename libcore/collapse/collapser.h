@@ -46,7 +46,8 @@ class Collapser {
           width_(grid.feature.width),
           height_(grid.feature.height),
           rings_(ring_mesh(grid)),
-          quadrics_(vertex_quadrics(grid, smoothed(grid.feature, params.smoothing), params.geometry_weight)),
+          quadrics_(vertex_quadrics<Q::kChannels>(grid, smoothed(grid.feature, params.smoothing),
+                                                  params.geometry_weight)),
           limits_(StarLimits::of(params.max_face_area, params.min_shape)),
           vertices_(static_cast<std::int64_t>(rings_.size())),
           next_rebuild_(vertices_ / 2),
@@ -218,7 +219,7 @@ class Collapser {
         if (!rings_[i].border() && !rings_[j].border()) {
             batch_edges_[batch_size_] = {i, j};
             batch_.set(batch_size_, quadrics_[i], quadrics_[j]);
-            if (++batch_size_ == EdgeBatch::kWidth) file_batch();
+            if (++batch_size_ == EdgeBatch<Q>::kWidth) file_batch();
             return;
         }
         file_at(i, j, minimiser(i, j, merged(quadrics_[i], quadrics_[j])).cost);
@@ -298,8 +299,8 @@ class Collapser {
     RingMesh rings_;
     std::vector<Q> quadrics_;
     BucketQueue queue_;
-    EdgeBatch batch_;
-    std::array<std::pair<Id, Id>, EdgeBatch::kWidth> batch_edges_;
+    EdgeBatch<Q> batch_;
+    std::array<std::pair<Id, Id>, EdgeBatch<Q>::kWidth> batch_edges_;
     int batch_size_ = 0;
     bool postponed_ = false;  // some legal edge costs more than the current threshold
     float threshold_ = 0;     // of the current window
