@@ -37,11 +37,11 @@ struct Placement {
     float cost = kNever;  // by which the edge is filed; kNever where the merge is not allowed
 };
 
-inline std::vector<Quadric<3>> initial_quadrics(const GridMesh& grid, const RingMesh& rings,
-                                                const CollapseParams& params) {
+template <class Q>
+std::vector<Q> initial_quadrics(const GridMesh& grid, const RingMesh& rings, const CollapseParams& params) {
     const FeatureImage gradients = smoothed_vertices(grid, params.smoothing);
-    return grid.mask.empty() ? vertex_quadrics(grid, gradients, params.geometry_weight)
-                             : vertex_quadrics(grid, rings, gradients, params.geometry_weight);
+    return grid.mask.empty() ? vertex_quadrics<Q::kChannels>(grid, gradients, params.geometry_weight)
+                             : vertex_quadrics<Q::kChannels>(grid, rings, gradients, params.geometry_weight);
 }
 
 /// Source and steps: collapse_edges.cpp. `Q` is the quadric that vertices carry: kChannels features,
@@ -55,7 +55,7 @@ class Collapser {
           width_(grid.feature.width),
           height_(grid.feature.height),
           rings_(ring_mesh(grid)),
-          quadrics_(initial_quadrics(grid, rings_, params)),
+          quadrics_(initial_quadrics<Q>(grid, rings_, params)),
           limits_(StarLimits::of(params.max_face_area, params.min_shape)),
           dense_vertices_(live_vertices(rings_)),
           vertices_(dense_vertices_),
@@ -259,7 +259,7 @@ class Collapser {
         if (!rings_[i].border() && !rings_[j].border()) {
             batch_edges_[batch_size_] = {i, j};
             batch_.set(batch_size_, quadrics_[i], quadrics_[j]);
-            if (++batch_size_ == EdgeBatch::kWidth) file_batch();
+            if (++batch_size_ == EdgeBatch<Q>::kWidth) file_batch();
             return;
         }
         file_at(i, j, minimiser(i, j, merged(quadrics_[i], quadrics_[j])).cost);
@@ -347,8 +347,8 @@ class Collapser {
     RingMesh rings_;
     std::vector<Q> quadrics_;
     BucketQueue queue_;
-    EdgeBatch batch_;
-    std::array<std::pair<Id, Id>, EdgeBatch::kWidth> batch_edges_;
+    EdgeBatch<Q> batch_;
+    std::array<std::pair<Id, Id>, EdgeBatch<Q>::kWidth> batch_edges_;
     int batch_size_ = 0;
     bool postponed_ = false;  // some legal edge costs more than the current threshold
     float threshold_ = 0;     // of the current window

@@ -22,9 +22,9 @@ enum Freedom : std::uint8_t {
 struct MovingPixels {
     int width = 0;
     int height = 0;
-    std::vector<float> dx, dy;          ///< image of the pixel less the pixel [pixels]; NaN outside a mask
-    std::vector<Id> face;               ///< the face that the image lies in; kNone outside a mask
-    std::vector<std::uint8_t> freedom;  ///< of a cut-out's pixels, Freedom bits; empty without a mask
+    std::vector<float> dx, dy;  ///< image of the pixel less the pixel [pixels]; NaN outside a mask
+    std::vector<Id> face;       ///< the face that the image lies in; kNone outside a mask
+    std::vector<std::uint8_t> freedom = {};  ///< of a cut-out's pixels, Freedom bits; empty without a mask
 
     bool outside(std::size_t pixel) const { return face[pixel] == kNone; }
     bool pinned_x(int x, int y) const {
@@ -58,11 +58,12 @@ inline constexpr float kLeastMovingArea = 0.05f;
 /// rest; of a cut-out they do as `pixels.freedom` says, its triangles are those that have no pixel outside,
 /// and a pixel that would leave the mesh waits.
 ///
-/// feature    the picture, three channels, size of `pixels`; both sides at least 2
+/// feature    the picture, size of `pixels`; both sides at least 2
+/// further    further_fields() where it has more than three features
 /// smoothness mu [feature^2 / px^2], > 0
 /// Pixels of one parity of (x, y) move at once and do not see each other: same result for any number of
 /// threads.
 void relax(MovingPixels& pixels, const std::vector<FaceField>& fields, const std::vector<Face>& neighbors,
-           const FeatureImage& feature, float smoothness, int sweeps);
+           const FeatureImage& feature, float smoothness, int sweeps, const FurtherFields& further = {});
 
 }  // namespace imgmesh
