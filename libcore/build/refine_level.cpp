@@ -35,12 +35,12 @@ void convert_colors(BaseMesh& mesh, Convert convert) {
 
 }  // namespace
 
-RefineReport refine_level(BaseMesh& mesh, const FeatureImage& feature, Objective objective,
+RefineReport refine_level(BaseMesh& mesh, const FeatureImage& feature, const Mask& mask, Objective objective,
                           RefineParams params, const Progress& progress) {
     params.range = objective == Objective::kRgb ? ColorRange::kUnit : ColorRange::kLuv;
-    if (objective == Objective::kLuv) return refine(mesh, feature, params, progress);
+    if (objective == Objective::kLuv) return refine(mesh, feature, params, progress, mask);
     convert_colors(mesh, [](const Vec3f& luv) { return encoded_from_luv(ColorSpace::kSrgb, luv); });
-    RefineReport report = refine(mesh, encoded_picture(feature), params, progress);
+    RefineReport report = refine(mesh, encoded_picture(feature), params, progress, mask);
     convert_colors(mesh, [](const Vec3f& encoded) {
         return luv_from_linear(linear_from_encoded(ColorSpace::kSrgb, encoded));
     });

@@ -56,7 +56,9 @@ IMGMESH_INLINE void for_each_chunk(const PicturePlanes& picture, const Plane& pl
             const float dx = static_cast<float>(begin) - plane.ax;
             for (int i = 0; i < end - begin; i += 8) {
                 const Float8 dx8 = dx + static_cast<float>(i) + kLane;
-                const Int8 inside = kLane < static_cast<float>(end - begin - i);
+                Int8 inside = kLane < static_cast<float>(end - begin - i);
+                if (!picture.inside.empty())
+                    inside &= load8(picture.inside.data() + start + static_cast<std::size_t>(i)) > 0.0f;
                 Float8 e[3];
                 for (std::size_t k = 0; k < 3; ++k) {
                     const Float8 want =
@@ -151,12 +153,16 @@ bool has_avx2() {
 
 }  // namespace
 
-PicturePlanes::PicturePlanes(const FeatureImage& picture) : width(picture.width), height(picture.height) {
+PicturePlanes::PicturePlanes(const FeatureImage& picture, const Mask& mask)
+    : width(picture.width), height(picture.height) {
     constexpr std::size_t kPadding = 8;
     for (std::size_t k = 0; k < 3; ++k) {
         channel[k].resize(picture.pixel_count() + kPadding);
         for (std::size_t i = 0; i < picture.pixel_count(); ++i) channel[k][i] = picture.pixel(i)[k];
     }
+    if (mask.empty()) return;
+    inside.resize(picture.pixel_count() + kPadding);
+    for (std::size_t i = 0; i < picture.pixel_count(); ++i) inside[i] = mask.contains(i) ? 1.0f : 0.0f;
 }
 
 CornerSums corner_sums(const PicturePlanes& picture, const Corner& a, const Corner& b, const Corner& c) {

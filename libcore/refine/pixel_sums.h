@@ -5,14 +5,17 @@
 #include <vector>
 
 #include "libcore/image/image.h"
+#include "libcore/image/mask.h"
 #include "libcore/mesh/base_mesh.h"
 
 namespace imgmesh {
 
 /// A picture of three channels as planes, each padded so that eight floats can be read at any pixel.
 struct PicturePlanes {
-    explicit PicturePlanes(const FeatureImage& picture);
+    /// Pixels outside `mask`, which is empty() or of the picture's size, count nowhere.
+    explicit PicturePlanes(const FeatureImage& picture, const Mask& mask = {});
     int width, height;
+    std::vector<float> inside;  ///< 1 inside the mask and 0 outside, padded too; empty without a mask
     std::array<std::vector<float>, 3> channel;
 };
 

@@ -10,8 +10,8 @@
 namespace imgmesh {
 
 RefineReport refine(BaseMesh& mesh, const FeatureImage& picture, const RefineParams& params,
-                    const Progress& progress) {
-    const PicturePlanes planes(picture);
+                    const Progress& progress, const Mask& mask) {
+    const PicturePlanes planes(picture, mask);
     Refiner refiner(mesh, planes, params);
     mesh = refiner.result();
     RefineReport report;

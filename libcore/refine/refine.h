@@ -7,6 +7,7 @@
 
 #include "libcore/base/progress.h"
 #include "libcore/image/image.h"
+#include "libcore/image/mask.h"
 #include "libcore/mesh/base_mesh.h"
 
 namespace imgmesh {
@@ -37,10 +38,11 @@ struct RefineReport {
 ///
 /// mesh     any outline, three channels, positions on kPositionStep; corners and outlines other than straight
 ///          sides of the bounding box stay, vertices of such sides slide
-/// picture  what to draw, in the space of mesh.feature; pixels outside the mesh do not count
+/// picture  what to draw, in the space of mesh.feature; pixels outside the mesh do not count,
+///          nor do those outside `mask`, which is empty() or of the picture's size
 ///
 /// Source: docs/decisions/0012-refinement.md. Deterministic; one thread.
 RefineReport refine(BaseMesh& mesh, const FeatureImage& picture, const RefineParams& params,
-                    const Progress& progress = {});
+                    const Progress& progress = {}, const Mask& mask = {});
 
 }  // namespace imgmesh

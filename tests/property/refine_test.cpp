@@ -4,11 +4,13 @@
 #include <cmath>
 
 #include "libcore/base/parallel.h"
+#include "libcore/build/build.h"
 #include "libcore/collapse/collapse_edges.h"
 #include "libcore/metrics/metrics.h"
 #include "libcore/param/trivial_map.h"
 #include "libcore/refine/refine.h"
 #include "tests/support/meshes.h"
+#include "tests/support/sample_masks.h"
 #include "tests/support/sample_pictures.h"
 
 using namespace imgmesh;
@@ -194,4 +196,33 @@ TEST_CASE("refine: the same bytes every time, in the range of colours asked for"
     CHECK(first.feature == second.feature);
     CHECK(first.faces == second.faces);
     for (const float f : first.feature) CHECK((f >= 0 && f <= 1));
+}
+
+// Pixels outside the mask have no say, the outline stays where it is, and the map stays one to one.
+TEST_CASE("refine: cut-outs keep outline and topology") {
+    for (const auto& [name, mask] : sample_masks(40)) {
+        INFO(name);
+        Image image = sample_picture(Kind::kNoise, mask.width, mask.height);
+        BuildParams params;
+        params.stop.density = 10;
+        const BuildResult plain = build_mesh_image(image, params, {}, mask);
+        params.refine = 3;
+        const Level refined = build_mesh_image(image, params, {}, mask).mesh_image.levels[0];
+        const MeshQuality before = mesh_quality(plain.mesh_image.levels[0].mesh),
+                          after = mesh_quality(refined.mesh);
+        CHECK(after.vertices == before.vertices);
+        CHECK(after.euler == before.euler);
+        CHECK(after.components == before.components);
+        CHECK(after.area == before.area);
+        CHECK(after.flipped_faces + after.nonmanifold_edges + after.nonmanifold_vertices == 0);
+        const MapQuality map = map_quality(refined.mesh, refined.map, true);
+        CHECK(map.unmapped + map.outside_simplex + map.flipped_triangles == 0);
+
+        // Whatever the colours outside are, they change nothing.
+        for (std::size_t i = 0; i < image.pixel_count(); ++i)
+            if (!mask.contains(i)) std::fill_n(&image.data[3 * i], 3, 1.0f);
+        const Level other = build_mesh_image(image, params, {}, mask).mesh_image.levels[0];
+        CHECK(other.mesh.position == refined.mesh.position);
+        CHECK(other.mesh.feature == refined.mesh.feature);
+    }
 }
