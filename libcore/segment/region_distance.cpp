@@ -11,8 +11,8 @@ namespace {
 // Chosen on ten pictures, and within noise of the best there and on ten others; each may change by a third
 // without harm (docs/decisions/0009-segmentation.md has the figures).
 constexpr double kBorderShare = 0.7;    // of the contrast along the border, against what the regions are
-constexpr double kSizeExponent = 0.1;   // small regions are details of what surrounds them
-constexpr double kShapeExponent = 0.1;  // what is joined along most of its outline belongs together
+constexpr double kSizeExponent = 0.2;   // small regions are details of what surrounds them
+constexpr double kShapeExponent = 0.2;  // what is joined along most of its outline belongs together
 
 // 1 - m where m is as large as can be: keeps the logarithm finite.
 constexpr double kLeastLikeness = 1e-9;
