@@ -36,7 +36,7 @@ RegionDistance contour_distance(double pixels) {
         const double m = kBorderShare * border.mean_contrast() + (1 - kBorderShare) * regions;
         const double color = color_equivalent(-std::log(std::max(kLeastLikeness, 1 - m)));
         const double size = 4 * harmonic(a.pixels, b.pixels) / pixels;
-        const double shape = border.length / std::sqrt(std::min(a.pixels, b.pixels));
+        const double shape = border.length / std::sqrt(2 * std::min(a.pixels, b.pixels));
         return color * std::pow(size, kSizeExponent) * std::pow(shape, -kShapeExponent);
     };
 }

@@ -11,7 +11,7 @@ RegionDistance paper_distance();
 
 /// Colours and texture of the regions, contrast along their border, size and shape, in L*u*v* units:
 ///
-///     color_equivalent(-ln(1 - m)) * (4 h / pixels)^0.2 * (l / sqrt(s))^-0.2
+///     color_equivalent(-ln(1 - m)) * (4 h / pixels)^0.2 * (l / sqrt(2 s))^-0.2
 ///     m = 0.7 (mean contrast of the border) + 0.3 (1 - exp(-population distance of the regions))
 ///
 /// with h = a b / (a + b) of the regions' pixels a and b, s the lesser of them, and l the border's length.

@@ -18,7 +18,7 @@ enum class DistanceRule {
 /// Where merging stops. At most one of `segments` and `superpixels`; without them `threshold` counts.
 struct SegmentParams {
     DistanceRule distance = DistanceRule::kContour;  ///< not for superpixels, which have their own
-    double threshold = 20.0;                         ///< regions closer than this become one [L*u*v*]; > 0
+    double threshold = 5.0;                          ///< regions closer than this become one [L*u*v*]; > 0
     std::optional<std::int64_t> segments;            ///< this many regions; >= 1
     std::optional<std::int64_t> superpixels;  ///< this many regions of similar size that follow edges; >= 1
     double compactness = 10.0;  ///< of superpixels: that L*u*v* distance weighs as much as a spacing; >= 0
