@@ -138,7 +138,7 @@ class Segment(CliCase):
 
         areas = []
         for i, p in enumerate(primitives):
-            corners = read(p["attributes"]["POSITION"], "<f4", 3)[read(p["indices"], "<u4", 3)]
+            corners = read(p["attributes"]["POSITION"], "<f4", 3)[read(p["indices"], "<u4", 1).reshape(-1, 3)]
             e, f = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
             area = (e[:, 0] * f[:, 1] - e[:, 1] * f[:, 0]) / 2
             self.assertGreater(area.min(), 0)
