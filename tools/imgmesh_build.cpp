@@ -142,10 +142,7 @@ BuildResult build_named(const std::string& input, const Image& image, const Buil
 
 Report build_one(const Job& job, const Options& o, const Context& context, const Progress& progress) {
     const auto start = std::chrono::steady_clock::now();
-    // What stands beside a .gltf is replaced only where there is one that it belongs to.
-    const bool replace_others = context.overwrite && owns_its_files(job.output);
-    for (const std::string& file : container_files(job.output))
-        check_output(file, file == job.output ? context.overwrite : replace_others);
+    check_output(job.output, context.overwrite);
     const Image image = read_image(job.input, o.color_space);
     BuildResult result = build_named(job.input, image, o.params, progress);
     result.mesh_image.generator = context.generator;
