@@ -77,6 +77,13 @@ void add_options(CLI::App& app, Options& o) {
         app, "--min-quality", o.params.min_quality, {0, 0.8},
         "Least q = 4 sqrt(3) area / sum of squared edges of a triangle, whatever the limits above say");
     const BuildParams params;
+    add_count(
+        app, "--refine", o.params.refine, {0, kMaxRefine},
+        cat("Rounds that move vertices, flip edges and put vertices elsewhere to lower the error (default ",
+            params.refine, ")"));
+    add_choice<Objective, Objective>(
+        app, "--objective", o.params.objective, {{"luv", Objective::kLuv}, {"rgb", Objective::kRgb}},
+        "Error to lower: L*u*v*, or sRGB with colours for the mesh drawn alone (default luv)");
     add_number(app, "--geometry-weight", o.params.geometry_weight, {0, kNoLimit, true},
                cat("Weight of geometry in the quadrics (default ", params.geometry_weight, ")"));
     add_number(app, "--color-weight", o.params.color_weight, {0, kNoLimit, true},
