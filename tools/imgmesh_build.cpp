@@ -75,10 +75,21 @@ void add_options(CLI::App& app, Options& o) {
         app, "--min-quality", o.params.min_quality, {0, 0.8},
         "Least q = 4 sqrt(3) area / sum of squared edges of a triangle, whatever the limits above say");
     const BuildParams params;
-    add_number(app, "--geometry-weight", o.params.geometry_weight, {0, kNoLimit, true},
-               cat("Weight of geometry in the quadrics (default ", params.geometry_weight, ")"));
+    add_choice(app, "--metric", o.params.metric, metric_choices(),
+               "Error that collapses are ordered and placed by (default flattened)");
+    add_choice(app, "--solver", o.params.solver, solver_choices(),
+               "How a quadric's least point is found; closed is the fast one (default closed)");
+    CLI::Option* const geometry =
+        add_number(app, "--geometry-weight", o.params.geometry_weight, {0, kNoLimit, true},
+                   cat("Weight of geometry in the quadrics (default ", params.geometry_weight, ")"));
     add_number(app, "--color-weight", o.params.color_weight, {0, kNoLimit, true},
                cat("Weight of colour in the quadrics (default ", params.color_weight, ")"));
+    app.final_callback([&o, geometry] {
+        if (geometry->count() > 0 && o.params.metric == Metric::kHoppe)
+            throw Error(ErrorCode::kUsage, "--geometry-weight: the metric hoppe has no geometry to weigh");
+    });
+    add_count(app, "--smoothing", o.params.smoothing, {0, kMaxSmoothing},
+              "Passes of smoothing before gradients are taken (default by density)");
     add_choice<bool, bool>(
         app, "--quadrics", o.params.rebuild_quadrics, {{"accumulated", false}, {"rebuilt", true}},
         "Summed up from the pixels on, or taken anew from the mesh at every halving (default accumulated)");

@@ -10,16 +10,28 @@
 
 namespace imgmesh {
 
-std::vector<CollapseResult> collapse_edges(const GridMesh& grid, const CollapseParams& params,
-                                           std::span<const CollapseTarget> targets,
-                                           const Progress& progress) {
-    Collapser<Quadric<3>> collapser(grid, params);
+namespace {
+
+template <class Q>
+std::vector<CollapseResult> collapse_by(const GridMesh& grid, const CollapseParams& params,
+                                        std::span<const CollapseTarget> targets, const Progress& progress) {
+    Collapser<Q> collapser(grid, params);
     std::vector<CollapseResult> levels;
     for (const CollapseTarget& target : targets) {
         collapser.run(target, progress);
         levels.push_back(collapser.snapshot());
     }
     return levels;
+}
+
+}  // namespace
+
+std::vector<CollapseResult> collapse_edges(const GridMesh& grid, const CollapseParams& params,
+                                           std::span<const CollapseTarget> targets,
+                                           const Progress& progress) {
+    if (params.metric == Metric::kFlattened && params.solver == Solver::kClosed)
+        return collapse_by<Quadric<3>>(grid, params, targets, progress);
+    return collapse_by<DenseQuadric<3>>(grid, params, targets, progress);
 }
 
 CollapseResult collapse_edges(const GridMesh& grid, const CollapseParams& params,
