@@ -53,8 +53,8 @@ struct CollapseResult {
 /// targets  one a level, each at least as coarse as the one before
 /// return   the mesh at each of the targets, in that order
 ///
-/// About 170 bytes a pixel for the flattened metric in closed form, 480 for others; O(n). Three feature
-/// channels. Deterministic.
+/// Any number of features, 1 to kMaxFeatures (Error(kUsage) else). About 170 bytes a pixel with up to three
+/// of them, 480 with another metric or solver than the first; O(n). Deterministic.
 std::vector<CollapseResult> collapse_edges(const GridMesh& grid, const CollapseParams& params,
                                            std::span<const CollapseTarget> targets,
                                            const Progress& progress = {});

@@ -12,11 +12,10 @@
 #include "libcore/collapse/border_rules.h"
 #include "libcore/collapse/bucket_queue.h"
 #include "libcore/collapse/collapse_edges.h"
-#include "libcore/collapse/dense_quadric.h"
 #include "libcore/collapse/edge_batch.h"
+#include "libcore/collapse/quadric_sources.h"
 #include "libcore/collapse/ring_mesh.h"
 #include "libcore/collapse/star_limits.h"
-#include "libcore/collapse/vertex_quadrics.h"
 
 namespace imgmesh {
 
@@ -31,24 +30,6 @@ inline constexpr float kWindow = 4.0f;
 // window ends early.
 inline constexpr int kTile = 64;
 inline constexpr std::int64_t kTiledAbove = 4;
-
-template <class Q>
-std::vector<Q> initial_quadrics(const GridMesh& grid, const RingMesh& rings, const CollapseParams& params) {
-    const FeatureImage gradients = smoothed(grid.feature, params.smoothing);
-    if constexpr (std::is_same_v<Q, Quadric<Q::kChannels>>)
-        return vertex_quadrics(grid, gradients, params.geometry_weight);
-    else
-        return dense_quadrics<Q::kChannels>(grid, rings, gradients, params);
-}
-
-template <class Q>
-std::vector<Q> rebuilt_quadrics(const RingMesh& rings, const std::vector<Q>& before,
-                                const CollapseParams& params) {
-    if constexpr (std::is_same_v<Q, Quadric<Q::kChannels>>)
-        return current_quadrics(rings, before, params.geometry_weight);
-    else
-        return dense_quadrics<Q::kChannels>(rings, before, params);
-}
 
 struct Placement {
     float x = 0, y = 0;
@@ -248,11 +229,11 @@ class Collapser {
 
     // Files edge (i, j) if it costs less than the threshold; interior ones wait for file_batch().
     void file(Id i, Id j) {
-        if constexpr (std::is_same_v<Q, Quadric<3>>) {
+        if constexpr (kBatched) {
             if (!rings_[i].border() && !rings_[j].border()) {
                 batch_edges_[batch_size_] = {i, j};
                 batch_.set(batch_size_, quadrics_[i], quadrics_[j]);
-                if (++batch_size_ == EdgeBatch::kWidth) file_batch();
+                if (++batch_size_ == EdgeBatch<Q>::kWidth) file_batch();
                 return;
             }
         }
@@ -329,13 +310,16 @@ class Collapser {
         return far(vertices_, target_.vertices) && far(faces_, target_.faces);
     }
 
+    // Of a quadric that may have no minimiser the edge's midpoint and ends have to be tried.
+    static constexpr bool kBatched = kCanonical<Q>;
+
     CollapseParams params_;
     int width_, height_;
     RingMesh rings_;
     std::vector<Q> quadrics_;
     BucketQueue queue_;
-    EdgeBatch batch_;
-    std::array<std::pair<Id, Id>, EdgeBatch::kWidth> batch_edges_;
+    EdgeBatch<Q> batch_;
+    std::array<std::pair<Id, Id>, EdgeBatch<Q>::kWidth> batch_edges_;
     int batch_size_ = 0;
     float postponed_ = kNever;  // least cost of the legal edges that are beyond the current threshold
     float threshold_ = 0;       // of the current window

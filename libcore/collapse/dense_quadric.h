@@ -95,7 +95,7 @@ DenseQuadric<C> merged(const DenseQuadric<C>& i, const DenseQuadric<C>& j) {
     return sum;
 }
 
-/// The dense form of vertex_quadrics(), of params' metric, weight and solver; C channels.
+/// The dense form of vertex_quadrics(), of params' metric, weight and solver; C is 3, 8 or 16.
 template <int C>
 std::vector<DenseQuadric<C>> dense_quadrics(const GridMesh& grid, const RingMesh& rings,
                                             const FeatureImage& gradients, const CollapseParams& params);

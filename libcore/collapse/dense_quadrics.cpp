@@ -1,3 +1,4 @@
+#include <Eigen/LU>
 #include <cmath>
 
 #include "libcore/base/parallel.h"
@@ -116,7 +117,15 @@ std::vector<DenseQuadric<C>> dense_quadrics(const RingMesh& rings, const std::ve
 
 template std::vector<DenseQuadric<3>> dense_quadrics(const GridMesh&, const RingMesh&, const FeatureImage&,
                                                      const CollapseParams&);
+template std::vector<DenseQuadric<8>> dense_quadrics(const GridMesh&, const RingMesh&, const FeatureImage&,
+                                                     const CollapseParams&);
+template std::vector<DenseQuadric<16>> dense_quadrics(const GridMesh&, const RingMesh&, const FeatureImage&,
+                                                      const CollapseParams&);
 template std::vector<DenseQuadric<3>> dense_quadrics(const RingMesh&, const std::vector<DenseQuadric<3>>&,
                                                      const CollapseParams&);
+template std::vector<DenseQuadric<8>> dense_quadrics(const RingMesh&, const std::vector<DenseQuadric<8>>&,
+                                                     const CollapseParams&);
+template std::vector<DenseQuadric<16>> dense_quadrics(const RingMesh&, const std::vector<DenseQuadric<16>>&,
+                                                      const CollapseParams&);
 
 }  // namespace imgmesh

@@ -6,12 +6,11 @@
 namespace imgmesh {
 namespace {
 
-constexpr int C = 3;
-
 // With a the area of face f, t its centroid less the vertex, g its gradient, summed over the faces around the
 // vertex:
 //   W = sum a,  G = sum a g / W,  S = lambda W I + sum a g'g - W G'G,  q = S^-1 lambda sum a t,
 //   e = lambda sum a |t|^2 - q' lambda sum a t.
+template <int C>
 struct Accumulator {
     float area = 0, tx = 0, ty = 0, tt = 0;
     float gx[C] = {}, gy[C] = {};
@@ -62,7 +61,8 @@ struct Accumulator {
 
 }  // namespace
 
-std::vector<Quadric<3>> vertex_quadrics(const GridMesh& grid, const FeatureImage& gradients, float lambda) {
+template <int C>
+std::vector<Quadric<C>> vertex_quadrics(const GridMesh& grid, const FeatureImage& gradients, float lambda) {
     const int w = grid.feature.width;
     std::vector<Quadric<C>> quadrics(grid.feature.pixel_count());
     parallel_blocks(0, grid.feature.height, 16, [&](int first, int last) {
@@ -79,7 +79,7 @@ std::vector<Quadric<3>> vertex_quadrics(const GridMesh& grid, const FeatureImage
                     oy[k] = static_cast<float>(static_cast<int>(n / static_cast<Id>(w)) - y);
                     for (int c = 0; c < C; ++c) d[k][c] = gradients.pixel(n)[c] - own[c];
                 }
-                Accumulator sum;
+                Accumulator<C> sum;
                 for (int k = 0; k < ring.valence - (ring.border() ? 1 : 0); ++k) {
                     const int m = k + 1 == ring.valence ? 0 : k + 1;
                     sum.add(ox[k], oy[k], d[k], ox[m], oy[m], d[m]);
@@ -91,7 +91,8 @@ std::vector<Quadric<3>> vertex_quadrics(const GridMesh& grid, const FeatureImage
     return quadrics;
 }
 
-std::vector<Quadric<3>> current_quadrics(const RingMesh& rings, const std::vector<Quadric<3>>& before,
+template <int C>
+std::vector<Quadric<C>> current_quadrics(const RingMesh& rings, const std::vector<Quadric<C>>& before,
                                          float lambda) {
     std::vector<Quadric<C>> quadrics(rings.size());
     parallel_blocks(0, static_cast<int>(rings.size()), 1 << 14, [&](int first, int last) {
@@ -106,7 +107,7 @@ std::vector<Quadric<3>> current_quadrics(const RingMesh& rings, const std::vecto
                 oy[k] = n.y - ring.y;
                 for (int c = 0; c < C; ++c) d[k][c] = before[ring.neighbor[k]].feature(c, n.x, n.y) - s[c];
             }
-            Accumulator sum;
+            Accumulator<C> sum;
             for (int k = 0; k < ring.valence - (ring.border() ? 1 : 0); ++k) {
                 const int m = k + 1 == ring.valence ? 0 : k + 1;
                 sum.add(ox[k], oy[k], d[k], ox[m], oy[m], d[m]);
@@ -116,5 +117,13 @@ std::vector<Quadric<3>> current_quadrics(const RingMesh& rings, const std::vecto
     });
     return quadrics;
 }
+
+template std::vector<Quadric<3>> vertex_quadrics<3>(const GridMesh&, const FeatureImage&, float);
+template std::vector<Quadric<8>> vertex_quadrics<8>(const GridMesh&, const FeatureImage&, float);
+template std::vector<Quadric<16>> vertex_quadrics<16>(const GridMesh&, const FeatureImage&, float);
+template std::vector<Quadric<3>> current_quadrics<3>(const RingMesh&, const std::vector<Quadric<3>>&, float);
+template std::vector<Quadric<8>> current_quadrics<8>(const RingMesh&, const std::vector<Quadric<8>>&, float);
+template std::vector<Quadric<16>> current_quadrics<16>(const RingMesh&, const std::vector<Quadric<16>>&,
+                                                       float);
 
 }  // namespace imgmesh

@@ -34,13 +34,22 @@ PixelMap stored(const BaseMesh& mesh, const MovingPixels& pixels, const std::vec
                 "the weights are too coarse for faces this large: --bary float holds them");
 }
 
+void round_colors(BaseMesh& mesh, float weight) {
+    for (Id v = 0; v < mesh.vertex_count(); ++v) {
+        const Eigen::Map<Vec3f> color(mesh.feature_of(v));
+        const Vec3f storable = weight * storable_color(color / weight);
+        std::copy(storable.data(), storable.data() + 3, mesh.feature_of(v));
+    }
+}
+
 }  // namespace
 
 PixelMap fit_map(BaseMesh& mesh, const FeatureImage& feature, const FitParams& params,
                  const Progress& progress) {
     const PixelMap trivial = trivial_map(mesh, feature.width, feature.height);
     const auto fit = [&](const PixelMap& map) {
-        fit_colors(mesh, feature, {{&map, 1 - params.gouraud_share}, {&trivial, params.gouraud_share}});
+        fit_colors(mesh, feature, {{&map, 1 - params.gouraud_share}, {&trivial, params.gouraud_share}},
+                   params.space);
     };
     const std::vector<Face> neighbors = face_neighbors(mesh);
     MovingPixels pixels = resting_pixels(trivial);
@@ -50,16 +59,13 @@ PixelMap fit_map(BaseMesh& mesh, const FeatureImage& feature, const FitParams& p
     for (int round = 0; round < rounds; ++round) {
         if (progress) progress(static_cast<double>(round) / params.rounds, "map");
         const std::vector<FaceField> fields = face_fields(mesh);
-        relax(pixels, fields, neighbors, feature, static_cast<float>(1 / params.color_weight), params.sweeps);
+        relax(pixels, fields, neighbors, feature, static_cast<float>(1 / params.color_weight), params.sweeps,
+              further_fields(mesh, fields));
         if (round + 1 < rounds) fit(unrounded_map(pixels, fields));
     }
     PixelMap map = stored(mesh, pixels, face_fields(mesh), neighbors, params.bary);
     fit(map);
-    for (Id v = 0; v < mesh.vertex_count(); ++v) {
-        const Eigen::Map<Vec3f> color(mesh.feature_of(v));
-        const Vec3f storable = storable_color(color);
-        std::copy(storable.data(), storable.data() + 3, mesh.feature_of(v));
-    }
+    if (params.space.color) round_colors(mesh, params.space.color_weight);
     return map;
 }
 

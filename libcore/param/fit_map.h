@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "libcore/base/progress.h"
+#include "libcore/image/feature_space.h"
 #include "libcore/image/image.h"
 #include "libcore/mesh/base_mesh.h"
 #include "libcore/param/pixel_map.h"
@@ -15,15 +16,16 @@ struct FitParams {
     std::optional<WeightPrecision> bary;  ///< none: half where the map stays a bijection so, else float
     int rounds = 4;                       ///< of relaxation, colours refitted after each
     int sweeps = 4;                       ///< of relaxation a round
+    FeatureSpace space;                   ///< of the picture
     double gouraud_share =
         0.1;  ///< how much the drawing without the map counts in the fit of colours, 0 to 1
 };
 
-/// Finds the pixel map (relax.h, storable_map.h) and replaces the mesh's colours by the least-squares ones,
-/// rounded to what a container holds. The map is a bijection of the pixel grid onto the mesh.
+/// Finds the pixel map (relax.h, storable_map.h) and replaces the mesh's features by the least-squares ones,
+/// colours rounded to what a container holds. The map is a bijection of the pixel grid onto the mesh.
 ///
 /// mesh     covers the picture's rectangle; positions on kPositionStep
-/// feature  the picture, three channels
+/// feature  the picture, params.space.features() channels
 /// Throws Error(kUnsupported) where params.bary is too coarse for the mesh's faces.
 PixelMap fit_map(BaseMesh& mesh, const FeatureImage& feature, const FitParams& params,
                  const Progress& progress = {});

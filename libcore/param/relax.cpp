@@ -6,6 +6,7 @@
 #include "libcore/param/relax.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <limits>
 
@@ -43,30 +44,42 @@ IMGMESH_INLINE T clamped(T x, float low, float high) {
     return x < ceiling ? x : ceiling;
 }
 
-// The Gauss-Newton step (sx, sy) at (px, py) towards the face's colour there being the pixel's, and towards
-// (tx, ty). `field` holds the values of a FaceField.
+// The Gauss-Newton step at (px, py) towards the face's features there being the pixel's, and towards (tx,
+// ty).
 template <typename T>
-IMGMESH_INLINE void newton_step(const T* field, const T* color, T px, T py, T tx, T ty, float mu, T& sx,
-                                T& sy) {
-    T gxx = {}, gxy = {}, gyy = {}, bx = mu * (tx - px), by = mu * (ty - py);
-    const T dx = px - field[0], dy = py - field[1];
-    for (int c = 0; c < 3; ++c) {
-        const T gx = field[9 + c], gy = field[12 + c];
-        const T e = field[6 + c] + gx * dx + gy * dy - color[c];
+struct NewtonStep {
+    float mu;
+    T gxx = {}, gxy = {}, gyy = {}, bx, by;
+
+    IMGMESH_INLINE NewtonStep(T px, T py, T tx, T ty, float smoothness)
+        : mu(smoothness), bx(mu * (tx - px)), by(mu * (ty - py)) {}
+
+    // A feature of gradient (gx, gy) that the face has too much of by e.
+    IMGMESH_INLINE void add(T gx, T gy, T e) {
         gxx += gx * gx;
         gxy += gx * gy;
         gyy += gy * gy;
         bx -= gx * e;
         by -= gy * e;
     }
-    // Sums of what is never negative. (Of J'J + mu I as one matrix, J'J steep and singular, only rounding
-    // would be left.)
-    T minor = gxx * gyy - gxy * gxy;
-    minor = minor > T{} ? minor : T{};
-    const T inverse = 1 / (mu * (mu + gxx + gyy) + minor);
-    sx = clamped(((gyy + mu) * bx - gxy * by) * inverse, -kLongestStep, kLongestStep);
-    sy = clamped(((gxx + mu) * by - gxy * bx) * inverse, -kLongestStep, kLongestStep);
-}
+    // The first features, of which `field` holds the values of a FaceField.
+    IMGMESH_INLINE void add_fields(const T* field, const T* color, int features, T px, T py) {
+        const T dx = px - field[0], dy = py - field[1];
+        for (int c = 0; c < features; ++c) {
+            const T gx = field[9 + c], gy = field[12 + c];
+            add(gx, gy, field[6 + c] + gx * dx + gy * dy - color[c]);
+        }
+    }
+    IMGMESH_INLINE void solve(T& sx, T& sy) const {
+        // Sums of what is never negative. (Of J'J + mu I as one matrix, J'J steep and singular, only rounding
+        // would be left.)
+        T minor = gxx * gyy - gxy * gxy;
+        minor = minor > T{} ? minor : T{};
+        const T inverse = 1 / (mu * (mu + gxx + gyy) + minor);
+        sx = clamped(((gyy + mu) * bx - gxy * by) * inverse, -kLongestStep, kLongestStep);
+        sy = clamped(((gxx + mu) * by - gxy * bx) * inverse, -kLongestStep, kLongestStep);
+    }
+};
 
 // The least of the twelve triangles at (x, y) whose other corners are among the eight neighbours.
 template <typename T>
@@ -85,6 +98,7 @@ struct Sweep {
     const std::vector<Face>& neighbors;
     const FeatureImage& feature;
     float mu;
+    const FurtherFields& further;
 
     void move_pixel(int x, int y) const {
         const int w = pixels.width, h = pixels.height;
@@ -106,8 +120,14 @@ struct Sweep {
         const float rest_x = static_cast<float>(x), rest_y = static_cast<float>(y);
         const float px = rest_x + pixels.dx[index], py = rest_y + pixels.dy[index];
         float sx, sy;
-        newton_step(&fields[pixels.face[index]].ax, feature.pixel(index), px, py, rest_x + mean_x / count,
-                    rest_y + mean_y / count, mu, sx, sy);
+        const FaceField& field = fields[pixels.face[index]];
+        const float* color = feature.pixel(index);
+        NewtonStep<float> step(px, py, rest_x + mean_x / count, rest_y + mean_y / count, mu);
+        step.add_fields(&field.ax, color, std::min(3, feature.channels), px, py);
+        const float* f = further.of(pixels.face[index]);
+        for (std::size_t c = 0; c < further.features; ++c, f += 3)
+            step.add(f[1], f[2], f[0] + f[1] * (px - field.ax) + f[2] * (py - field.ay) - color[3 + c]);
+        step.solve(sx, sy);
         if (x == 0 || x == w - 1) sx = 0;
         if (y == 0 || y == h - 1) sy = 0;
         for (int half = 0; half <= kHalvings; ++half, sx *= 0.5f, sy *= 0.5f) {
@@ -125,7 +145,7 @@ struct Sweep {
         pixels.dy[index] = dy;
     }
 
-    // move_pixel() for (x, y), (x + 2, y), ... (x + 14, y), none of them on a side.
+    // move_pixel() for (x, y), (x + 2, y), ... (x + 14, y), none of them on a side; three features.
     IMGMESH_INLINE void move_eight(int x, int y) const {
         const std::size_t index = pixels.index(x, y);
         Float8 field[2][8];
@@ -154,7 +174,9 @@ struct Sweep {
         const Float8 px = rest_x + load8_every_other(&pixels.dx[index]);
         const Float8 py = rest_y + load8_every_other(&pixels.dy[index]);
         Float8 sx, sy;
-        newton_step(field[0], color, px, py, rest_x + mean_x / 4, rest_y + mean_y / 4, mu, sx, sy);
+        NewtonStep<Float8> step(px, py, rest_x + mean_x / 4, rest_y + mean_y / 4, mu);
+        step.add_fields(field[0], color, 3, px, py);
+        step.solve(sx, sy);
         const float right = static_cast<float>(pixels.width - 1),
                     bottom = static_cast<float>(pixels.height - 1);
         Float8 to_x = px, to_y = py;
@@ -185,7 +207,7 @@ struct Sweep {
     IMGMESH_INLINE void move_row(int y, int parity) const {
         const int w = pixels.width;
         int x = parity;
-        if (y > 0 && y < pixels.height - 1) {
+        if (feature.channels == 3 && y > 0 && y < pixels.height - 1) {
             if (x == 0) {
                 move_pixel(0, y);
                 x = 2;
@@ -214,8 +236,9 @@ MovingPixels resting_pixels(const PixelMap& trivial) {
 }
 
 void relax(MovingPixels& pixels, const std::vector<FaceField>& fields, const std::vector<Face>& neighbors,
-           const FeatureImage& feature, float smoothness, int sweeps) {
-    const Sweep sweep{pixels, fields, neighbors, feature, smoothness};
+           const FeatureImage& feature, float smoothness, int sweeps, const FurtherFields& further) {
+    assert(static_cast<int>(further.features) == std::max(0, feature.channels - 3));
+    const Sweep sweep{pixels, fields, neighbors, feature, smoothness, further};
     auto move_row = &Sweep::move_row_portably;
 #if defined(__x86_64__)
     if (__builtin_cpu_supports("avx2")) move_row = &Sweep::move_row_avx2;

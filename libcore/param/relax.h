@@ -38,11 +38,12 @@ inline constexpr float kLeastMovingArea = 0.05f;
 /// kLeastMovingArea, so the map stays a bijection. Pixels of the picture's sides slide along them, corners
 /// rest.
 ///
-/// feature    the picture, three channels, size of `pixels`; both sides at least 2
+/// feature    the picture, size of `pixels`; both sides at least 2
+/// further    further_fields() where it has more than three features
 /// smoothness mu [feature^2 / px^2], > 0
 /// Pixels of one parity of (x, y) move at once and do not see each other: same result for any number of
 /// threads.
 void relax(MovingPixels& pixels, const std::vector<FaceField>& fields, const std::vector<Face>& neighbors,
-           const FeatureImage& feature, float smoothness, int sweeps);
+           const FeatureImage& feature, float smoothness, int sweeps, const FurtherFields& further = {});
 
 }  // namespace imgmesh
