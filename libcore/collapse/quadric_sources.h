@@ -15,11 +15,13 @@ inline constexpr bool kCanonical = std::is_same_v<Q, Quadric<Q::kChannels>>;
 /// Those of the dense mesh; `rings` are the grid's.
 template <class Q>
 std::vector<Q> initial_quadrics(const GridMesh& grid, const RingMesh& rings, const CollapseParams& params) {
-    const FeatureImage gradients = smoothed(grid.feature, params.smoothing);
-    if constexpr (kCanonical<Q>)
+    const FeatureImage gradients = smoothed_vertices(grid, params.smoothing);
+    if constexpr (!kCanonical<Q>)
+        return dense_quadrics<Q::kChannels>(grid, rings, gradients, params);
+    else if (grid.mask.empty())
         return vertex_quadrics<Q::kChannels>(grid, gradients, params.geometry_weight);
     else
-        return dense_quadrics<Q::kChannels>(grid, rings, gradients, params);
+        return vertex_quadrics<Q::kChannels>(grid, rings, gradients, params.geometry_weight);
 }
 
 /// Those of the mesh as it stands.
