@@ -1,5 +1,4 @@
 // imgmesh-build: pictures in, containers out.
-#include <chrono>
 #include <filesystem>
 #include <map>
 #include <mutex>
@@ -9,6 +8,7 @@
 #include "formats/container.h"
 #include "formats/image_io.h"
 #include "libcore/base/parallel.h"
+#include "libcore/base/stopwatch.h"
 #include "libcore/build/build.h"
 #include "libcore/image/color.h"
 #include "libcore/metrics/metrics.h"
@@ -77,6 +77,13 @@ void add_options(CLI::App& app, Options& o) {
         app, "--min-quality", o.params.min_quality, {0, 0.8},
         "Least q = 4 sqrt(3) area / sum of squared edges of a triangle, whatever the limits above say");
     const BuildParams params;
+    add_count(
+        app, "--refine", o.params.refine, {0, kMaxRefine},
+        cat("Rounds that move vertices, flip edges and put vertices elsewhere to lower the error (default ",
+            params.refine, ")"));
+    add_choice<Objective, Objective>(
+        app, "--objective", o.params.objective, {{"luv", Objective::kLuv}, {"rgb", Objective::kRgb}},
+        "Error to lower: L*u*v*, or sRGB with colours for the mesh drawn alone (default luv)");
     add_choice(app, "--metric", o.params.metric, metric_choices(),
                "Error that collapses are ordered and placed by (default flattened)");
     add_choice(app, "--solver", o.params.solver, solver_choices(),
@@ -178,7 +185,7 @@ Mask read_mask(const Options& o) {
 }
 
 Report build_one(const Job& job, const Options& o, const Context& context, const Progress& progress) {
-    const auto start = std::chrono::steady_clock::now();
+    Stopwatch whole, stage;
     // What stands beside a .gltf is replaced only where there is one that it belongs to.
     const bool replace_others = context.overwrite && owns_its_files(job.output);
     for (const std::string& file : container_files(job.output))
@@ -186,13 +193,16 @@ Report build_one(const Job& job, const Options& o, const Context& context, const
     const Image image = read_image(job.input, o.color_space);
     const bool cut = o.cut && o.mask.empty();
     Mask mask = cut ? alpha_mask(image, static_cast<float>(o.alpha_threshold)) : read_mask(o);
+    const double read_seconds = stage.lap();
     BuildResult result = build_named(job.input, image, o.params, progress, std::move(mask));
     result.mesh_image.generator = context.generator;
     if (result.mesh_image.source.has_mask) {
         result.mesh_image.parameters.emplace_back("mask", std::string(cut ? "alpha" : "picture"));
         result.mesh_image.parameters.emplace_back("alpha-threshold", o.alpha_threshold);
     }
+    stage.lap();
     write_container(job.output, result.mesh_image, {o.draco, context.overwrite});
+    const double write_seconds = stage.lap();
 
     // The figures are those of what a reader gets.
     const Container written = read_container(job.output);
@@ -208,7 +218,7 @@ Report build_one(const Job& job, const Options& o, const Context& context, const
                           {"mean_edge_ratio", mesh_quality(level.mesh).mean_edge_ratio}});
     }
     const double bytes = static_cast<double>(written.facts.total_bytes);
-    const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+    const BuildSeconds& seconds = result.report.seconds;
     Report report{{"input", job.input},
                   {"output", job.output},
                   {"width", image.width},
@@ -222,7 +232,13 @@ Report build_one(const Job& job, const Options& o, const Context& context, const
     report.update({{"levels", levels},
                    {"bytes", written.facts.total_bytes},
                    {"bytes_per_pixel", bytes / static_cast<double>(image.pixel_count())},
-                   {"seconds", seconds.count()}});
+                   {"seconds", whole.lap()},
+                   {"stage_seconds",
+                    {{"read", read_seconds},
+                     {"collapse", seconds.collapse},
+                     {"refine", seconds.refine},
+                     {"map", seconds.map},
+                     {"write", write_seconds}}}});
     return report;
 }
 

@@ -34,6 +34,14 @@ struct PyramidParams {
         errors;  ///< instead: quadric error of each level, rising; then StopParams do not count
 };
 
+/// Which error refinement lowers, of the mesh drawn alone.
+enum class Objective {
+    kLuv,  ///< L*u*v*; colours are then fitted to the pixel map and to the drawing
+    kRgb   ///< encoded sRGB, interpolated as such; colours are what that drawing alone wants
+};
+
+inline constexpr int kMaxRefine = 1000;
+
 struct BuildParams {
     StopParams stop;  ///< of the finest level
     PyramidParams levels;
@@ -47,6 +55,8 @@ struct BuildParams {
     double projection_color_weight = 1.0 / 30;  ///< of colour against smoothness in the map; 0: trivial map
     std::optional<WeightPrecision> bary;        ///< none: half where the map stays a bijection, else float
     std::optional<std::int64_t> max_cluster;    ///< no face with more pixels than this; >= 3
+    int refine = 0;  ///< rounds of refinement (refine/refine.h) of each level; 0 to kMaxRefine
+    Objective objective = Objective::kLuv;
     double min_quality = 0;  ///< no triangle of a lesser q = 4 sqrt(3) area / sum of squared edges; 0 to 0.8
 };
 
@@ -56,7 +66,15 @@ struct LevelReport {
     double gouraud_rms = 0;  ///< base mesh drawn without the map [L*u*v*]
 };
 
+/// Wall time of the stages, all levels together [s].
+struct BuildSeconds {
+    double collapse = 0;  ///< with L*u*v* and the dense mesh
+    double refine = 0;
+    double map = 0;  ///< with the fit of colours, and the figures of LevelReport
+};
+
 struct BuildReport {
+    BuildSeconds seconds;
     std::int64_t pixels = 0;  ///< meshed: those inside the mask, or all
     std::int64_t collapses = 0;
     std::vector<LevelReport> levels;
@@ -67,7 +85,8 @@ struct BuildResult {
     BuildReport report;
 };
 
-/// picture -> L*u*v* -> dense mesh -> collapse -> base mesh -> pixel map -> least-squares colours.
+/// picture -> L*u*v* -> dense mesh -> collapse -> base mesh -> refinement -> pixel map -> least-squares
+/// colours.
 /// Linear light is clipped to [0, 1]. A side of one pixel counts as a strip one pixel wide (docs/format.md).
 /// Alpha is ignored but for what `mask` has taken from it. Same result for any number of threads.
 ///
