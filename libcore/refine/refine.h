@@ -20,7 +20,8 @@ struct RefineParams {
     double min_quality = 0;  ///< no new triangle of a lesser q = 4 sqrt(3) area / sum of squared edges
     double max_face_area = std::numeric_limits<double>::infinity();  ///< no new triangle larger [px^2]
     double shape_weight = 0;    ///< of sum (1/q - 1) over faces, in mean squared errors of a face; >= 0
-    double relocations = 0.02;  ///< share of the vertices that may be put elsewhere in a round; 0 to 1
+    double relocations = 0.05;  ///< share of the vertices that may be put elsewhere in a round; 0 to 1
+    double exchange = 0;        ///< share of the vertices that a round adds, then removes elsewhere; 0 to 1
     ColorRange range = ColorRange::kLuv;
 };
 

@@ -21,6 +21,9 @@ class Refiner {
     std::int64_t move_vertices();
     std::int64_t flip_edges();
     std::int64_t relocate();
+    /// More vertices where they gain most, all steps, then as many fewer where they cost least, and all steps
+    /// again: taken back as a whole unless the error has fallen.
+    bool exchange(double share);
 
   private:
     // What a star or a pair of faces costs: squared error, and the worst and the summed shape.
@@ -62,6 +65,10 @@ class Refiner {
         Vec3f color;
         double gain;
     };
+    std::vector<Removal> removals() const;
+    std::vector<Insertion> insertions() const;
+    std::int64_t insert_best(std::int64_t most);
+    std::int64_t remove_cheapest(std::int64_t most);
     Removal best_removal(Id v) const;
     Insertion best_insertion(Id f) const;
     void try_insertion(Id f, int edge, const Vec2f& position, Insertion& best) const;

@@ -142,20 +142,95 @@ Id Refiner::insert(const Insertion& insertion) {
     return v;
 }
 
-std::int64_t Refiner::relocate() {
-    std::vector<Removal> removals;
-    std::vector<Insertion> insertions;
+std::vector<Refiner::Removal> Refiner::removals() const {
+    std::vector<Removal> all;
     for (Id v = 0; v < mesh_.position.size(); ++v)
-        if (const Removal removal = best_removal(v); removal.into != kNone) removals.push_back(removal);
-    for (Id f = 0; f < mesh_.faces.size(); ++f)
-        if (const Insertion insertion = best_insertion(f); insertion.gain > 0)
-            insertions.push_back(insertion);
-    std::sort(removals.begin(), removals.end(), [](const Removal& a, const Removal& b) {
+        if (const Removal removal = best_removal(v); removal.into != kNone) all.push_back(removal);
+    std::sort(all.begin(), all.end(), [](const Removal& a, const Removal& b) {
         return a.cost != b.cost ? a.cost < b.cost : a.v < b.v;
     });
-    std::sort(insertions.begin(), insertions.end(), [](const Insertion& a, const Insertion& b) {
+    return all;
+}
+
+std::vector<Refiner::Insertion> Refiner::insertions() const {
+    std::vector<Insertion> all;
+    for (Id f = 0; f < mesh_.faces.size(); ++f)
+        if (const Insertion insertion = best_insertion(f); insertion.gain > 0) all.push_back(insertion);
+    std::sort(all.begin(), all.end(), [](const Insertion& a, const Insertion& b) {
         return a.gain != b.gain ? a.gain > b.gain : a.face < b.face;
     });
+    return all;
+}
+
+// As many as `most` of the best, none next to another. What is known of a face or a vertex holds only until
+// something near it changes.
+std::int64_t Refiner::insert_best(std::int64_t most) {
+    std::vector<bool> touched(mesh_.faces.size(), false);
+    std::int64_t done = 0;
+    for (const Insertion& insertion : insertions()) {
+        if (done == most) break;
+        const Id g = insertion.edge < 0
+                         ? kNone
+                         : mesh_.across[insertion.face][static_cast<std::size_t>(insertion.edge)];
+        if (touched[insertion.face] || (g != kNone && touched[g])) continue;
+        touched[insertion.face] = true;
+        if (g != kNone) touched[g] = true;
+        move_vertex(insert(insertion));
+        touched.resize(mesh_.faces.size(), true);
+        ++done;
+    }
+    return done;
+}
+
+std::int64_t Refiner::remove_cheapest(std::int64_t most) {
+    std::vector<bool> touched(mesh_.faces.size(), false);
+    std::int64_t done = 0;
+    Star star;
+    for (const Removal& removal : removals()) {
+        if (done == most) break;
+        mesh_.star(removal.v, star);
+        bool free = true;
+        for (std::size_t k = 0; k < static_cast<std::size_t>(star.size); ++k)
+            free = free && !touched[star.face[k]];
+        if (!free) continue;
+        for (std::size_t k = 0; k < static_cast<std::size_t>(star.size); ++k) touched[star.face[k]] = true;
+        remove(removal);
+        ++done;
+    }
+    return done;
+}
+
+bool Refiner::exchange(double share) {
+    const RefineMesh mesh = mesh_;
+    const std::vector<double> error = error_;
+    const double before = total_error();
+    const auto settle = [&] {
+        flip_edges();
+        move_vertices();
+        fit_colors();
+    };
+    const std::int64_t extra =
+        insert_best(static_cast<std::int64_t>(std::ceil(share * static_cast<double>(mesh_.vertex_count()))));
+    settle();
+    settle();
+    std::int64_t left = extra;
+    // In parts, as each removal changes what the next ones cost.
+    while (left > 0) {
+        const std::int64_t done = remove_cheapest(std::max<std::int64_t>(1, (left + 1) / 2));
+        if (done == 0) break;
+        left -= done;
+        flip_edges();
+    }
+    settle();
+    if (left == 0 && total_error() < before) return true;
+    mesh_ = mesh;
+    error_ = error;
+    return false;
+}
+
+std::int64_t Refiner::relocate() {
+    const std::vector<Removal> removals = this->removals();
+    const std::vector<Insertion> insertions = this->insertions();
     // What is known of a face or a vertex holds only until something near it changes.
     std::vector<bool> touched(mesh_.faces.size(), false);
     const auto most =

@@ -56,6 +56,7 @@ TEST_CASE("refine: the error never rises, and the mesh stays sound") {
             RefineParams params;
             params.rounds = 5;
             params.relocations = 0.1;
+            params.exchange = 0.2;
             const RefineReport report = refine(mesh, feature, params);
             for (std::size_t k = 1; k < report.error.size(); ++k)
                 CHECK(report.error[k] < report.error[k - 1]);
