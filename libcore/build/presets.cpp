@@ -22,9 +22,9 @@ BuildParams preset_params(Preset preset) {
         case Preset::kFem:
             params.geometry_weight = 0.5;
             params.rebuild_quadrics = true;
-            params.refine = 6;
-            params.exchange = 0.15;
-            params.shape_weight = 0.8;
+            params.refine = 10;
+            params.exchange = 0.2;
+            params.shape_weight = 0.5;
             params.min_quality = 0.3;
             params.objective = Objective::kRgb;  // the mesh alone is what a simulation gets
             break;

@@ -35,7 +35,7 @@ struct RefineReport {
 /// Lowers the squared error of the mesh drawn with colours interpolated linearly over its faces. Each round
 /// fits all colours by least squares, moves vertices by Gauss-Newton steps, flips edges, and takes vertices
 /// from where their loss costs least to where they gain most; every single step lowers the error, so it never
-/// rises. The number of vertices stays.
+/// rises. The numbers of vertices and of faces stay.
 ///
 /// mesh     any outline, three channels, positions on kPositionStep; corners and outlines other than straight
 ///          sides of the bounding box stay, vertices of such sides slide

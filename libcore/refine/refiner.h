@@ -57,6 +57,7 @@ class Refiner {
     struct Removal {
         Id v, into;
         double cost;
+        bool border;  // v is one of a side
     };
     struct Insertion {
         Id face;
@@ -64,7 +65,11 @@ class Refiner {
         Vec2f position;
         Vec3f color;
         double gain;
+        bool border;  // on an edge of one face
     };
+    Id across(const Insertion& insertion) const;  // the other face that it divides, or kNone
+    void relocate(const std::vector<Removal>& removals, const std::vector<Insertion>& insertions, bool border,
+                  std::vector<bool>& touched, std::vector<Id>& fresh);
     std::vector<Removal> removals() const;
     std::vector<Insertion> insertions() const;
     std::int64_t insert_best(std::int64_t most);

@@ -1,20 +1,14 @@
 // Relocation: vertices go from where their loss costs least to where one more gains most.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "libcore/refine/refiner.h"
 
 namespace imgmesh {
-namespace {
-
-// A relocation moves and flips nothing yet, so what it gains is a lower bound, what it costs an upper one.
-constexpr double kMargin = 1.0;
-
-}  // namespace
-
 // Half-edge collapse of v into the neighbour where the error grows least.
 Refiner::Removal Refiner::best_removal(Id v) const {
-    Removal best{v, kNone, std::numeric_limits<double>::infinity()};
+    Removal best{v, kNone, std::numeric_limits<double>::infinity(), false};
     Star star;
     if (!mesh_.live_vertex(v) || mesh_.fixed[v] == RefineMesh::kFixed || !mesh_.star(v, star)) return best;
     const Cost before = cost_of(star);
@@ -38,7 +32,7 @@ Refiner::Removal Refiner::best_removal(Id v) const {
                 after.error += face_error({u, other(k, 1), other(k, 2)});
         const double cost = after.error - before.error + shape_unit_ * (after.shape - before.shape);
         if (after.error - before.error < best.cost && cost < best.cost)
-            best = {v, u, std::max(cost, after.error - before.error)};
+            best = {v, u, std::max(cost, after.error - before.error), !star.closed};
     }
     return best;
 }
@@ -95,11 +89,11 @@ void Refiner::try_insertion(Id f, int edge, const Vec2f& position, Insertion& be
     after.error += 2 * change.dot(we) + (ww - 1e-3) * change.squaredNorm();
     const double gain =
         before.error - after.error + std::min(0.0, shape_unit_ * (before.shape - after.shape));
-    if (gain > best.gain) best = {f, edge, position, chosen, gain};
+    if (gain > best.gain) best = {f, edge, position, chosen, gain, edge >= 0 && count == 2};
 }
 
 Refiner::Insertion Refiner::best_insertion(Id f) const {
-    Insertion best{f, -1, {}, {}, 0};
+    Insertion best{f, -1, {}, {}, 0, false};
     if (!mesh_.live_face(f)) return best;
     const auto [a, b, c] = mesh_.faces[f];
     const Vec2f center = (mesh_.position[a] + mesh_.position[b] + mesh_.position[c]) / 3;
@@ -142,6 +136,11 @@ Id Refiner::insert(const Insertion& insertion) {
     return v;
 }
 
+Id Refiner::across(const Insertion& insertion) const {
+    return insertion.edge < 0 ? kNone
+                              : mesh_.across[insertion.face][static_cast<std::size_t>(insertion.edge)];
+}
+
 std::vector<Refiner::Removal> Refiner::removals() const {
     std::vector<Removal> all;
     for (Id v = 0; v < mesh_.position.size(); ++v)
@@ -162,17 +161,15 @@ std::vector<Refiner::Insertion> Refiner::insertions() const {
     return all;
 }
 
-// As many as `most` of the best, none next to another. What is known of a face or a vertex holds only until
-// something near it changes.
+// As many as `most` of the best inside the mesh, none next to another. What is known of a face or a vertex
+// holds only until something near it changes.
 std::int64_t Refiner::insert_best(std::int64_t most) {
     std::vector<bool> touched(mesh_.faces.size(), false);
     std::int64_t done = 0;
     for (const Insertion& insertion : insertions()) {
         if (done == most) break;
-        const Id g = insertion.edge < 0
-                         ? kNone
-                         : mesh_.across[insertion.face][static_cast<std::size_t>(insertion.edge)];
-        if (touched[insertion.face] || (g != kNone && touched[g])) continue;
+        const Id g = across(insertion);
+        if (insertion.border || touched[insertion.face] || (g != kNone && touched[g])) continue;
         touched[insertion.face] = true;
         if (g != kNone) touched[g] = true;
         move_vertex(insert(insertion));
@@ -188,6 +185,7 @@ std::int64_t Refiner::remove_cheapest(std::int64_t most) {
     Star star;
     for (const Removal& removal : removals()) {
         if (done == most) break;
+        if (removal.border) continue;
         mesh_.star(removal.v, star);
         bool free = true;
         for (std::size_t k = 0; k < static_cast<std::size_t>(star.size); ++k)
@@ -233,23 +231,29 @@ std::int64_t Refiner::relocate() {
     const std::vector<Insertion> insertions = this->insertions();
     // What is known of a face or a vertex holds only until something near it changes.
     std::vector<bool> touched(mesh_.faces.size(), false);
+    std::vector<Id> fresh;
+    // Inner vertices are exchanged for inner ones: the number of faces stays.
+    for (const bool border : {false, true}) relocate(removals, insertions, border, touched, fresh);
+    for (const Id v : fresh) move_vertex(v);
+    return static_cast<std::int64_t>(fresh.size());
+}
+
+void Refiner::relocate(const std::vector<Removal>& removals, const std::vector<Insertion>& insertions,
+                       bool border, std::vector<bool>& touched, std::vector<Id>& fresh) {
     const auto most =
-        static_cast<std::int64_t>(std::ceil(params_.relocations * static_cast<double>(mesh_.vertex_count())));
-    std::int64_t done = 0;
+        static_cast<std::size_t>(std::ceil(params_.relocations * static_cast<double>(mesh_.vertex_count())));
     Star star;
     std::size_t next_removal = 0;
-    std::vector<Id> fresh;
     for (const Insertion& insertion : insertions) {
-        if (done >= most) break;
-        const Id g = insertion.edge < 0
-                         ? kNone
-                         : mesh_.across[insertion.face][static_cast<std::size_t>(insertion.edge)];
-        if (touched[insertion.face] || (g != kNone && touched[g])) continue;
+        if (fresh.size() >= most) return;
+        const Id g = across(insertion);
+        if (insertion.border != border || touched[insertion.face] || (g != kNone && touched[g])) continue;
         // The cheapest removal whose star neither was touched nor holds the insertion.
         bool found = false;
         while (next_removal < removals.size() && !found) {
             const Removal& removal = removals[next_removal++];
-            if (!(insertion.gain > kMargin * removal.cost)) return done;
+            if (!(insertion.gain > removal.cost)) return;
+            if (removal.border != border) continue;
             mesh_.star(removal.v, star);
             found = true;
             for (std::size_t k = 0; k < static_cast<std::size_t>(star.size); ++k)
@@ -263,12 +267,8 @@ std::int64_t Refiner::relocate() {
             remove(removal);
             fresh.push_back(insert(insertion));
             touched.resize(mesh_.faces.size(), true);
-            ++done;
         }
-        if (next_removal == removals.size()) break;
     }
-    for (const Id v : fresh) move_vertex(v);
-    return done;
 }
 
 }  // namespace imgmesh
