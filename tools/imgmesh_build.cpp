@@ -1,5 +1,4 @@
 // imgmesh-build: pictures in, containers out.
-#include <chrono>
 #include <filesystem>
 #include <map>
 #include <mutex>
@@ -9,7 +8,9 @@
 #include "formats/container.h"
 #include "formats/image_io.h"
 #include "libcore/base/parallel.h"
+#include "libcore/base/stopwatch.h"
 #include "libcore/build/build.h"
+#include "libcore/build/presets.h"
 #include "libcore/image/color.h"
 #include "libcore/metrics/metrics.h"
 #include "tools/common/names.h"
@@ -32,6 +33,7 @@ struct Options {
     bool cut = true;  // along alpha
     std::string mask;
     double alpha_threshold = 0.5;
+    ImageLimits limits;
 };
 
 struct Job {
@@ -43,6 +45,15 @@ void add_options(CLI::App& app, Options& o) {
     add_inputs(app, "IMAGE", o.inputs, "Pictures to read");
     add_output(app, o.output,
                "Container to write (.glb, .gltf), or a folder, ended by /, for NAME.glb of each");
+    // Before all that it sets, so that other options, wherever they stand, count after it.
+    add_choice<BuildParams, BuildParams>(app, "--preset", o.params,
+                                         {{"fast", preset_params(Preset::kFast)},
+                                          {"default", preset_params(Preset::kDefault)},
+                                          {"best", preset_params(Preset::kBest)},
+                                          {"fem", preset_params(Preset::kFem)}},
+                                         "Values of the options below, for speed, as usual, for the lowest "
+                                         "error of the mesh drawn alone, or for "
+                                         "triangles of good shape");
     const StopParams stop;
     CLI::Option* const faces = add_count(app, "--faces", o.params.stop.faces, {2}, "Stop at this many faces");
     CLI::Option* const vertices =
@@ -80,28 +91,57 @@ void add_options(CLI::App& app, Options& o) {
     add_count(
         app, "--refine", o.params.refine, {0, kMaxRefine},
         cat("Rounds that move vertices, flip edges and put vertices elsewhere to lower the error (default ",
-            params.refine, ")"));
+            kUsualRefine, ")"));
+    add_number(app, "--shape-weight", o.params.shape_weight, {0},
+               cat("Weight of the triangles' shape against error in refinement (default ",
+                   params.shape_weight, ")"));
+    add_number(app, "--exchange", o.params.exchange, {0, 1},
+               cat("Share of the vertices that each round of refinement adds and takes away elsewhere; slow "
+                   "(default ",
+                   params.exchange, ")"));
     add_choice<Objective, Objective>(
         app, "--objective", o.params.objective, {{"luv", Objective::kLuv}, {"rgb", Objective::kRgb}},
         "Error to lower: L*u*v*, or sRGB with colours for the mesh drawn alone (default luv)");
-    add_number(app, "--geometry-weight", o.params.geometry_weight, {0, kNoLimit, true},
-               cat("Weight of geometry in the quadrics (default ", params.geometry_weight, ")"));
+    add_choice(app, "--metric", o.params.metric, metric_choices(),
+               "Error that collapses are ordered and placed by (default flattened)");
+    add_choice(app, "--solver", o.params.solver, solver_choices(),
+               "How a quadric's least point is found; closed is the fast one (default closed)");
+    CLI::Option* const geometry =
+        add_number(app, "--geometry-weight", o.params.geometry_weight, {0, kNoLimit, true},
+                   cat("Weight of geometry in the quadrics (default ", params.geometry_weight, ")"));
     add_number(app, "--color-weight", o.params.color_weight, {0, kNoLimit, true},
                cat("Weight of colour in the quadrics (default ", params.color_weight, ")"));
+    app.final_callback([&o, geometry] {
+        if (geometry->count() > 0 && o.params.metric == Metric::kHoppe)
+            throw Error(ErrorCode::kUsage, "--geometry-weight: the metric hoppe has no geometry to weigh");
+    });
+    add_count(app, "--smoothing", o.params.smoothing, {0, kMaxSmoothing},
+              "Passes of smoothing before gradients are taken (default by density)");
     add_choice<bool, bool>(
         app, "--quadrics", o.params.rebuild_quadrics, {{"accumulated", false}, {"rebuilt", true}},
         "Summed up from the pixels on, or taken anew from the mesh at every halving (default accumulated)");
     add_choice<bool, bool>(
         app, "--priority", o.params.total_priority, {{"increment", false}, {"total", true}},
         "Edges go by the error that a collapse adds, or by its total, as in the paper (default increment)");
-    add_number(app, "--projection-color-weight", o.params.projection_color_weight, {0},
-               cat("Weight of colour in the pixel map, 0 for the trivial map (default ",
-                   format_number(params.projection_color_weight), ")"));
+    CLI::Option* const projection =
+        add_number(app, "--projection-color-weight", o.params.projection_color_weight, {0},
+                   cat("Weight of colour in the pixel map, 0 for the trivial map (default ",
+                       format_number(params.projection_color_weight), ")"));
+    add_value(
+        app, "--map-smoothness", "X",
+        [&o](const std::string& text) {
+            o.params.projection_color_weight = 1 / parse_number("--map-smoothness", text, {1e-9, 1e12});
+        },
+        cat("Smoothness of the pixel map against colour: 1 / projection color weight (default ",
+            format_number(1 / params.projection_color_weight), ")"))
+        ->excludes(projection);
     add_choice(app, "--bary", o.params.bary, bary_choices(),
                "Precision of the pixel map (default half where the map stays one to one, else float)");
     add_choice(app, "--draco", o.draco, draco_choices(), "Mesh compression (default edgebreaker)");
     add_choice(app, "--color-space", o.color_space, color_space_choices(),
                "Of the pictures' numbers, whatever their files say");
+    add_count(app, "--max-pixels", o.limits.max_pixels, {1},
+              cat("Refuse a larger picture (default ", o.limits.max_pixels, ")"));
     add_choice<bool, bool>(app, "--alpha", o.cut, {{"cut", true}, {"ignore", false}},
                            "What becomes of an alpha channel: only pixels that it shows are meshed, or all "
                            "(default cut)");
@@ -165,7 +205,7 @@ BuildResult build_named(const std::string& input, const Image& image, const Buil
 // What --mask says; empty() without it.
 Mask read_mask(const Options& o) {
     if (o.mask.empty()) return {};
-    const Image picture = read_image(o.mask);
+    const Image picture = read_image(o.mask, {}, o.limits);
     try {
         return picture_mask(picture, static_cast<float>(o.alpha_threshold));
     } catch (const Error& e) {
@@ -174,18 +214,21 @@ Mask read_mask(const Options& o) {
 }
 
 Report build_one(const Job& job, const Options& o, const Context& context, const Progress& progress) {
-    const auto start = std::chrono::steady_clock::now();
+    Stopwatch whole, stage;
     check_output(job.output, context.overwrite);
-    const Image image = read_image(job.input, o.color_space);
+    const Image image = read_image(job.input, o.color_space, o.limits);
     const bool cut = o.cut && o.mask.empty();
     Mask mask = cut ? alpha_mask(image, static_cast<float>(o.alpha_threshold)) : read_mask(o);
+    const double read_seconds = stage.lap();
     BuildResult result = build_named(job.input, image, o.params, progress, std::move(mask));
     result.mesh_image.generator = context.generator;
     if (result.mesh_image.source.has_mask) {
         result.mesh_image.parameters.emplace_back("mask", std::string(cut ? "alpha" : "picture"));
         result.mesh_image.parameters.emplace_back("alpha-threshold", o.alpha_threshold);
     }
+    stage.lap();
     write_container(job.output, result.mesh_image, {o.draco, context.overwrite});
+    const double write_seconds = stage.lap();
 
     // The figures are those of what a reader gets.
     const Container written = read_container(job.output);
@@ -201,7 +244,7 @@ Report build_one(const Job& job, const Options& o, const Context& context, const
                           {"mean_edge_ratio", mesh_quality(level.mesh).mean_edge_ratio}});
     }
     const double bytes = static_cast<double>(written.facts.total_bytes);
-    const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+    const BuildSeconds& seconds = result.report.seconds;
     Report report{{"input", job.input},
                   {"output", job.output},
                   {"width", image.width},
@@ -215,7 +258,13 @@ Report build_one(const Job& job, const Options& o, const Context& context, const
     report.update({{"levels", levels},
                    {"bytes", written.facts.total_bytes},
                    {"bytes_per_pixel", bytes / static_cast<double>(image.pixel_count())},
-                   {"seconds", seconds.count()}});
+                   {"seconds", whole.lap()},
+                   {"stage_seconds",
+                    {{"read", read_seconds},
+                     {"collapse", seconds.collapse},
+                     {"refine", seconds.refine},
+                     {"map", seconds.map},
+                     {"write", write_seconds}}}});
     return report;
 }
 

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "libcore/base/error.h"
+#include "libcore/base/stopwatch.h"
 #include "libcore/build/params.h"
 #include "libcore/build/refine_level.h"
 #include "libcore/collapse/collapse_edges.h"
@@ -51,14 +52,18 @@ Mask checked(Mask mask, const Image& image) {
 std::vector<Level> build_levels(const FeatureImage& feature, const Mask& mask, const BuildParams& params,
                                 const CollapseParams& collapse, std::span<const CollapseTarget> targets,
                                 BuildReport& report, const Progress& progress) {
+    Stopwatch watch;
     std::vector<CollapseResult> collapsed =
         collapse_edges(grid_mesh(feature, mask), collapse, targets, part_of(progress, 0, 0.7));
+    report.seconds.collapse += watch.lap();
     FitParams fit;
     fit.color_weight = params.projection_color_weight;
     fit.bary = params.bary;
     fit.keep_colors = params.objective == Objective::kRgb;
     RefineParams refinement;
-    refinement.rounds = params.refine;
+    refinement.rounds = static_cast<int>(params.refine.value_or(kUsualRefine));
+    refinement.shape_weight = params.shape_weight;
+    refinement.exchange = params.exchange;
     refinement.min_quality = params.min_quality;
     refinement.max_face_area = collapse.max_face_area;
     report.collapses = collapsed.back().collapses;
@@ -68,15 +73,17 @@ std::vector<Level> build_levels(const FeatureImage& feature, const Mask& mask, c
         Level level{std::move(collapsed[k].mesh), {}, collapsed[k].error * params.color_weight};
         const double share = 0.3 / static_cast<double>(collapsed.size()),
                      begin = 0.7 + share * static_cast<double>(k);
-        const double middle = params.refine > 0 ? begin + 0.7 * share : begin;
-        if (params.refine > 0 || params.objective == Objective::kRgb)
+        const double middle = refinement.rounds > 0 ? begin + 0.7 * share : begin;
+        if (refinement.rounds > 0 || params.objective == Objective::kRgb)
             refine_level(level.mesh, feature, mask, params.objective, refinement,
                          part_of(progress, begin, middle));
+        report.seconds.refine += watch.lap();
         level.map = fit_map(level.mesh, feature, fit, part_of(progress, middle, begin + share), mask);
         const PixelMap trivial = trivial_map(level.mesh, feature.width, feature.height, mask);
         report.levels.push_back(
             {map_rms(level.mesh, level.map, feature), map_rms(level.mesh, trivial, feature)});
         levels.push_back(std::move(level));
+        report.seconds.map += watch.lap();
     }
     return levels;
 }
@@ -92,10 +99,12 @@ BuildResult build_mesh_image(const Image& image, const BuildParams& params, cons
             throw Error(ErrorCode::kUnsupported, "the picture has samples that are not finite");
     // A container's colours are codes of [0, 1]. What lies outside could only mislead the fit: L*u*v* of
     // negative light has no bound.
+    Stopwatch watch;
     const FeatureImage feature = luv_image(image, Range::kClipped);
 
     mask = checked(std::move(mask), image);
     BuildResult result;
+    result.report.seconds.collapse = watch.lap();
     result.report.pixels = mask.empty() ? static_cast<std::int64_t>(image.pixel_count()) : mask.count();
     const auto pixels = static_cast<double>(result.report.pixels);
     const std::vector<CollapseTarget> targets = collapse_targets(params, pixels);

@@ -49,6 +49,8 @@ void check_params(const BuildParams& p) {
     const double lambda = p.geometry_weight / p.color_weight;
     require(lambda >= 1e-9 && lambda <= 1e9,
             cat("geometry weight / color weight is ", lambda, ", expected 1e-9 to 1e9"));
+    require(p.smoothing.value_or(0) >= 0 && p.smoothing.value_or(0) <= kMaxSmoothing,
+            cat("smoothing is ", p.smoothing.value_or(0), ", expected 0 to ", kMaxSmoothing));
     require(std::isfinite(p.projection_color_weight) && p.projection_color_weight >= 0,
             cat("projection color weight is ", p.projection_color_weight,
                 ", expected a finite number, 0 or more"));
@@ -74,8 +76,11 @@ void check_params(const BuildParams& p) {
     // The dense mesh has triangles of three pixels, and of q = 0.87.
     require(p.max_cluster.value_or(3) >= 3,
             cat("max cluster is ", p.max_cluster.value_or(3), ", expected 3 or more"));
-    require(p.refine >= 0 && p.refine <= kMaxRefine,
-            cat("refine is ", p.refine, ", expected 0 to ", kMaxRefine));
+    require(p.refine.value_or(0) >= 0 && p.refine.value_or(0) <= kMaxRefine,
+            cat("refine is ", p.refine.value_or(0), ", expected 0 to ", kMaxRefine));
+    require(p.exchange >= 0 && p.exchange <= 1, cat("exchange is ", p.exchange, ", expected 0 to 1"));
+    require(std::isfinite(p.shape_weight) && p.shape_weight >= 0,
+            cat("shape weight is ", p.shape_weight, ", expected a finite number, 0 or more"));
     require(p.min_quality >= 0 && p.min_quality <= 0.8,
             cat("min quality is ", p.min_quality, ", expected 0 to 0.8"));
 }
@@ -102,18 +107,21 @@ std::vector<CollapseTarget> collapse_targets(const BuildParams& params, double p
 
 CollapseParams collapse_params(const BuildParams& params, const CollapseTarget& finest, double pixels) {
     CollapseParams out;
+    out.metric = params.metric;
+    out.solver = params.solver;
     out.geometry_weight = static_cast<float>(params.geometry_weight / params.color_weight);
     out.rebuild_quadrics = params.rebuild_quadrics;
     out.total_priority = params.total_priority;
     out.min_shape = static_cast<float>(params.min_quality);
     const auto vertices = static_cast<double>(std::max(finest.vertices, finest.faces / 2));
     // With an error alone the density is not known beforehand; the default's serves.
-    out.smoothing = smoothing_passes(vertices > 0 ? pixels / vertices : 100);
+    out.smoothing = params.smoothing.value_or(smoothing_passes(vertices > 0 ? pixels / vertices : 100));
     return out;
 }
 
 std::vector<BuildParameter> listed_params(const BuildParams& p, const CollapseParams& collapse) {
-    std::vector<BuildParameter> out{{"metric", std::string("flattened")}};
+    std::vector<BuildParameter> out{{"metric", std::string(metric_name(p.metric))},
+                                    {"solver", std::string(solver_name(p.solver))}};
     if (stops_by_itself(p)) {
         if (p.stop.faces) out.emplace_back("faces", *p.stop.faces);
         if (p.stop.vertices) out.emplace_back("vertices", *p.stop.vertices);
@@ -123,13 +131,17 @@ std::vector<BuildParameter> listed_params(const BuildParams& p, const CollapsePa
     }
     if (!p.levels.faces.empty()) out.emplace_back("level-faces", joined(p.levels.faces));
     if (!p.levels.errors.empty()) out.emplace_back("level-errors", joined(p.levels.errors));
-    out.emplace_back("geometry-weight", p.geometry_weight);
+    if (p.metric != Metric::kHoppe) out.emplace_back("geometry-weight", p.geometry_weight);
     out.emplace_back("color-weight", p.color_weight);
     out.emplace_back("quadrics", std::string(p.rebuild_quadrics ? "rebuilt" : "accumulated"));
     out.emplace_back("priority", std::string(p.total_priority ? "total" : "increment"));
     out.emplace_back("projection-color-weight", p.projection_color_weight);
     out.emplace_back("smoothing", std::int64_t{collapse.smoothing});
-    out.emplace_back("refine", std::int64_t{p.refine});
+    out.emplace_back("refine", p.refine.value_or(kUsualRefine));
+    if (p.refine.value_or(kUsualRefine) > 0) {
+        out.emplace_back("shape-weight", p.shape_weight);
+        out.emplace_back("exchange", p.exchange);
+    }
     out.emplace_back("objective", std::string(p.objective == Objective::kRgb ? "rgb" : "luv"));
     if (p.max_cluster) out.emplace_back("max-cluster", *p.max_cluster);
     if (p.min_quality > 0) out.emplace_back("min-quality", p.min_quality);
