@@ -59,7 +59,7 @@ std::vector<Level> build_levels(const FeatureImage& feature, const Mask& mask, c
     FitParams fit;
     fit.color_weight = params.projection_color_weight;
     fit.bary = params.bary;
-    fit.keep_colors = params.objective == Objective::kRgb;
+    fit.keep_colors = params.quadric_colors || params.objective == Objective::kRgb;
     RefineParams refinement;
     refinement.rounds = params.refine;
     refinement.min_quality = params.min_quality;

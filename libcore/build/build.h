@@ -50,8 +50,12 @@ struct BuildParams {
     double geometry_weight = 3.0;  ///< lambda: geometry against colour in the quadrics [L*u*v*^2 / px^2]; > 0
     double color_weight = 1.0;     ///< of colour in the quadrics; only the ratio counts, 1e-9 to 1e9
     bool rebuild_quadrics = false;  ///< take quadrics anew from the mesh at every halving ("memoryless")
-    bool total_priority = false;    ///< edges go by total error, as in the paper, not by what a merge adds
-    std::optional<int> smoothing;   ///< passes of [1 2 1] / 4 before gradients are taken; none: by density
+    /// edges go by total error, as in the paper, not by what a merge adds; none: for metrics but the
+    /// flattened
+    std::optional<bool> total_priority;
+    /// passes of [1 2 1] / 4 before gradients are taken; none: by density for the flattened metric, else 0
+    std::optional<int> smoothing;
+    bool quadric_colors = false;  ///< vertex colours are those of the quadrics, as in the paper, not fitted
     double projection_color_weight = 1.0 / 30;  ///< of colour against smoothness in the map; 0: trivial map
     std::optional<WeightPrecision> bary;        ///< none: half where the map stays a bijection, else float
     std::optional<std::int64_t> max_cluster;    ///< no face with more pixels than this; >= 3
