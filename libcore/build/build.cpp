@@ -59,9 +59,9 @@ std::vector<Level> build_levels(const FeatureImage& feature, const Mask& mask, c
     FitParams fit;
     fit.color_weight = params.projection_color_weight;
     fit.bary = params.bary;
-    fit.keep_colors = params.objective == Objective::kRgb;
+    fit.keep_colors = params.quadric_colors || params.objective == Objective::kRgb;
     RefineParams refinement;
-    refinement.rounds = static_cast<int>(params.refine.value_or(kUsualRefine));
+    refinement.rounds = static_cast<int>(refine_rounds(params));
     refinement.shape_weight = params.shape_weight;
     refinement.exchange = params.exchange;
     refinement.min_quality = params.min_quality;
