@@ -67,11 +67,11 @@ def region_table(paths, truths, ours, options):
         counts = np.array([[boundary_counts(m, truths[p]) for m in maps[p]] for p in paths])
         regions = np.array([[region_scores(m, truths[p]) for m in maps[p]] for p in paths])
         print(name)
-        for part, pick in (("chosen on", slice(0, None, 2)), ("others", slice(1, None, 2)), ("all", slice(None))):
+        for part, pick in (("every second", slice(0, None, 2)), ("others", slice(1, None, 2)), ("all", slice(None))):
             if len(paths[pick]) == 0:
                 continue
             figures = summary(counts[pick], regions[pick])
-            print(f"  {part:10}" + "".join(f"  {key} {value:.3f} (at {parameters[at]})"
+            print(f"  {part:12}" + "".join(f"  {key} {value:.3f} (at {parameters[at]})"
                                            for key, (value, at) in figures.items()), flush=True)
 
 

@@ -55,8 +55,12 @@ std::pair<std::size_t, std::size_t> range_of(const json& document, const json& i
     if (!views.is_array() || index.get<std::size_t>() >= views.size()) return {0, 0};
     const json& view = views[index.get<std::size_t>()];
     if (!view.is_object()) return {0, 0};
-    const std::size_t begin = view.value("byteOffset", std::size_t{0}),
-                      length = view.value("byteLength", std::size_t{0});
+    // The document may have been mutated before: a member may be of any type.
+    const auto member = [&](const char* name) {
+        const auto it = view.find(name);
+        return it != view.end() && it->is_number_unsigned() ? it->get<std::size_t>() : 0;
+    };
+    const std::size_t begin = member("byteOffset"), length = member("byteLength");
     return begin <= size && length <= size - begin ? std::pair(begin, length)
                                                    : std::pair<std::size_t, std::size_t>(0, 0);
 }
@@ -106,7 +110,9 @@ void Mutator::change_value(json& document) {
     switch (below(6)) {
         case 0:
             if (value.is_number_integer()) {
-                value = value.get<std::int64_t>() + (below(2) ? 1 : -1);
+                // Unsigned, so that the largest may wrap around.
+                value = static_cast<std::int64_t>(static_cast<std::uint64_t>(value.get<std::int64_t>()) +
+                                                  (below(2) ? 1u : ~std::uint64_t{0}));
                 break;
             }
             [[fallthrough]];
