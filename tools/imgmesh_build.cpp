@@ -32,6 +32,10 @@ struct Options {
     std::string alpha = "ignore";
 };
 
+Choices<MapKind> map_choices() {
+    return {{"relaxed", MapKind::kRelaxed}, {"tracked", MapKind::kTracked}, {"trivial", MapKind::kTrivial}};
+}
+
 struct Job {
     std::string input;
     std::string output;
@@ -85,9 +89,17 @@ void add_options(CLI::App& app, Options& o) {
     add_choice<bool, bool>(
         app, "--priority", o.params.total_priority, {{"increment", false}, {"total", true}},
         "Edges go by the error that a collapse adds, or by its total, as in the paper (default increment)");
+    add_choice(
+        app, "--map", o.params.map, map_choices(),
+        "How pixels find their places: fitted without a fold, carried through every collapse as in the "
+        "paper, or none moved (default relaxed)");
+    BuildParams tracked;
+    tracked.map = MapKind::kTracked;
     add_number(app, "--projection-color-weight", o.params.projection_color_weight, {0},
                cat("Weight of colour in the pixel map, 0 for the trivial map (default ",
-                   format_number(params.projection_color_weight), ")"));
+                   format_number(map_color_weight(params)), ", tracked ",
+                   format_number(map_color_weight(tracked)), ")"));
+    app.add_flag("--visits", o.params.visits, "Store how often the collapse touched each pixel");
     add_choice(app, "--bary", o.params.bary, bary_choices(),
                "Precision of the pixel map (default half where the map stays one to one, else float)");
     add_choice(app, "--draco", o.draco, draco_choices(), "Mesh compression (default edgebreaker)");

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "libcore/base/error.h"
@@ -11,6 +12,8 @@
 #include "libcore/mesh/grid_mesh.h"
 #include "libcore/metrics/metrics.h"
 #include "libcore/param/fit_map.h"
+#include "libcore/param/track.h"
+#include "libcore/param/track_start.h"
 #include "libcore/param/trivial_map.h"
 
 namespace imgmesh {
@@ -34,28 +37,58 @@ std::int64_t largest_patch(const Level& level) {
     return *std::max_element(pixels.begin(), pixels.end());
 }
 
+// Follows the collapse with a tracker, where map or visits need one.
+struct Tracking {
+    std::optional<PixelTracker> tracker;
+    std::vector<PixelMap> maps;  // of each level
+    std::vector<Id> visits;      // down to the finest level
+
+    CollapseHooks hooks() {
+        if (!tracker) return {};
+        return {[this](const CollapseStep& step) {
+                    return tracker->collapse(step.kept, step.gone, {step.x, step.y}, step.feature);
+                },
+                [this](std::size_t level, const CollapseResult& result) {
+                    maps.push_back(tracker->map(result.mesh));
+                    if (level == 0) visits = tracker->visits();
+                }};
+    }
+};
+
 // Collapse and maps with the collapse's limits as they stand.
-std::vector<Level> build_levels(const FeatureImage& feature, const BuildParams& params,
-                                const CollapseParams& collapse, std::span<const CollapseTarget> targets,
-                                BuildReport& report, const Progress& progress) {
+void build_levels(const FeatureImage& feature, const BuildParams& params, const CollapseParams& collapse,
+                  std::span<const CollapseTarget> targets, BuildResult& result, const Progress& progress) {
+    const bool tracked = map_kind(params) == MapKind::kTracked;
+    const GridMesh grid = grid_mesh(feature);
+    Tracking tracking;
+    if (tracked || params.visits) {
+        // Visits alone must not change the mesh: pixels then stay where they are, which forbids nothing.
+        TrackParams track;
+        track.space = tracked ? TrackSpace::kConformal : TrackSpace::kPlane;
+        track.color_weight = tracked ? map_color_weight(params) : 0;
+        tracking.tracker.emplace(track_start(grid, feature.width, feature.height), track);
+    }
     std::vector<CollapseResult> collapsed =
-        collapse_edges(grid_mesh(feature), collapse, targets, part_of(progress, 0, 0.7));
+        collapse_edges(grid, collapse, targets, part_of(progress, 0, 0.7), tracking.hooks());
     FitParams fit;
-    fit.color_weight = params.projection_color_weight;
+    fit.color_weight = map_color_weight(params);
     fit.bary = params.bary;
-    report = {collapsed.back().collapses, {}};
-    std::vector<Level> levels;
+    BuildReport& report = result.report;
+    report = {collapsed.back().collapses, tracking.tracker ? tracking.tracker->retracted() : 0, {}};
+    result.mesh_image.visits = params.visits ? std::move(tracking.visits) : std::vector<Id>{};
+    std::vector<Level>& levels = result.mesh_image.levels;
+    levels.clear();
     for (std::size_t k = 0; k < collapsed.size(); ++k) {
         Level level{std::move(collapsed[k].mesh), {}, collapsed[k].error * params.color_weight};
         const double share = 0.3 / static_cast<double>(collapsed.size()),
                      begin = 0.7 + share * static_cast<double>(k);
-        level.map = fit_map(level.mesh, feature, fit, part_of(progress, begin, begin + share));
+        level.map = tracked ? fit_given_map(level.mesh, feature, std::move(tracking.maps[k]), fit)
+                            : fit_map(level.mesh, feature, fit, part_of(progress, begin, begin + share));
         const PixelMap trivial = trivial_map(level.mesh, feature.width, feature.height);
         report.levels.push_back(
             {map_rms(level.mesh, level.map, feature), map_rms(level.mesh, trivial, feature)});
         levels.push_back(std::move(level));
     }
-    return levels;
 }
 
 }  // namespace
@@ -74,10 +107,10 @@ BuildResult build_mesh_image(const Image& image, const BuildParams& params, cons
     const std::vector<CollapseTarget> targets = collapse_targets(params, pixels);
     CollapseParams collapse = collapse_params(params, targets.front(), pixels);
     BuildResult result;
-    std::vector<Level>& levels = result.mesh_image.levels;
+    const std::vector<Level>& levels = result.mesh_image.levels;
     if (params.max_cluster) collapse.max_face_area = static_cast<float>(*params.max_cluster);
     for (;;) {
-        levels = build_levels(feature, params, collapse, targets, result.report, progress);
+        build_levels(feature, params, collapse, targets, result, progress);
         if (!params.max_cluster) break;
         // The collapse bounds a face's area; the map decides how many pixels that becomes.
         std::int64_t largest = 0;

@@ -31,6 +31,13 @@ struct PyramidParams {
         errors;  ///< instead: quadric error of each level, rising; then StopParams do not count
 };
 
+/// How pixels find their places on the base mesh.
+enum class MapKind {
+    kRelaxed,  ///< moved to where the mesh has their colours, without a fold (param/relax.h)
+    kTracked,  ///< carried through every collapse, as the paper has it (param/track.h); it may fold
+    kTrivial   ///< each at its own place
+};
+
 struct BuildParams {
     StopParams stop;  ///< of the finest level
     PyramidParams levels;
@@ -38,9 +45,14 @@ struct BuildParams {
     double color_weight = 1.0;     ///< of colour in the quadrics; only the ratio counts, 1e-9 to 1e9
     bool rebuild_quadrics = false;  ///< take quadrics anew from the mesh at every halving ("memoryless")
     bool total_priority = false;    ///< edges go by total error, as in the paper, not by what a merge adds
-    double projection_color_weight = 1.0 / 30;  ///< of colour against smoothness in the map; 0: trivial map
-    std::optional<WeightPrecision> bary;        ///< none: half where the map stays a bijection, else float
-    std::optional<std::int64_t> max_cluster;    ///< no face with more pixels than this; >= 3
+    std::optional<MapKind> map;     ///< none: relaxed, or trivial where projection_color_weight is 0
+    /// relaxed: of colour against smoothness; tracked: of squared L*u*v* against squared pixels in the
+    /// flattened rings. 0 is the trivial map and excludes the two others, which need more; none: the map's
+    /// default (map_color_weight).
+    std::optional<double> projection_color_weight;
+    bool visits = false;  ///< count how often the collapse down to the finest level touches each pixel
+    std::optional<WeightPrecision> bary;      ///< none: half where the map stays a bijection, else float
+    std::optional<std::int64_t> max_cluster;  ///< no face with more pixels than this; >= 3
     double min_quality = 0;  ///< no triangle of a lesser q = 4 sqrt(3) area / sum of squared edges; 0 to 0.8
 };
 
@@ -52,8 +64,13 @@ struct LevelReport {
 
 struct BuildReport {
     std::int64_t collapses = 0;
+    std::int64_t retracted = 0;  ///< collapses that the tracked map has forbidden
     std::vector<LevelReport> levels;
 };
+
+/// What BuildParams::map and projection_color_weight come to.
+MapKind map_kind(const BuildParams& params);
+double map_color_weight(const BuildParams& params);
 
 struct BuildResult {
     MeshImage mesh_image;  ///< without generator; `parameters` lists every parameter that shaped the result

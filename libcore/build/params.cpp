@@ -4,6 +4,8 @@
 #include <sstream>
 
 #include "libcore/base/error.h"
+#include "libcore/param/fit_map.h"
+#include "libcore/param/track.h"
 
 namespace imgmesh {
 namespace {
@@ -49,9 +51,14 @@ void check_params(const BuildParams& p) {
     const double lambda = p.geometry_weight / p.color_weight;
     require(lambda >= 1e-9 && lambda <= 1e9,
             cat("geometry weight / color weight is ", lambda, ", expected 1e-9 to 1e9"));
-    require(std::isfinite(p.projection_color_weight) && p.projection_color_weight >= 0,
-            cat("projection color weight is ", p.projection_color_weight,
-                ", expected a finite number, 0 or more"));
+    const double projection = p.projection_color_weight.value_or(1);
+    require(std::isfinite(projection) && projection >= 0,
+            cat("projection color weight is ", projection, ", expected a finite number, 0 or more"));
+    require(projection > 0 || p.map.value_or(MapKind::kTrivial) == MapKind::kTrivial,
+            "projection color weight 0 is the trivial map, not a tracked or relaxed one");
+    require(!p.projection_color_weight || projection == 0 ||
+                p.map.value_or(MapKind::kRelaxed) != MapKind::kTrivial,
+            cat("the trivial map has projection color weight 0, not ", projection));
     require(p.levels.count >= 1 && p.levels.count <= kMaxLevels,
             cat("levels is ", p.levels.count, ", expected 1 to ", kMaxLevels));
     require(p.levels.faces.size() <= kMaxLevels && p.levels.errors.size() <= kMaxLevels,
@@ -76,6 +83,22 @@ void check_params(const BuildParams& p) {
             cat("max cluster is ", p.max_cluster.value_or(3), ", expected 3 or more"));
     require(p.min_quality >= 0 && p.min_quality <= 0.8,
             cat("min quality is ", p.min_quality, ", expected 0 to 0.8"));
+}
+
+MapKind map_kind(const BuildParams& p) {
+    return p.map.value_or(p.projection_color_weight == 0.0 ? MapKind::kTrivial : MapKind::kRelaxed);
+}
+
+double map_color_weight(const BuildParams& p) {
+    switch (map_kind(p)) {
+        case MapKind::kTrivial:
+            return 0;
+        case MapKind::kTracked:
+            return p.projection_color_weight.value_or(TrackParams{}.color_weight);
+        case MapKind::kRelaxed:
+            break;
+    }
+    return p.projection_color_weight.value_or(FitParams{}.color_weight);
 }
 
 std::vector<CollapseTarget> collapse_targets(const BuildParams& params, double pixels) {
@@ -125,7 +148,9 @@ std::vector<BuildParameter> listed_params(const BuildParams& p, const CollapsePa
     out.emplace_back("color-weight", p.color_weight);
     out.emplace_back("quadrics", std::string(p.rebuild_quadrics ? "rebuilt" : "accumulated"));
     out.emplace_back("priority", std::string(p.total_priority ? "total" : "increment"));
-    out.emplace_back("projection-color-weight", p.projection_color_weight);
+    constexpr const char* kMaps[] = {"relaxed", "tracked", "trivial"};
+    out.emplace_back("map", std::string(kMaps[static_cast<std::size_t>(map_kind(p))]));
+    out.emplace_back("projection-color-weight", map_color_weight(p));
     out.emplace_back("smoothing", std::int64_t{collapse.smoothing});
     if (p.max_cluster) out.emplace_back("max-cluster", *p.max_cluster);
     if (p.min_quality > 0) out.emplace_back("min-quality", p.min_quality);

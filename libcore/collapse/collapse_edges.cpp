@@ -11,13 +11,14 @@
 namespace imgmesh {
 
 std::vector<CollapseResult> collapse_edges(const GridMesh& grid, const CollapseParams& params,
-                                           std::span<const CollapseTarget> targets,
-                                           const Progress& progress) {
-    Collapser<Quadric<3>> collapser(grid, params);
+                                           std::span<const CollapseTarget> targets, const Progress& progress,
+                                           const CollapseHooks& hooks) {
+    Collapser<Quadric<3>> collapser(grid, params, hooks);
     std::vector<CollapseResult> levels;
     for (const CollapseTarget& target : targets) {
         collapser.run(target, progress);
         levels.push_back(collapser.snapshot());
+        if (hooks.reached) hooks.reached(levels.size() - 1, levels.back());
     }
     return levels;
 }

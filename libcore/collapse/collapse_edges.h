@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <span>
 #include <vector>
@@ -42,6 +43,23 @@ struct CollapseResult {
     std::int64_t collapses = 0;  ///< so far
 };
 
+/// A collapse that is about to happen: `gone` merges into `kept`, which moves. Vertices are numbered as in
+/// the grid mesh.
+struct CollapseStep {
+    Id kept, gone;
+    float x, y;                      ///< of the merged vertex [pixels]
+    std::span<const float> feature;  ///< of the merged vertex
+};
+
+/// Who follows the collapse while it runs; both may be empty, and cost nothing then.
+struct CollapseHooks {
+    /// Before each collapse, in order. Returns false to retract it: the edge is tried again only when
+    /// something around it has changed.
+    std::function<bool(const CollapseStep&)> before;
+    /// When a level's target is reached, with its result, before the collapse goes on to the next.
+    std::function<void(std::size_t level, const CollapseResult&)> reached;
+};
+
 /// Collapses edges until a limit is reached or no edge may go. Every collapse keeps the mesh a triangulation
 /// of the picture's rectangle: no face flips or degenerates, corners stay, sides stay straight. Vertices sit
 /// at their quadric's minimiser wherever that is legal, else at the edge's midpoint or an end, whichever
@@ -53,7 +71,7 @@ struct CollapseResult {
 /// About 170 bytes a pixel; O(n). Three feature channels. Deterministic.
 std::vector<CollapseResult> collapse_edges(const GridMesh& grid, const CollapseParams& params,
                                            std::span<const CollapseTarget> targets,
-                                           const Progress& progress = {});
+                                           const Progress& progress = {}, const CollapseHooks& hooks = {});
 
 /// The mesh of a single level.
 CollapseResult collapse_edges(const GridMesh& grid, const CollapseParams& params,

@@ -1,11 +1,14 @@
 #include "libcore/param/fit_map.h"
 
+#include <algorithm>
+
 #include "libcore/base/error.h"
 #include "libcore/image/color.h"
 #include "libcore/param/fit_colors.h"
 #include "libcore/param/relax.h"
 #include "libcore/param/storable_map.h"
 #include "libcore/param/trivial_map.h"
+#include "libcore/param/weight_grid.h"
 
 namespace imgmesh {
 namespace {
@@ -34,14 +37,33 @@ PixelMap stored(const BaseMesh& mesh, const MovingPixels& pixels, const std::vec
                 "the weights are too coarse for faces this large: --bary float holds them");
 }
 
+// The colours that suit both the map and the drawing without it.
+void fit_both(BaseMesh& mesh, const FeatureImage& feature, const PixelMap& map, const PixelMap& trivial,
+              const FitParams& params) {
+    fit_colors(mesh, feature, {{&map, 1 - params.gouraud_share}, {&trivial, params.gouraud_share}});
+}
+
+void store_colors(BaseMesh& mesh) {
+    for (Id v = 0; v < mesh.vertex_count(); ++v) {
+        const Eigen::Map<Vec3f> color(mesh.feature_of(v));
+        const Vec3f storable = storable_color(color);
+        std::copy(storable.data(), storable.data() + 3, mesh.feature_of(v));
+    }
+}
+
+float longest_edge(const BaseMesh& mesh) {
+    float longest = 0;
+    for (const auto& [a, b] : mesh_edges(mesh))
+        longest = std::max(longest, (mesh.position[a] - mesh.position[b]).norm());
+    return longest;
+}
+
 }  // namespace
 
 PixelMap fit_map(BaseMesh& mesh, const FeatureImage& feature, const FitParams& params,
                  const Progress& progress) {
     const PixelMap trivial = trivial_map(mesh, feature.width, feature.height);
-    const auto fit = [&](const PixelMap& map) {
-        fit_colors(mesh, feature, {{&map, 1 - params.gouraud_share}, {&trivial, params.gouraud_share}});
-    };
+    const auto fit = [&](const PixelMap& map) { fit_both(mesh, feature, map, trivial, params); };
     const std::vector<Face> neighbors = face_neighbors(mesh);
     MovingPixels pixels = resting_pixels(trivial);
     fit(trivial);
@@ -55,11 +77,24 @@ PixelMap fit_map(BaseMesh& mesh, const FeatureImage& feature, const FitParams& p
     }
     PixelMap map = stored(mesh, pixels, face_fields(mesh), neighbors, params.bary);
     fit(map);
-    for (Id v = 0; v < mesh.vertex_count(); ++v) {
-        const Eigen::Map<Vec3f> color(mesh.feature_of(v));
-        const Vec3f storable = storable_color(color);
-        std::copy(storable.data(), storable.data() + 3, mesh.feature_of(v));
-    }
+    store_colors(mesh);
+    return map;
+}
+
+PixelMap fit_given_map(BaseMesh& mesh, const FeatureImage& feature, PixelMap map, const FitParams& params) {
+    constexpr float kCoarsest = 0.125f;  // [pixels]
+    const bool fine = longest_edge(mesh) * kHalfWeightStep <= kCoarsest;
+    map.precision = params.bary.value_or(fine ? WeightPrecision::kHalf : WeightPrecision::kFloat);
+    const double steps = weight_steps(map.precision);
+    for (PixelCoord& coord : map.coords)
+        if (coord.face != kNone)
+            coord = on_weight_grid(
+                coord.face, {1.0 - double(coord.u) - double(coord.v), double(coord.u), double(coord.v)},
+                steps);
+    const PixelMap trivial = trivial_map(mesh, feature.width, feature.height);
+    fit_both(mesh, feature, trivial, trivial, params);
+    fit_both(mesh, feature, map, trivial, params);
+    store_colors(mesh);
     return map;
 }
 
