@@ -1,5 +1,6 @@
 #include "libcore/param/collapse_flattening.h"
 
+#include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <numbers>
@@ -21,8 +22,28 @@ Vec2d position(const Vec2d& center, std::span<const Vec2d> ring, const FanPoint&
     return point.weight[0] * center + point.weight[1] * ring[k] + point.weight[2] * ring[next];
 }
 
-bool same_place(const float* a, const float* b) {
-    return a[0] == b[0] && a[1] == b[1];
+// Where a point is in the picture, y up as layouts have it.
+Vec2d plane(const float* point) {
+    return {double(point[0]), -double(point[1])};
+}
+
+double cross(const Vec2d& a, const Vec2d& b) {
+    return a.x() * b.y() - a.y() * b.x();
+}
+
+double plane_distance(const float* a, const float* b) {
+    return (plane(a) - plane(b)).squaredNorm();
+}
+
+double angle_at(const float* pivot, const float* a, const float* b, int dimensions) {
+    double aa = 0, bb = 0, ab = 0;
+    for (int c = 0; c < dimensions; ++c) {
+        const double d = double(a[c]) - double(pivot[c]), e = double(b[c]) - double(pivot[c]);
+        aa += d * d;
+        bb += e * e;
+        ab += d * e;
+    }
+    return std::acos(std::clamp(ab / std::sqrt(aa * bb), -1.0, 1.0));
 }
 
 // The points of a star's ring.
@@ -51,22 +72,44 @@ bool CollapseFlattening::lay_out(const std::array<const Star*, 2>& stars, const 
     std::array<bool, 2> at_end{};
     for (std::size_t s = 0; s < 2; ++s) {
         other_[s] = stars[s]->find(stars[1 - s]->center);
-        at_end[s] = same_place(merged, center_point(*stars[s], points, dimensions));
+        at_end[s] = plane_distance(merged, center_point(*stars[s], points, dimensions)) == 0;
     }
     if (at_end[0] || at_end[1]) {
         mode_ = Mode::kOneEnd;
         pivot_ = at_end[0] ? 0 : 1;
         return lay_out_star(1 - pivot_, points, merged, dimensions);
     }
-    if (stars[0]->open != stars[1]->open) {
-        mode_ = Mode::kBorder;
-        pivot_ = stars[0]->open ? 0 : 1;
-        return lay_out_border(points, merged, dimensions) &&
-               lay_out_star(1 - pivot_, points, merged, dimensions);
+    const auto lay_out_around = [&](int pivot) {
+        mode_ = Mode::kMove;
+        pivot_ = pivot;
+        return lay_out_move(points, merged, dimensions) &&
+               lay_out_star(1 - pivot, points, merged, dimensions);
+    };
+    if (stars[0]->open != stars[1]->open) return lay_out_around(stars[0]->open ? 0 : 1);
+    if (!in_shared_region(points, merged, dimensions)) {
+        const int nearer = plane_distance(merged, center_point(*stars[0], points, dimensions)) <=
+                                   plane_distance(merged, center_point(*stars[1], points, dimensions))
+                               ? 0
+                               : 1;
+        if (lay_out_around(nearer) || lay_out_around(1 - nearer)) return true;
     }
     mode_ = Mode::kBetween;
     return (!shared || lay_out_shared(points, merged, dimensions)) &&
            lay_out_star(0, points, merged, dimensions) && lay_out_star(1, points, merged, dimensions);
+}
+
+// Whether m lies inside the shared faces, or between the ends of a border edge, in the plane.
+bool CollapseFlattening::in_shared_region(const float* points, const float* merged, int dimensions) const {
+    const Star& i = *stars_[0];
+    const auto place = [&](Id v) { return plane(points + std::size_t{v} * index(dimensions)); };
+    const Vec2d m = plane(merged), pi = place(i.center), pj = place(stars_[1]->center);
+    if (i.open) return (pi - m).dot(pj - m) < 0;
+    const int at = other_[0];
+    const Vec2d ring[] = {pj, place(i.ring[index((at + 1) % i.size)]), pi,
+                          place(i.ring[index((at + i.size - 1) % i.size)])};
+    for (std::size_t k = 0; k < 4; ++k)
+        if (!(cross(ring[k] - m, ring[(k + 1) % 4] - m) > 0)) return false;
+    return true;
 }
 
 bool CollapseFlattening::lay_out_shared(const float* points, const float* merged, int dimensions) {
@@ -92,22 +135,42 @@ bool CollapseFlattening::lay_out_shared(const float* points, const float* merged
            shared_fan_.set(Vec2d::Zero(), ring_of(shared_ring_, n), !i.open);
 }
 
-bool CollapseFlattening::lay_out_border(const float* points, const float* merged, int dimensions) {
+bool CollapseFlattening::lay_out_move(const float* points, const float* merged, int dimensions) {
     const Star& star = *stars_[index(pivot_)];
     const auto ring = ring_points(star, points, dimensions);
-    if (!flatten_ring(merged, {ring.data(), index(star.size)}, dimensions, true, border_ring_)) return false;
-    // The end lies on the border, on the first ring vertex's side of m or on the last one's.
+    if (!flatten_ring(merged, {ring.data(), index(star.size)}, dimensions, star.open, move_ring_))
+        return false;
+    // The end lies between two ring vertices, as seen from m in the plane; on a border, along it.
     const float* end = center_point(star, points, dimensions);
+    const Vec2d toward = plane(end) - plane(merged);
+    const std::span<const Vec2d> flat = ring_of(move_ring_, star.size);
     double distance = 0;
     for (int c = 0; c < dimensions; ++c)
         distance += (double(end[c]) - double(merged[c])) * (double(end[c]) - double(merged[c]));
-    const double to_first = (double(end[0]) - double(merged[0])) * (double(ring[0][0]) - double(merged[0])) +
-                            (double(end[1]) - double(merged[1])) * (double(ring[0][1]) - double(merged[1]));
-    const double radius = std::pow(std::sqrt(distance) / border_ring_.mean, border_ring_.exponent);
-    border_end_ = {to_first > 0 ? radius : -radius, 0};
+    const double radius = std::pow(std::sqrt(distance) / move_ring_.mean, move_ring_.exponent);
+    if (star.open) {
+        move_end_ = {toward.dot(plane(ring[0]) - plane(merged)) > 0 ? radius : -radius, 0};
+    } else {
+        int k = 0;
+        const auto leads_to = [&](int r) {
+            const Vec2d first = plane(ring[index(r)]) - plane(merged),
+                        second = plane(ring[index((r + 1) % star.size)]) - plane(merged);
+            return cross(first, toward) >= 0 && cross(toward, second) > 0 && cross(first, second) > 0;
+        };
+        while (k < star.size && !leads_to(k)) ++k;
+        if (k == star.size) return false;
+        const float *first = ring[index(k)], *second = ring[index((k + 1) % star.size)];
+        const double before = angle_at(merged, first, end, dimensions),
+                     after = angle_at(merged, end, second, dimensions);
+        // The sector's share on this side of the end.
+        const Vec2d &from = flat[index(k)], &to = flat[index((k + 1) % star.size)];
+        const double start = std::atan2(from.y(), from.x());
+        const double width = std::atan2(cross(from, to), from.dot(to));
+        const double direction = start + width * (before + after > 0 ? before / (before + after) : 0.5);
+        move_end_ = {radius * std::cos(direction), radius * std::sin(direction)};
+    }
     FlatFan before;
-    return before.set(border_end_, ring_of(border_ring_, star.size), false) &&
-           border_fan_.set(Vec2d::Zero(), ring_of(border_ring_, star.size), false);
+    return before.set(move_end_, flat, !star.open) && move_fan_.set(Vec2d::Zero(), flat, !star.open);
 }
 
 bool CollapseFlattening::lay_out_star(int s, const float* points, const float* merged, int dimensions) {
@@ -183,19 +246,18 @@ StarPoint CollapseFlattening::across_shared(const StarPoint& given) const {
     }
 }
 
-FanPoint CollapseFlattening::along_border(const FanPoint& point) const {
-    return border_fan_.locate(
-        position(border_end_, ring_of(border_ring_, stars_[index(pivot_)]->size), point));
+FanPoint CollapseFlattening::moved(const FanPoint& point) const {
+    return move_fan_.locate(position(move_end_, ring_of(move_ring_, stars_[index(pivot_)]->size), point));
 }
 
 StarPoint CollapseFlattening::carry(StarPoint point) const {
     if (mode_ == Mode::kBetween) {
         // An end itself has a triangle of its own star that may be a shared one, but its place is known.
         if (point.at.weight[0] != 1 && is_shared(point.star, point.at.triangle)) point = across_shared(point);
-    } else if (mode_ == Mode::kBorder) {
+    } else if (mode_ == Mode::kMove) {
         if (point.star != pivot_ && is_shared(point.star, point.at.triangle)) point = in_other_star(point);
         if (point.star == pivot_) {
-            point.at = along_border(point.at);
+            point.at = moved(point.at);
             if (!is_shared(pivot_, point.at.triangle)) return point;
             point = in_other_star(point);
         }

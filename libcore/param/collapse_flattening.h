@@ -22,8 +22,11 @@ struct StarPoint {
 ///    into a fan of m, without the end.
 ///
 /// Where m lies on one of the ends, its star keeps its triangles, and step 2 of the other star does
-/// everything. Where only one end is on a border, m lies beside it on that border: its star is laid out
-/// around m as a half disc and cut anew from the one to the other; then step 2 of the other star.
+/// everything.
+///
+/// Where m is not inside the shared region, as in one collapse of twenty, and always where only one end is on
+/// a border, no layout around m has the shared region. Instead of step 1 one end then moves to m: its star is
+/// laid out around m and cut anew from a fan of the end into a fan of m. Step 2 of the other star follows.
 class CollapseFlattening {
   public:
     /// Lays out what is needed. Returns false where a layout does not exist or one of its two triangulations
@@ -49,15 +52,16 @@ class CollapseFlattening {
     enum class Mode {
         kBetween,  // steps 1 and 2
         kOneEnd,   // m is the end `pivot_`
-        kBorder    // only the end `pivot_` is on a border
+        kMove      // the end `pivot_` moves first
     };
+    bool in_shared_region(const float* points, const float* merged, int dimensions) const;
     bool lay_out_shared(const float* points, const float* merged, int dimensions);
-    bool lay_out_border(const float* points, const float* merged, int dimensions);
+    bool lay_out_move(const float* points, const float* merged, int dimensions);
     bool lay_out_star(int star, const float* points, const float* merged, int dimensions);
     FanPoint without_end(int star, const FanPoint& point) const;
     StarPoint in_other_star(const StarPoint& point) const;
     StarPoint across_shared(const StarPoint& point) const;
-    FanPoint along_border(const FanPoint& point) const;
+    FanPoint moved(const FanPoint& point) const;
 
     std::array<const Star*, 2> stars_{};
     std::array<int, 2> other_{};  // where each star's ring has the other end
@@ -65,9 +69,9 @@ class CollapseFlattening {
     int pivot_ = 0;
     FlatRing shared_ring_;  // around m: j, a, i, b; at the border j, a, i or i, a, j
     FlatFan shared_fan_;
-    FlatRing border_ring_;  // around m
-    Vec2d border_end_ = Vec2d::Zero();
-    FlatFan border_fan_;
+    FlatRing move_ring_;  // around m
+    Vec2d move_end_ = Vec2d::Zero();
+    FlatFan move_fan_;
     std::array<FlatRing, 2> star_ring_;  // around the end, with m for the other end
     std::array<FlatFan, 2> star_fan_;    // of m, from the ring vertex after it on
 };
