@@ -43,9 +43,9 @@ PixelTracker::PixelTracker(TrackStart start, const TrackParams& params)
 }
 
 void PixelTracker::put(Id pixel, Id face, const std::array<double, 3>& weight) {
-    // The first weight is 1 - u - v: rounding must not take the sum above 1.
+    // Rounding must not leave the simplex.
     auto u = static_cast<float>(weight[1]), v = static_cast<float>(weight[2]);
-    if (u + v > 1) (u > v ? u : v) = 1 - std::min(u, v);
+    while (double(u) + double(v) > 1) (u > v ? u : v) = std::nextafter(std::max(u, v), 0.0f);
     pixels_[pixel] = {u, v, first_[face]};
     first_[face] = pixel;
 }
