@@ -2,18 +2,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 #include <utility>
 
 #include "libcore/base/error.h"
 #include "libcore/build/params.h"
+#include "libcore/build/refine_level.h"
+#include "libcore/build/tracking.h"
 #include "libcore/collapse/collapse_edges.h"
 #include "libcore/image/color.h"
 #include "libcore/mesh/grid_mesh.h"
 #include "libcore/metrics/metrics.h"
 #include "libcore/param/fit_map.h"
-#include "libcore/param/track.h"
-#include "libcore/param/track_start.h"
 #include "libcore/param/trivial_map.h"
 
 namespace imgmesh {
@@ -37,54 +36,53 @@ std::int64_t largest_patch(const Level& level) {
     return *std::max_element(pixels.begin(), pixels.end());
 }
 
-// Follows the collapse with a tracker, where map or visits need one.
-struct Tracking {
-    std::optional<PixelTracker> tracker;
-    std::vector<PixelMap> maps;  // of each level
-    std::vector<Id> visits;      // down to the finest level
-
-    CollapseHooks hooks() {
-        if (!tracker) return {};
-        return {[this](const CollapseStep& step) {
-                    return tracker->collapse(step.kept, step.gone, {step.x, step.y}, step.feature);
-                },
-                [this](std::size_t level, const CollapseResult& result) {
-                    maps.push_back(tracker->map(result.mesh));
-                    if (level == 0) visits = tracker->visits();
-                }};
-    }
-};
+// Empty where all pixels are inside.
+Mask checked(Mask mask, const Image& image) {
+    if (mask.empty()) return mask;
+    if (mask.width != image.width || mask.height != image.height)
+        throw Error(ErrorCode::kBadFile, cat("the mask is ", mask.width, "x", mask.height,
+                                             ", the picture is ", image.width, "x", image.height));
+    const std::int64_t inside = mask.count();
+    if (inside == 0) throw Error(ErrorCode::kUnsupported, "no pixel is inside the mask");
+    if (inside == static_cast<std::int64_t>(image.pixel_count())) return {};
+    return mask;
+}
 
 // Collapse and maps with the collapse's limits as they stand.
-void build_levels(const FeatureImage& feature, const BuildParams& params, const CollapseParams& collapse,
-                  std::span<const CollapseTarget> targets, BuildResult& result, const Progress& progress) {
-    const bool tracked = map_kind(params) == MapKind::kTracked;
-    const GridMesh grid = grid_mesh(feature);
-    Tracking tracking;
-    if (tracked || params.visits) {
-        // Visits alone must not change the mesh: pixels then stay where they are, which forbids nothing.
-        TrackParams track;
-        track.space = tracked ? TrackSpace::kConformal : TrackSpace::kPlane;
-        track.color_weight = tracked ? map_color_weight(params) : 0;
-        tracking.tracker.emplace(track_start(grid, feature.width, feature.height), track);
-    }
+void build_levels(const FeatureImage& feature, const Mask& mask, const BuildParams& params,
+                  const CollapseParams& collapse, std::span<const CollapseTarget> targets,
+                  BuildResult& result, const Progress& progress) {
+    const GridMesh grid = grid_mesh(feature, mask);
+    Tracking tracking(grid, feature.width, feature.height, params);
     std::vector<CollapseResult> collapsed =
         collapse_edges(grid, collapse, targets, part_of(progress, 0, 0.7), tracking.hooks());
     FitParams fit;
     fit.color_weight = map_color_weight(params);
     fit.bary = params.bary;
+    fit.keep_colors = params.objective == Objective::kRgb;
+    RefineParams refinement;
+    refinement.rounds = params.refine;
+    refinement.min_quality = params.min_quality;
+    refinement.max_face_area = collapse.max_face_area;
     BuildReport& report = result.report;
-    report = {collapsed.back().collapses, tracking.tracker ? tracking.tracker->retracted() : 0, {}};
-    result.mesh_image.visits = params.visits ? std::move(tracking.visits) : std::vector<Id>{};
+    report.collapses = collapsed.back().collapses;
+    report.retracted = tracking.retracted();
+    report.levels.clear();
+    result.mesh_image.visits = tracking.take_visits();
     std::vector<Level>& levels = result.mesh_image.levels;
     levels.clear();
     for (std::size_t k = 0; k < collapsed.size(); ++k) {
         Level level{std::move(collapsed[k].mesh), {}, collapsed[k].error * params.color_weight};
         const double share = 0.3 / static_cast<double>(collapsed.size()),
                      begin = 0.7 + share * static_cast<double>(k);
-        level.map = tracked ? fit_given_map(level.mesh, feature, std::move(tracking.maps[k]), fit)
-                            : fit_map(level.mesh, feature, fit, part_of(progress, begin, begin + share));
-        const PixelMap trivial = trivial_map(level.mesh, feature.width, feature.height);
+        const double middle = params.refine > 0 ? begin + 0.7 * share : begin;
+        if (params.refine > 0 || params.objective == Objective::kRgb)
+            refine_level(level.mesh, feature, mask, params.objective, refinement,
+                         part_of(progress, begin, middle));
+        level.map = tracking.tracked()
+                        ? fit_given_map(level.mesh, feature, tracking.take_map(k), fit, mask)
+                        : fit_map(level.mesh, feature, fit, part_of(progress, middle, begin + share), mask);
+        const PixelMap trivial = trivial_map(level.mesh, feature.width, feature.height, mask);
         report.levels.push_back(
             {map_rms(level.mesh, level.map, feature), map_rms(level.mesh, trivial, feature)});
         levels.push_back(std::move(level));
@@ -93,7 +91,8 @@ void build_levels(const FeatureImage& feature, const BuildParams& params, const 
 
 }  // namespace
 
-BuildResult build_mesh_image(const Image& image, const BuildParams& params, const Progress& progress) {
+BuildResult build_mesh_image(const Image& image, const BuildParams& params, const Progress& progress,
+                             Mask mask) {
     check_params(params);
     if (image.width < 1 || image.height < 1) throw Error(ErrorCode::kUsage, "the picture is empty");
     for (const float sample : image.data)
@@ -103,14 +102,16 @@ BuildResult build_mesh_image(const Image& image, const BuildParams& params, cons
     // negative light has no bound.
     const FeatureImage feature = luv_image(image, Range::kClipped);
 
-    const auto pixels = static_cast<double>(image.pixel_count());
+    mask = checked(std::move(mask), image);
+    BuildResult result;
+    result.report.pixels = mask.empty() ? static_cast<std::int64_t>(image.pixel_count()) : mask.count();
+    const auto pixels = static_cast<double>(result.report.pixels);
     const std::vector<CollapseTarget> targets = collapse_targets(params, pixels);
     CollapseParams collapse = collapse_params(params, targets.front(), pixels);
-    BuildResult result;
     const std::vector<Level>& levels = result.mesh_image.levels;
     if (params.max_cluster) collapse.max_face_area = static_cast<float>(*params.max_cluster);
     for (;;) {
-        build_levels(feature, params, collapse, targets, result, progress);
+        build_levels(feature, mask, params, collapse, targets, result, progress);
         if (!params.max_cluster) break;
         // The collapse bounds a face's area; the map decides how many pixels that becomes.
         std::int64_t largest = 0;
@@ -124,7 +125,7 @@ BuildResult build_mesh_image(const Image& image, const BuildParams& params, cons
             0.95f * static_cast<float>(*params.max_cluster) / static_cast<float>(largest);
     }
     result.mesh_image.source = {image.width,       image.height,          image.color_space,
-                                image.sample_type, color_channels(image), false};
+                                image.sample_type, color_channels(image), !mask.empty()};
     result.mesh_image.parameters = listed_params(params, collapse);
     const bool half = levels.front().map.precision == WeightPrecision::kHalf;
     result.mesh_image.parameters.emplace_back("bary", std::string(half ? "half" : "float"));

@@ -7,6 +7,7 @@
 
 #include "libcore/base/progress.h"
 #include "libcore/image/image.h"
+#include "libcore/image/mask.h"
 #include "libcore/param/mesh_image.h"
 
 namespace imgmesh {
@@ -38,6 +39,14 @@ enum class MapKind {
     kTrivial   ///< each at its own place
 };
 
+/// Which error refinement lowers, of the mesh drawn alone.
+enum class Objective {
+    kLuv,  ///< L*u*v*; colours are then fitted to the pixel map and to the drawing
+    kRgb   ///< encoded sRGB, interpolated as such; colours are what that drawing alone wants
+};
+
+inline constexpr int kMaxRefine = 1000;
+
 struct BuildParams {
     StopParams stop;  ///< of the finest level
     PyramidParams levels;
@@ -53,6 +62,8 @@ struct BuildParams {
     bool visits = false;  ///< count how often the collapse down to the finest level touches each pixel
     std::optional<WeightPrecision> bary;      ///< none: half where the map stays a bijection, else float
     std::optional<std::int64_t> max_cluster;  ///< no face with more pixels than this; >= 3
+    int refine = 0;  ///< rounds of refinement (refine/refine.h) of each level; 0 to kMaxRefine
+    Objective objective = Objective::kLuv;
     double min_quality = 0;  ///< no triangle of a lesser q = 4 sqrt(3) area / sum of squared edges; 0 to 0.8
 };
 
@@ -63,6 +74,7 @@ struct LevelReport {
 };
 
 struct BuildReport {
+    std::int64_t pixels = 0;  ///< meshed: those inside the mask, or all
     std::int64_t collapses = 0;
     std::int64_t retracted = 0;  ///< collapses that the tracked map has forbidden
     std::vector<LevelReport> levels;
@@ -77,10 +89,18 @@ struct BuildResult {
     BuildReport report;
 };
 
-/// picture -> L*u*v* -> dense mesh -> collapse -> base mesh -> pixel map -> least-squares colours.
+/// picture -> L*u*v* -> dense mesh -> collapse -> base mesh -> refinement -> pixel map -> least-squares
+/// colours.
 /// Linear light is clipped to [0, 1]. A side of one pixel counts as a strip one pixel wide (docs/format.md).
-/// Alpha is ignored. Same result for any number of threads. Throws Error(kUsage) for a parameter out of
-/// range, Error(kUnsupported) for a picture without colour channels or with values that are not finite.
-BuildResult build_mesh_image(const Image& image, const BuildParams& params, const Progress& progress = {});
+/// Alpha is ignored but for what `mask` has taken from it. Same result for any number of threads.
+///
+/// mask   the pixels to mesh (mask.h); empty() for all. Exactly the others get no face in the map. A mask
+/// with
+///        all pixels inside counts as none. Percents and shares are of the pixels inside.
+/// Throws Error(kUsage) for a parameter out of range, Error(kBadFile) for a mask of another size,
+/// Error(kUnsupported) for a mask without a pixel inside, and for a picture without colour channels or with
+/// values that are not finite.
+BuildResult build_mesh_image(const Image& image, const BuildParams& params, const Progress& progress = {},
+                             Mask mask = {});
 
 }  // namespace imgmesh

@@ -59,6 +59,8 @@ void check_params(const BuildParams& p) {
     require(!p.projection_color_weight || projection == 0 ||
                 p.map.value_or(MapKind::kRelaxed) != MapKind::kTrivial,
             cat("the trivial map has projection color weight 0, not ", projection));
+    require(map_kind(p) != MapKind::kTracked || p.refine == 0,
+            "a tracked map follows the collapse alone: no refinement after it");
     require(p.levels.count >= 1 && p.levels.count <= kMaxLevels,
             cat("levels is ", p.levels.count, ", expected 1 to ", kMaxLevels));
     require(p.levels.faces.size() <= kMaxLevels && p.levels.errors.size() <= kMaxLevels,
@@ -81,6 +83,8 @@ void check_params(const BuildParams& p) {
     // The dense mesh has triangles of three pixels, and of q = 0.87.
     require(p.max_cluster.value_or(3) >= 3,
             cat("max cluster is ", p.max_cluster.value_or(3), ", expected 3 or more"));
+    require(p.refine >= 0 && p.refine <= kMaxRefine,
+            cat("refine is ", p.refine, ", expected 0 to ", kMaxRefine));
     require(p.min_quality >= 0 && p.min_quality <= 0.8,
             cat("min quality is ", p.min_quality, ", expected 0 to 0.8"));
 }
@@ -152,6 +156,8 @@ std::vector<BuildParameter> listed_params(const BuildParams& p, const CollapsePa
     out.emplace_back("map", std::string(kMaps[static_cast<std::size_t>(map_kind(p))]));
     out.emplace_back("projection-color-weight", map_color_weight(p));
     out.emplace_back("smoothing", std::int64_t{collapse.smoothing});
+    out.emplace_back("refine", std::int64_t{p.refine});
+    out.emplace_back("objective", std::string(p.objective == Objective::kRgb ? "rgb" : "luv"));
     if (p.max_cluster) out.emplace_back("max-cluster", *p.max_cluster);
     if (p.min_quality > 0) out.emplace_back("min-quality", p.min_quality);
     return out;

@@ -48,7 +48,7 @@ struct CollapseResult {
 struct CollapseStep {
     Id kept, gone;
     float x, y;                      ///< of the merged vertex [pixels]
-    std::span<const float> feature;  ///< of the merged vertex
+    std::span<const float> feature;  ///< of the merged vertex; perhaps with zeros behind the grid's channels
 };
 
 /// Who follows the collapse while it runs; both may be empty, and cost nothing then.
@@ -56,7 +56,8 @@ struct CollapseHooks {
     /// Before each collapse, in order. Returns false to retract it: the edge is tried again only when
     /// something around it has changed.
     std::function<bool(const CollapseStep&)> before;
-    /// When a level's target is reached, with its result, before the collapse goes on to the next.
+    /// When a level's target is reached, with its result (features perhaps padded likewise), before the
+    /// collapse goes on to the next.
     std::function<void(std::size_t level, const CollapseResult&)> reached;
 };
 
@@ -68,7 +69,8 @@ struct CollapseHooks {
 /// targets  one a level, each at least as coarse as the one before
 /// return   the mesh at each of the targets, in that order
 ///
-/// About 170 bytes a pixel; O(n). Three feature channels. Deterministic.
+/// Any number of features, 1 to kMaxFeatures (Error(kUsage) else). About 170 bytes a pixel with up to three
+/// of them; O(n). Deterministic.
 std::vector<CollapseResult> collapse_edges(const GridMesh& grid, const CollapseParams& params,
                                            std::span<const CollapseTarget> targets,
                                            const Progress& progress = {}, const CollapseHooks& hooks = {});

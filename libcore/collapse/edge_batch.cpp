@@ -2,7 +2,7 @@
 
 namespace imgmesh {
 
-inline __attribute__((always_inline)) Quadric<3> EdgeBatch::column(const Lanes& lanes, int lane) {
+inline __attribute__((always_inline)) Quadric<3> EdgeBatch<Quadric<3>>::column(const Lanes& lanes, int lane) {
     Quadric<3> q;
     q.px = lanes[0][lane];
     q.py = lanes[1][lane];
@@ -20,18 +20,18 @@ inline __attribute__((always_inline)) Quadric<3> EdgeBatch::column(const Lanes& 
 }
 
 // The compiler turns the loop into vector code of whatever width its caller is built for.
-inline __attribute__((always_inline)) void EdgeBatch::evaluate_lanes() {
+inline __attribute__((always_inline)) void EdgeBatch<Quadric<3>>::evaluate_lanes() {
     for (int lane = 0; lane < kWidth; ++lane)
         increment_[lane] = merged_minimum(column(i_, lane), column(j_, lane)).increment;
 }
 
 #if defined(__x86_64__)
-__attribute__((target("avx2"))) void EdgeBatch::evaluate_avx2() {
+__attribute__((target("avx2"))) void EdgeBatch<Quadric<3>>::evaluate_avx2() {
     evaluate_lanes();
 }
 #endif
 
-void EdgeBatch::evaluate() {
+void EdgeBatch<Quadric<3>>::evaluate() {
 #if defined(__x86_64__)
     static const bool kAvx2 = __builtin_cpu_supports("avx2");
     if (kAvx2) return evaluate_avx2();

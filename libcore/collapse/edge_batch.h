@@ -1,12 +1,28 @@
-// Eight edges evaluated side by side, one to a SIMD lane.
+// Eight edges evaluated side by side; for quadrics of three channels one to a SIMD lane.
 #pragma once
 
 #include "libcore/collapse/quadric.h"
 
 namespace imgmesh {
 
-/// Quadrics of up to eight pairs, transposed. Give the pairs to set(), call evaluate(), read the results.
+/// Up to eight pairs of quadrics. Give the pairs to set(), call evaluate(), read the results of
+/// merged_minimum().
+template <class Q>
 class EdgeBatch {
+  public:
+    static constexpr int kWidth = 8;
+
+    void set(int lane, const Q& i, const Q& j) { increment_[lane] = merged_minimum(i, j).increment; }
+    void evaluate() {}
+    float increment(int lane) const { return increment_[lane]; }
+
+  private:
+    float increment_[kWidth] = {};
+};
+
+/// The same, transposed.
+template <>
+class EdgeBatch<Quadric<3>> {
   public:
     static constexpr int kWidth = 8;
 

@@ -6,6 +6,7 @@
 #include <array>
 #include <cctype>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "libcore/base/error.h"
@@ -155,22 +156,25 @@ Vec3f linear_from_luv(const Vec3f& luv) {
     return (matrices().xyz_to_srgb * xyz).cast<float>();
 }
 
-Vec3f in_gamut(const Vec3f& luv) {
+Vec3f in_gamut(const Vec3f& luv, Gamut gamut) {
+    constexpr float kInfinity = std::numeric_limits<float>::infinity();
+    const float most = gamut == Gamut::kDisplay ? 1.0f : kInfinity,
+                lightest = gamut == Gamut::kDisplay ? 100.0f : kInfinity;
     // Less than half a 16-bit code beyond counts as inside, so that a result is never projected again.
     constexpr float kSlack = 4e-6f;
-    const auto inside = [](const Vec3f& color) {
+    const auto inside = [most](const Vec3f& color) {
         const Vec3f linear = linear_from_luv(color);
         // Without lightness there is no chroma: linear_from_luv makes (0, u, v) the black that it is not.
-        return linear.minCoeff() >= -kSlack && linear.maxCoeff() <= 1 + kSlack &&
+        return linear.minCoeff() >= -kSlack && linear.maxCoeff() <= most + kSlack &&
                (color[0] > 0 || (color[1] == 0 && color[2] == 0));
     };
     if (inside(luv)) return luv;
     // Towards a grey of the same lightness the gamut is always reached; bisect for where.
-    const Vec3f grey(std::clamp(luv[0], 0.0f, 100.0f), 0, 0);
-    Vec3f best = luv_from_linear(linear_from_luv(luv).cwiseMax(0.0f).cwiseMin(1.0f));
+    const Vec3f grey(std::clamp(luv[0], 0.0f, lightest), 0, 0);
+    Vec3f best = luv_from_linear(linear_from_luv(luv).cwiseMax(0.0f).cwiseMin(most));
     // Darker and lighter greys too: at a lightness a little off, the gamut may reach much closer.
     for (const float shift : {-8.0f, -4.0f, -2.0f, 0.0f, 2.0f, 4.0f, 8.0f}) {
-        const Vec3f center(std::clamp(grey[0] + shift, 0.0f, 100.0f), 0, 0);
+        const Vec3f center(std::clamp(grey[0] + shift, 0.0f, lightest), 0, 0);
         const Vec3f rim(center[0], luv[1], luv[2]);
         float low = 0, high = 1;
         for (int step = 0; step < 12; ++step) {

@@ -29,10 +29,16 @@ Vec3f luv_from_linear(const Vec3f& linear);
 /// The inverse of luv_from_linear for L* > 0; black for L* <= 0 chroma-free.
 Vec3f linear_from_luv(const Vec3f& luv);
 
-/// `luv` itself where its linear RGB lies in [0, 1], else a colour close to it, in L*u*v*, for which that
+/// Which linear RGB a colour may have.
+enum class Gamut {
+    kDisplay,  ///< [0, 1]
+    kLight     ///< 0 and more: high dynamic range
+};
+
+/// `luv` itself where its linear RGB lies in the gamut, else a colour close to it, in L*u*v*, for which that
 /// holds. (Clamping the RGB channels goes several times as far: near black a small step in L*u*v* leaves the
 /// gamut by a lot.)
-Vec3f in_gamut(const Vec3f& luv);
+Vec3f in_gamut(const Vec3f& luv, Gamut gamut = Gamut::kDisplay);
 
 /// What a container's COLOR_0 keeps of `luv`: in_gamut(luv) as linear RGB rounded to 16 bits.
 /// storable_color(storable_color(x)) == storable_color(x), bit for bit.

@@ -7,7 +7,7 @@
 namespace imgmesh {
 
 std::vector<FaceField> face_fields(const BaseMesh& mesh) {
-    std::vector<FaceField> fields(mesh.faces.size());
+    std::vector<FaceField> fields(mesh.faces.size(), FaceField{});
     parallel_blocks(0, static_cast<int>(fields.size()), 4096, [&](int first, int last) {
         for (int i = first; i < last; ++i) {
             const auto [a, b, c] = mesh.faces[static_cast<std::size_t>(i)];
@@ -20,7 +20,7 @@ std::vector<FaceField> face_fields(const BaseMesh& mesh) {
             field.uy = static_cast<float>(-ac.x() / det);
             field.vx = static_cast<float>(-ab.y() / det);
             field.vy = static_cast<float>(ab.x() / det);
-            for (int k = 0; k < 3; ++k) {
+            for (int k = 0; k < std::min(3, mesh.channels); ++k) {
                 const float fa = mesh.feature_of(a)[k], fb = mesh.feature_of(b)[k],
                             fc = mesh.feature_of(c)[k];
                 field.f[k] = fa;
@@ -30,6 +30,22 @@ std::vector<FaceField> face_fields(const BaseMesh& mesh) {
         }
     });
     return fields;
+}
+
+FurtherFields further_fields(const BaseMesh& mesh, const std::vector<FaceField>& fields) {
+    FurtherFields further{static_cast<std::size_t>(std::max(0, mesh.channels - 3)), {}};
+    further.values.reserve(fields.size() * further.features * 3);
+    for (std::size_t f = 0; further.features > 0 && f < fields.size(); ++f) {
+        const auto [a, b, c] = mesh.faces[f];
+        const FaceField& field = fields[f];
+        for (int k = 3; k < mesh.channels; ++k) {
+            const float fa = mesh.feature_of(a)[k], ab = mesh.feature_of(b)[k] - fa,
+                        ac = mesh.feature_of(c)[k] - fa;
+            for (const float value : {fa, field.ux * ab + field.vx * ac, field.uy * ab + field.vy * ac})
+                further.values.push_back(value);
+        }
+    }
+    return further;
 }
 
 std::vector<Face> face_neighbors(const BaseMesh& mesh) {

@@ -8,7 +8,8 @@
 namespace imgmesh {
 
 /// Face (a, b, c) relative to its corner a: with d = P - a, features f + fx d.x + fy d.y, weight of b ux d.x
-/// + uy d.y, weight of c vx d.x + vy d.y. 64 bytes: one cache line.
+/// + uy d.y, weight of c vx d.x + vy d.y. 64 bytes: one cache line. Of the features the first three, zero
+/// where there are fewer.
 struct alignas(64) FaceField {
     float ax, ay;              ///< corner a [pixels]
     float ux, uy, vx, vy;      ///< gradients of the weights [1 / pixel]
@@ -19,8 +20,17 @@ struct alignas(64) FaceField {
     float v(float x, float y) const { return vx * (x - ax) + vy * (y - ay); }
 };
 
-/// One FaceField a face; faces must not be degenerate, three channels.
+/// One FaceField a face; faces must not be degenerate.
 std::vector<FaceField> face_fields(const BaseMesh& mesh);
+
+/// The features from the fourth on, which FaceField has no room for.
+struct FurtherFields {
+    std::size_t features = 0;
+    std::vector<float> values;  ///< for each face and feature the value at corner a, and its gradient in x, y
+
+    const float* of(Id face) const { return values.data() + std::size_t{face} * features * 3; }
+};
+FurtherFields further_fields(const BaseMesh& mesh, const std::vector<FaceField>& fields);
 
 /// For each face the faces across the edges opposite its corners a, b, c; kNone on the border.
 std::vector<Face> face_neighbors(const BaseMesh& mesh);

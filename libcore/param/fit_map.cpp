@@ -22,6 +22,7 @@ PixelMap unrounded_map(const MovingPixels& pixels, const std::vector<FaceField>&
         for (int x = 0; x < map.width; ++x) {
             const Vec2f p = pixels.image_of(x, y);
             const Id face = pixels.face[pixels.index(x, y)];
+            if (face == kNone) continue;
             map.coords[pixels.index(x, y)] = {face, fields[face].u(p.x(), p.y()),
                                               fields[face].v(p.x(), p.y())};
         }
@@ -37,16 +38,10 @@ PixelMap stored(const BaseMesh& mesh, const MovingPixels& pixels, const std::vec
                 "the weights are too coarse for faces this large: --bary float holds them");
 }
 
-// The colours that suit both the map and the drawing without it.
-void fit_both(BaseMesh& mesh, const FeatureImage& feature, const PixelMap& map, const PixelMap& trivial,
-              const FitParams& params) {
-    fit_colors(mesh, feature, {{&map, 1 - params.gouraud_share}, {&trivial, params.gouraud_share}});
-}
-
-void store_colors(BaseMesh& mesh) {
+void round_colors(BaseMesh& mesh, float weight) {
     for (Id v = 0; v < mesh.vertex_count(); ++v) {
         const Eigen::Map<Vec3f> color(mesh.feature_of(v));
-        const Vec3f storable = storable_color(color);
+        const Vec3f storable = weight * storable_color(color / weight);
         std::copy(storable.data(), storable.data() + 3, mesh.feature_of(v));
     }
 }
@@ -58,30 +53,54 @@ float longest_edge(const BaseMesh& mesh) {
     return longest;
 }
 
+// Fits the colours to both a map and the drawing without it, and ends on what a container holds.
+class ColorFit {
+  public:
+    ColorFit(BaseMesh& mesh, const FeatureImage& feature, const FitParams& params, const PixelMap& trivial)
+        : mesh_(mesh), feature_(feature), params_(params), trivial_(trivial) {}
+
+    void fit(const PixelMap& map) const {
+        if (params_.keep_colors) return;
+        fit_colors(mesh_, feature_, {{&map, 1 - params_.gouraud_share}, {&trivial_, params_.gouraud_share}},
+                   params_.space);
+    }
+    void round() const {
+        if (params_.space.color) round_colors(mesh_, params_.space.color_weight);
+    }
+
+  private:
+    BaseMesh& mesh_;
+    const FeatureImage& feature_;
+    const FitParams& params_;
+    const PixelMap& trivial_;
+};
+
 }  // namespace
 
 PixelMap fit_map(BaseMesh& mesh, const FeatureImage& feature, const FitParams& params,
-                 const Progress& progress) {
-    const PixelMap trivial = trivial_map(mesh, feature.width, feature.height);
-    const auto fit = [&](const PixelMap& map) { fit_both(mesh, feature, map, trivial, params); };
+                 const Progress& progress, const Mask& mask) {
+    const PixelMap trivial = trivial_map(mesh, feature.width, feature.height, mask);
+    const ColorFit colors(mesh, feature, params, trivial);
     const std::vector<Face> neighbors = face_neighbors(mesh);
-    MovingPixels pixels = resting_pixels(trivial);
-    fit(trivial);
+    MovingPixels pixels = resting_pixels(trivial, mask);
+    colors.fit(trivial);
     // A strip of one pixel has no cell whose fold could be watched; its map stays trivial.
     const int rounds = params.color_weight > 0 && feature.width > 1 && feature.height > 1 ? params.rounds : 0;
     for (int round = 0; round < rounds; ++round) {
         if (progress) progress(static_cast<double>(round) / params.rounds, "map");
         const std::vector<FaceField> fields = face_fields(mesh);
-        relax(pixels, fields, neighbors, feature, static_cast<float>(1 / params.color_weight), params.sweeps);
-        if (round + 1 < rounds) fit(unrounded_map(pixels, fields));
+        relax(pixels, fields, neighbors, feature, static_cast<float>(1 / params.color_weight), params.sweeps,
+              further_fields(mesh, fields));
+        if (round + 1 < rounds) colors.fit(unrounded_map(pixels, fields));
     }
     PixelMap map = stored(mesh, pixels, face_fields(mesh), neighbors, params.bary);
-    fit(map);
-    store_colors(mesh);
+    colors.fit(map);
+    colors.round();
     return map;
 }
 
-PixelMap fit_given_map(BaseMesh& mesh, const FeatureImage& feature, PixelMap map, const FitParams& params) {
+PixelMap fit_given_map(BaseMesh& mesh, const FeatureImage& feature, PixelMap map, const FitParams& params,
+                       const Mask& mask) {
     constexpr float kCoarsest = 0.125f;  // [pixels]
     const bool fine = longest_edge(mesh) * kHalfWeightStep <= kCoarsest;
     map.precision = params.bary.value_or(fine ? WeightPrecision::kHalf : WeightPrecision::kFloat);
@@ -91,10 +110,11 @@ PixelMap fit_given_map(BaseMesh& mesh, const FeatureImage& feature, PixelMap map
             coord = on_weight_grid(
                 coord.face, {1.0 - double(coord.u) - double(coord.v), double(coord.u), double(coord.v)},
                 steps);
-    const PixelMap trivial = trivial_map(mesh, feature.width, feature.height);
-    fit_both(mesh, feature, trivial, trivial, params);
-    fit_both(mesh, feature, map, trivial, params);
-    store_colors(mesh);
+    const PixelMap trivial = trivial_map(mesh, feature.width, feature.height, mask);
+    const ColorFit colors(mesh, feature, params, trivial);
+    colors.fit(trivial);
+    colors.fit(map);
+    colors.round();
     return map;
 }
 

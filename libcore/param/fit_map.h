@@ -4,7 +4,9 @@
 #include <optional>
 
 #include "libcore/base/progress.h"
+#include "libcore/image/feature_space.h"
 #include "libcore/image/image.h"
+#include "libcore/image/mask.h"
 #include "libcore/mesh/base_mesh.h"
 #include "libcore/param/pixel_map.h"
 
@@ -15,21 +17,26 @@ struct FitParams {
     std::optional<WeightPrecision> bary;  ///< none: half where the map stays a bijection so, else float
     int rounds = 4;                       ///< of relaxation, colours refitted after each
     int sweeps = 4;                       ///< of relaxation a round
+    FeatureSpace space;                   ///< of the picture
+    bool keep_colors = false;             ///< the mesh's features stay as they are, but for rounding
     double gouraud_share =
         0.1;  ///< how much the drawing without the map counts in the fit of colours, 0 to 1
 };
 
-/// Finds the pixel map (relax.h, storable_map.h) and replaces the mesh's colours by the least-squares ones,
-/// rounded to what a container holds. The map is a bijection of the pixel grid onto the mesh.
+/// Finds the pixel map (relax.h, storable_map.h) and replaces the mesh's features by the least-squares ones
+/// (unless params.keep_colors), colours rounded to what a container holds. The map is a bijection of the
+/// pixel grid onto the mesh.
 ///
-/// mesh     covers the picture's rectangle; positions on kPositionStep
-/// feature  the picture, three channels
+/// mesh     covers the picture's rectangle, or every pixel inside the mask; positions on kPositionStep
+/// mask     empty(), or of the picture's size: pixels outside get no face
+/// feature  the picture, params.space.features() channels
 /// Throws Error(kUnsupported) where params.bary is too coarse for the mesh's faces.
 PixelMap fit_map(BaseMesh& mesh, const FeatureImage& feature, const FitParams& params,
-                 const Progress& progress = {});
+                 const Progress& progress = {}, const Mask& mask = {});
 
 /// The same for a map that is there already, as a tracker made it: its weights are rounded to the grid, its
 /// folds stay. Halves serve unless a face is so large that their step would be an eighth of a pixel.
-PixelMap fit_given_map(BaseMesh& mesh, const FeatureImage& feature, PixelMap map, const FitParams& params);
+PixelMap fit_given_map(BaseMesh& mesh, const FeatureImage& feature, PixelMap map, const FitParams& params,
+                       const Mask& mask = {});
 
 }  // namespace imgmesh

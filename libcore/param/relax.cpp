@@ -6,17 +6,23 @@
 #include "libcore/param/relax.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
+#include <cstdlib>
 #include <limits>
 
 #include "libcore/base/parallel.h"
 #include "libcore/base/simd.h"
+#include "libcore/mesh/mask_fans.h"
 
 namespace imgmesh {
 namespace {
 
 constexpr float kLongestStep = 0.5f;
 constexpr int kHalvings = 2;
+
+// A pixel that slides along an outline lies on the edge of a face, up to the rounding of its weights.
+constexpr float kWeightSlack = 1e-4f;
 
 // The eight pixels around one, from the east over the south. Straight neighbours are the even ones.
 constexpr int kStepX[8] = {1, 1, 0, -1, -1, -1, 0, 1};
@@ -43,30 +49,42 @@ IMGMESH_INLINE T clamped(T x, float low, float high) {
     return x < ceiling ? x : ceiling;
 }
 
-// The Gauss-Newton step (sx, sy) at (px, py) towards the face's colour there being the pixel's, and towards
-// (tx, ty). `field` holds the values of a FaceField.
+// The Gauss-Newton step at (px, py) towards the face's features there being the pixel's, and towards (tx,
+// ty).
 template <typename T>
-IMGMESH_INLINE void newton_step(const T* field, const T* color, T px, T py, T tx, T ty, float mu, T& sx,
-                                T& sy) {
-    T gxx = {}, gxy = {}, gyy = {}, bx = mu * (tx - px), by = mu * (ty - py);
-    const T dx = px - field[0], dy = py - field[1];
-    for (int c = 0; c < 3; ++c) {
-        const T gx = field[9 + c], gy = field[12 + c];
-        const T e = field[6 + c] + gx * dx + gy * dy - color[c];
+struct NewtonStep {
+    float mu;
+    T gxx = {}, gxy = {}, gyy = {}, bx, by;
+
+    IMGMESH_INLINE NewtonStep(T px, T py, T tx, T ty, float smoothness)
+        : mu(smoothness), bx(mu * (tx - px)), by(mu * (ty - py)) {}
+
+    // A feature of gradient (gx, gy) that the face has too much of by e.
+    IMGMESH_INLINE void add(T gx, T gy, T e) {
         gxx += gx * gx;
         gxy += gx * gy;
         gyy += gy * gy;
         bx -= gx * e;
         by -= gy * e;
     }
-    // Sums of what is never negative. (Of J'J + mu I as one matrix, J'J steep and singular, only rounding
-    // would be left.)
-    T minor = gxx * gyy - gxy * gxy;
-    minor = minor > T{} ? minor : T{};
-    const T inverse = 1 / (mu * (mu + gxx + gyy) + minor);
-    sx = clamped(((gyy + mu) * bx - gxy * by) * inverse, -kLongestStep, kLongestStep);
-    sy = clamped(((gxx + mu) * by - gxy * bx) * inverse, -kLongestStep, kLongestStep);
-}
+    // The first features, of which `field` holds the values of a FaceField.
+    IMGMESH_INLINE void add_fields(const T* field, const T* color, int features, T px, T py) {
+        const T dx = px - field[0], dy = py - field[1];
+        for (int c = 0; c < features; ++c) {
+            const T gx = field[9 + c], gy = field[12 + c];
+            add(gx, gy, field[6 + c] + gx * dx + gy * dy - color[c]);
+        }
+    }
+    IMGMESH_INLINE void solve(T& sx, T& sy) const {
+        // Sums of what is never negative. (Of J'J + mu I as one matrix, J'J steep and singular, only rounding
+        // would be left.)
+        T minor = gxx * gyy - gxy * gxy;
+        minor = minor > T{} ? minor : T{};
+        const T inverse = 1 / (mu * (mu + gxx + gyy) + minor);
+        sx = clamped(((gyy + mu) * bx - gxy * by) * inverse, -kLongestStep, kLongestStep);
+        sy = clamped(((gxx + mu) * by - gxy * bx) * inverse, -kLongestStep, kLongestStep);
+    }
+};
 
 // The least of the twelve triangles at (x, y) whose other corners are among the eight neighbours.
 template <typename T>
@@ -85,11 +103,13 @@ struct Sweep {
     const std::vector<Face>& neighbors;
     const FeatureImage& feature;
     float mu;
+    const FurtherFields& further;
 
     void move_pixel(int x, int y) const {
         const int w = pixels.width, h = pixels.height;
         const std::size_t index = pixels.index(x, y);
-        // Pixels that do not exist are not-a-number, which is never the lesser.
+        if (pixels.outside(index)) return;
+        // Pixels that do not exist, or are outside, are not-a-number, which is never the lesser.
         float nx[8], ny[8], mean_x = 0, mean_y = 0, count = 0;
         for (int k = 0; k < 8; ++k) {
             const int i = x + kStepX[k], j = y + kStepY[k];
@@ -98,7 +118,7 @@ struct Sweep {
             const float dy = inside ? pixels.dy[pixels.index(i, j)] : std::numeric_limits<float>::quiet_NaN();
             nx[k] = static_cast<float>(i) + dx;
             ny[k] = static_cast<float>(j) + dy;
-            if (k % 2 != 0 || !inside) continue;
+            if (k % 2 != 0 || std::isnan(dx)) continue;
             mean_x += dx;
             mean_y += dy;
             ++count;
@@ -106,26 +126,41 @@ struct Sweep {
         const float rest_x = static_cast<float>(x), rest_y = static_cast<float>(y);
         const float px = rest_x + pixels.dx[index], py = rest_y + pixels.dy[index];
         float sx, sy;
-        newton_step(&fields[pixels.face[index]].ax, feature.pixel(index), px, py, rest_x + mean_x / count,
-                    rest_y + mean_y / count, mu, sx, sy);
-        if (x == 0 || x == w - 1) sx = 0;
-        if (y == 0 || y == h - 1) sy = 0;
+        const FaceField& field = fields[pixels.face[index]];
+        const float* color = feature.pixel(index);
+        NewtonStep<float> step(px, py, rest_x + mean_x / count, rest_y + mean_y / count, mu);
+        step.add_fields(&field.ax, color, std::min(3, feature.channels), px, py);
+        const float* f = further.of(pixels.face[index]);
+        for (std::size_t c = 0; c < further.features; ++c, f += 3)
+            step.add(f[1], f[2], f[0] + f[1] * (px - field.ax) + f[2] * (py - field.ay) - color[3 + c]);
+        step.solve(sx, sy);
+        if (pixels.pinned_x(x, y)) sx = 0;
+        if (pixels.pinned_y(x, y)) sy = 0;
         for (int half = 0; half <= kHalvings; ++half, sx *= 0.5f, sy *= 0.5f) {
             const float qx = clamped(px + sx, 0, static_cast<float>(w - 1));
             const float qy = clamped(py + sy, 0, static_cast<float>(h - 1));
             if (!(least_area(qx, qy, nx, ny) >= kLeastMovingArea)) continue;
-            place(index, qx - rest_x, qy - rest_y);
-            pixels.face[index] = walk_to({qx, qy}, pixels.face[index], fields, neighbors);
+            const Id face = walk_to({qx, qy}, pixels.face[index], fields, neighbors);
+            if (may_lie_in(face, qx, qy)) place(index, qx - rest_x, qy - rest_y, face);
             return;
         }
     }
 
-    void place(std::size_t index, float dx, float dy) const {
+    void place(std::size_t index, float dx, float dy, Id face) const {
         pixels.dx[index] = dx;
         pixels.dy[index] = dy;
+        pixels.face[index] = face;
     }
 
-    // move_pixel() for (x, y), (x + 2, y), ... (x + 14, y), none of them on a side.
+    // Whether the walk to (x, y) ended there, and not at an outline in between. A rectangle has none.
+    bool may_lie_in(Id face, float x, float y) const {
+        if (pixels.freedom.empty()) return true;
+        const float u = fields[face].u(x, y), v = fields[face].v(x, y);
+        return std::min({u, v, 1 - u - v}) >= -kWeightSlack;
+    }
+
+    // move_pixel() for (x, y), (x + 2, y), ... (x + 14, y), none of them on a side, all deep; three
+    // features.
     IMGMESH_INLINE void move_eight(int x, int y) const {
         const std::size_t index = pixels.index(x, y);
         Float8 field[2][8];
@@ -154,7 +189,9 @@ struct Sweep {
         const Float8 px = rest_x + load8_every_other(&pixels.dx[index]);
         const Float8 py = rest_y + load8_every_other(&pixels.dy[index]);
         Float8 sx, sy;
-        newton_step(field[0], color, px, py, rest_x + mean_x / 4, rest_y + mean_y / 4, mu, sx, sy);
+        NewtonStep<Float8> step(px, py, rest_x + mean_x / 4, rest_y + mean_y / 4, mu);
+        step.add_fields(field[0], color, 3, px, py);
+        step.solve(sx, sy);
         const float right = static_cast<float>(pixels.width - 1),
                     bottom = static_cast<float>(pixels.height - 1);
         Float8 to_x = px, to_y = py;
@@ -176,21 +213,35 @@ struct Sweep {
         for (int l = 0; l < 8; ++l) {
             if (!moved[l]) continue;
             const std::size_t i = index + 2 * static_cast<std::size_t>(l);
-            place(i, dx[l], dy[l]);
-            if (least_weight[l] < 0)
-                pixels.face[i] = walk_to({to_x[l], to_y[l]}, pixels.face[i], fields, neighbors);
+            Id face = pixels.face[i];
+            if (least_weight[l] < 0) {
+                face = walk_to({to_x[l], to_y[l]}, face, fields, neighbors);
+                if (!may_lie_in(face, to_x[l], to_y[l])) continue;
+            }
+            place(i, dx[l], dy[l], face);
         }
+    }
+
+    bool all_deep(std::size_t index) const {
+        std::uint8_t all = kDeep;
+        for (std::size_t lane = 0; lane < 16; lane += 2) all &= pixels.freedom[index + lane];
+        return all != 0;
     }
 
     IMGMESH_INLINE void move_row(int y, int parity) const {
         const int w = pixels.width;
         int x = parity;
-        if (y > 0 && y < pixels.height - 1) {
+        if (feature.channels == 3 && y > 0 && y < pixels.height - 1) {
             if (x == 0) {
                 move_pixel(0, y);
                 x = 2;
             }
-            for (; x + 16 < w; x += 16) move_eight(x, y);  // which reads up to x + 16
+            for (; x + 16 < w; x += 16) {  // move_eight() reads up to x + 16
+                if (pixels.freedom.empty() || all_deep(pixels.index(x, y)))
+                    move_eight(x, y);
+                else
+                    for (int lane = 0; lane < 16; lane += 2) move_pixel(x + lane, y);
+            }
         }
         for (; x < w; x += 2) move_pixel(x, y);
     }
@@ -202,20 +253,42 @@ struct Sweep {
 #endif
 };
 
+std::uint8_t freedom_of(const Mask& mask, int x, int y) {
+    // Where an outline begins and ends at a pixel does not depend on diagonals.
+    const PixelFans fans = fans_at(mask, x, y, [](int) { return false; });
+    if (fans.count != 1) return kPinnedX | kPinnedY;
+    const Fan& fan = fans.fan[0];
+    if (!fan.closed) {
+        const int from = fan.direction[0], to = fan.direction[static_cast<std::size_t>(fan.count - 1)];
+        if (std::abs(from - to) != 4 || from % 2 != 0) return kPinnedX | kPinnedY;
+        return from % 4 == 0 ? kPinnedY : kPinnedX;
+    }
+    for (const PixelStep& d : kAround)
+        if (!mask.at(x + d.dx, y + d.dy)) return 0;
+    return kDeep;
+}
+
 }  // namespace
 
-MovingPixels resting_pixels(const PixelMap& trivial) {
-    MovingPixels pixels{trivial.width, trivial.height, {}, {}, {}};
+MovingPixels resting_pixels(const PixelMap& trivial, const Mask& mask) {
+    MovingPixels pixels{trivial.width, trivial.height, {}, {}, {}, {}};
     pixels.dx.assign(trivial.coords.size(), 0.0f);
     pixels.dy.assign(trivial.coords.size(), 0.0f);
     pixels.face.reserve(trivial.coords.size());
     for (const PixelCoord& coord : trivial.coords) pixels.face.push_back(coord.face);
+    if (mask.empty()) return pixels;
+    pixels.freedom.reserve(trivial.coords.size());
+    for (int y = 0; y < trivial.height; ++y)
+        for (int x = 0; x < trivial.width; ++x) pixels.freedom.push_back(freedom_of(mask, x, y));
+    for (std::size_t i = 0; i < pixels.face.size(); ++i)
+        if (pixels.outside(i)) pixels.dx[i] = pixels.dy[i] = std::numeric_limits<float>::quiet_NaN();
     return pixels;
 }
 
 void relax(MovingPixels& pixels, const std::vector<FaceField>& fields, const std::vector<Face>& neighbors,
-           const FeatureImage& feature, float smoothness, int sweeps) {
-    const Sweep sweep{pixels, fields, neighbors, feature, smoothness};
+           const FeatureImage& feature, float smoothness, int sweeps, const FurtherFields& further) {
+    assert(static_cast<int>(further.features) == std::max(0, feature.channels - 3));
+    const Sweep sweep{pixels, fields, neighbors, feature, smoothness, further};
     auto move_row = &Sweep::move_row_portably;
 #if defined(__x86_64__)
     if (__builtin_cpu_supports("avx2")) move_row = &Sweep::move_row_avx2;

@@ -86,11 +86,11 @@ void PixelTracker::carry(const CollapseFlattening& flat, const std::array<Star, 
 }
 
 bool PixelTracker::collapse(Id kept, Id gone, const Vec2f& position, std::span<const float> feature) {
-    assert(feature.size() + 2 == index(dimensions_));
+    assert(feature.size() + 2 >= index(dimensions_));
     const std::array<Star, 2> stars{mesh_.star(kept), mesh_.star(gone)};
     const auto scale = static_cast<float>(std::sqrt(params_.color_weight));
     merged_.assign({position.x(), position.y()});
-    for (const float f : feature) merged_.push_back(scale * f);
+    for (const float f : feature.first(index(dimensions_ - 2))) merged_.push_back(scale * f);
 
     moved_.clear();
     std::array<Id, 2> resting{kNone, kNone};  // pixels that are an end where the merged vertex is

@@ -101,7 +101,7 @@ TEST_CASE("vertex quadrics: equal to the sum over the faces that they stand for,
             INFO(name_of(kind) << ", " << passes << " passes");
             const GridMesh grid = grid_mesh(sample_feature(kind, 6, 5));
             const FeatureImage gradients = smoothed(grid.feature, passes);
-            const std::vector<Quadric<3>> quadrics = vertex_quadrics(grid, gradients, kLambda);
+            const std::vector<Quadric<3>> quadrics = vertex_quadrics<3>(grid, gradients, kLambda);
             for (Id v = 0; v < quadrics.size(); ++v) {
                 BruteForce truth;
                 add_vertex(grid, gradients, v, truth);
@@ -113,7 +113,7 @@ TEST_CASE("vertex quadrics: equal to the sum over the faces that they stand for,
 TEST_CASE("vertex quadrics: of a strip one pixel wide") {
     std::mt19937 random(2);
     const GridMesh grid = grid_mesh(sample_feature(Kind::kNoise, 1, 5));
-    const std::vector<Quadric<3>> quadrics = vertex_quadrics(grid, grid.feature, kLambda);
+    const std::vector<Quadric<3>> quadrics = vertex_quadrics<3>(grid, grid.feature, kLambda);
     REQUIRE(quadrics.size() == 10);
     for (Id v = 0; v < quadrics.size(); ++v) {
         BruteForce truth;
@@ -128,7 +128,7 @@ TEST_CASE("merged: the sum of many vertices' quadrics is the sum of all of their
     for (const Kind kind : kAllKinds) {
         INFO(name_of(kind));
         const GridMesh grid = grid_mesh(sample_feature(kind, 9, 8));
-        const std::vector<Quadric<3>> quadrics = vertex_quadrics(grid, grid.feature, kLambda);
+        const std::vector<Quadric<3>> quadrics = vertex_quadrics<3>(grid, grid.feature, kLambda);
         for (const std::size_t count : {2u, 3u, 30u}) {
             std::vector<Id> ids(count);
             for (Id& id : ids) id = static_cast<Id>(random() % quadrics.size());
@@ -142,7 +142,7 @@ TEST_CASE("merged: the sum of many vertices' quadrics is the sum of all of their
 TEST_CASE("merged: no nearby point is lower than the minimiser, and its value is the error") {
     std::mt19937 random(4);
     const GridMesh grid = grid_mesh(sample_feature(Kind::kNoise, 9, 8));
-    const std::vector<Quadric<3>> quadrics = vertex_quadrics(grid, grid.feature, kLambda);
+    const std::vector<Quadric<3>> quadrics = vertex_quadrics<3>(grid, grid.feature, kLambda);
     for (int trial = 0; trial < 50; ++trial) {
         const Id i = static_cast<Id>(random() % quadrics.size()),
                  j = static_cast<Id>(random() % quadrics.size());
@@ -165,7 +165,7 @@ TEST_CASE("merged_minimum: the increment is the least error of the sum less both
     std::mt19937 random(5);
     for (const Kind kind : kAllKinds) {
         const GridMesh grid = grid_mesh(sample_feature(kind, 9, 8));
-        const std::vector<Quadric<3>> quadrics = vertex_quadrics(grid, grid.feature, kLambda);
+        const std::vector<Quadric<3>> quadrics = vertex_quadrics<3>(grid, grid.feature, kLambda);
         for (int trial = 0; trial < 20; ++trial) {
             const Quadric<3>&i = quadrics[random() % quadrics.size()],
                   &j = quadrics[random() % quadrics.size()];
@@ -185,11 +185,11 @@ TEST_CASE("edge batch: the increments of merged_minimum, to the bit, full or not
     std::mt19937 random(6);
     for (const Kind kind : kAllKinds) {
         const GridMesh grid = grid_mesh(sample_feature(kind, 9, 8));
-        const std::vector<Quadric<3>> quadrics = vertex_quadrics(grid, smoothed(grid.feature, 1), kLambda);
-        EdgeBatch batch;  // used again and again, as the collapse does
+        const std::vector<Quadric<3>> quadrics = vertex_quadrics<3>(grid, smoothed(grid.feature, 1), kLambda);
+        EdgeBatch<Quadric<3>> batch;  // used again and again, as the collapse does
         for (int trial = 0; trial < 50; ++trial) {
-            float expected[EdgeBatch::kWidth];
-            const int lanes = 1 + static_cast<int>(random() % EdgeBatch::kWidth);
+            float expected[EdgeBatch<Quadric<3>>::kWidth];
+            const int lanes = 1 + static_cast<int>(random() % EdgeBatch<Quadric<3>>::kWidth);
             for (int lane = 0; lane < lanes; ++lane) {
                 const Quadric<3>& i = quadrics[random() % quadrics.size()];
                 const Quadric<3> j =
@@ -202,14 +202,14 @@ TEST_CASE("edge batch: the increments of merged_minimum, to the bit, full or not
         }
     }
     // Singular ones take the branch less travelled.
-    EdgeBatch batch;
+    EdgeBatch<Quadric<3>> batch;
     Quadric<3> i, j;
     i.weight = j.weight = 1;
     j.px = 4;
     j.s[0] = 3;
-    for (int lane = 0; lane < EdgeBatch::kWidth; ++lane) batch.set(lane, i, j);
+    for (int lane = 0; lane < EdgeBatch<Quadric<3>>::kWidth; ++lane) batch.set(lane, i, j);
     batch.evaluate();
-    for (int lane = 0; lane < EdgeBatch::kWidth; ++lane)
+    for (int lane = 0; lane < EdgeBatch<Quadric<3>>::kWidth; ++lane)
         CHECK(batch.increment(lane) == merged_minimum(i, j).increment);
 }
 
@@ -227,7 +227,7 @@ TEST_CASE("merged_minimum: a singular pair meets half way") {
 
 TEST_CASE("quadric: its best feature for a position is the best, and at() takes it") {
     const GridMesh grid = grid_mesh(sample_feature(Kind::kNoise, 5, 5));
-    const Quadric<3> q = vertex_quadrics(grid, grid.feature, kLambda)[12];
+    const Quadric<3> q = vertex_quadrics<3>(grid, grid.feature, kLambda)[12];
     const Point at{{2.75, 1.5},
                    {q.feature(0, 2.75f, 1.5f), q.feature(1, 2.75f, 1.5f), q.feature(2, 2.75f, 1.5f)}};
     CHECK(value(q, at) == doctest::Approx(double(q.at(2.75f, 1.5f))));
