@@ -27,11 +27,8 @@ struct Options {
 };
 
 Choices<DrawMode> mode_choices() {
-    return {{"map", DrawMode::kMap},
-            {"gouraud", DrawMode::kGouraud},
-            {"wire", DrawMode::kWire},
-            {"patches", DrawMode::kPatches},
-            {"flat", DrawMode::kFlat}};
+    return {{"map", DrawMode::kMap},         {"gouraud", DrawMode::kGouraud}, {"wire", DrawMode::kWire},
+            {"patches", DrawMode::kPatches}, {"flat", DrawMode::kFlat},       {"visits", DrawMode::kVisits}};
 }
 
 Choices<SampleType> depth_choices() {
@@ -53,7 +50,8 @@ void add_options(CLI::App& app, Options& o) {
 
 // Throws Error(kUsage) for what can be seen to be wrong before the container is read.
 void check_options(const Options& o, bool svg) {
-    const bool plane = o.draw.mode == DrawMode::kMap || o.draw.mode == DrawMode::kPatches;
+    const bool plane = o.draw.mode == DrawMode::kMap || o.draw.mode == DrawMode::kPatches ||
+                       o.draw.mode == DrawMode::kVisits;
     const std::string mode = name_of(mode_choices(), o.draw.mode);
     if (plane && o.draw.scale != 1)
         throw Error(ErrorCode::kUsage, cat("--scale ", o.draw.scale, ": mode ", mode,

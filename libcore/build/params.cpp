@@ -130,6 +130,7 @@ CollapseParams collapse_params(const BuildParams& params, const CollapseTarget& 
     out.geometry_weight = static_cast<float>(params.geometry_weight / params.color_weight);
     out.rebuild_quadrics = params.rebuild_quadrics;
     out.total_priority = params.total_priority;
+    out.tiles = map_kind(params) != MapKind::kTracked && !params.visits;
     out.min_shape = static_cast<float>(params.min_quality);
     const auto vertices = static_cast<double>(std::max(finest.vertices, finest.faces / 2));
     // With an error alone the density is not known beforehand; the default's serves.

@@ -30,6 +30,7 @@ struct CollapseParams {
     /// pixels on
     bool rebuild_quadrics = false;
     bool total_priority = false;  ///< edges go by the total error (the paper), not by what a merge adds to it
+    bool tiles = true;  ///< while the goal is far, edges go tile by tile: faster, but seams show in the order
     /// no new triangle larger than this [px^2]
     float max_face_area = std::numeric_limits<float>::infinity();
     /// nor of a lesser q = 4 sqrt(3) area / sum of squared edges (1 is best); 0 leaves only the guard against

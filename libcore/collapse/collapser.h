@@ -74,7 +74,7 @@ class Collapser {
             if (params_.rebuild_quadrics && vertices_ <= next_rebuild_) rebuild_quadrics();
             const std::int64_t collapses_before = collapses_;
             postponed_ = false;
-            const int side = far_from_done() ? kTile : std::max(width_, height_);
+            const int side = params_.tiles && far_from_done() ? kTile : std::max(width_, height_);
             for (int y = 0; y < height_ && !done(); y += side)
                 for (int x = 0; x < width_ && !done(); x += side) {
                     file_tile(x, y, side);
