@@ -156,6 +156,7 @@ std::vector<BuildParameter> listed_params(const BuildParams& p, const CollapsePa
     constexpr const char* kMaps[] = {"relaxed", "tracked", "trivial"};
     out.emplace_back("map", std::string(kMaps[static_cast<std::size_t>(map_kind(p))]));
     out.emplace_back("projection-color-weight", map_color_weight(p));
+    if (p.visits) out.emplace_back("visits", true);
     out.emplace_back("smoothing", std::int64_t{collapse.smoothing});
     out.emplace_back("refine", std::int64_t{p.refine});
     out.emplace_back("objective", std::string(p.objective == Objective::kRgb ? "rgb" : "luv"));

@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "libcore/param/collapse_flattening.h"
+#include "libcore/param/weight_grid.h"
 
 namespace imgmesh {
 namespace {
@@ -43,10 +44,9 @@ PixelTracker::PixelTracker(TrackStart start, const TrackParams& params)
 }
 
 void PixelTracker::put(Id pixel, Id face, const std::array<double, 3>& weight) {
-    // Rounding must not leave the simplex.
-    auto u = static_cast<float>(weight[1]), v = static_cast<float>(weight[2]);
-    while (double(u) + double(v) > 1) (u > v ? u : v) = std::nextafter(std::max(u, v), 0.0f);
-    pixels_[pixel] = {u, v, first_[face]};
+    // On the grid weights sum to 1 exactly, and those that are 0 stay so: sides keep their pixels.
+    const PixelCoord coord = on_weight_grid(face, weight, weight_steps(WeightPrecision::kFloat));
+    pixels_[pixel] = {coord.u, coord.v, first_[face]};
     first_[face] = pixel;
 }
 

@@ -49,7 +49,7 @@ class PixelTracker {
     bool collapse(Id kept, Id gone, const Vec2f& position, std::span<const float> feature);
 
     /// The pixels as they are now, as a map onto `mesh`, whose vertices are the live ones in the order of
-    /// their ids. Weights are rounded to no grid, but lie in the simplex.
+    /// their ids. Weights lie on the kFloatWeightStep grid.
     PixelMap map(const BaseMesh& mesh) const;
 
     /// How often each pixel's vertex was the end of a collapse or the pixel was projected anew (paper sec.
