@@ -88,6 +88,9 @@ Report run(const Options& o, Context& context) {
     if (o.level >= static_cast<int>(mesh_image.levels.size()))
         throw Error(ErrorCode::kUsage, cat("--level ", o.level, ": ", o.input, " has levels 0 to ",
                                            mesh_image.levels.size() - 1));
+    if (o.draw.mode == DrawMode::kVisits && mesh_image.visits.empty())
+        throw Error(ErrorCode::kUnsupported,
+                    cat(o.input, ": there is no visit map; imgmesh-build --visits stores one"));
     int width = source.width, height = source.height;
     context.progress(0.4, "draw");
     if (svg) {
