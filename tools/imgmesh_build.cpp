@@ -187,10 +187,7 @@ Mask read_mask(const Options& o) {
 
 Report build_one(const Job& job, const Options& o, const Context& context, const Progress& progress) {
     const auto start = std::chrono::steady_clock::now();
-    // What stands beside a .gltf is replaced only where there is one that it belongs to.
-    const bool replace_others = context.overwrite && owns_its_files(job.output);
-    for (const std::string& file : container_files(job.output))
-        check_output(file, file == job.output ? context.overwrite : replace_others);
+    check_output(job.output, context.overwrite);
     const Image image = read_image(job.input, o.color_space);
     const bool cut = o.cut && o.mask.empty();
     Mask mask = cut ? alpha_mask(image, static_cast<float>(o.alpha_threshold)) : read_mask(o);
