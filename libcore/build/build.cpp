@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "libcore/base/error.h"
+#include "libcore/base/stopwatch.h"
 #include "libcore/build/params.h"
 #include "libcore/build/refine_level.h"
 #include "libcore/build/tracking.h"
@@ -52,10 +53,12 @@ Mask checked(Mask mask, const Image& image) {
 void build_levels(const FeatureImage& feature, const Mask& mask, const BuildParams& params,
                   const CollapseParams& collapse, std::span<const CollapseTarget> targets,
                   BuildResult& result, const Progress& progress) {
+    Stopwatch watch;
     const GridMesh grid = grid_mesh(feature, mask);
     Tracking tracking(grid, feature.width, feature.height, params);
     std::vector<CollapseResult> collapsed =
         collapse_edges(grid, collapse, targets, part_of(progress, 0, 0.7), tracking.hooks());
+    result.report.seconds.collapse += watch.lap();
     FitParams fit;
     fit.color_weight = map_color_weight(params);
     fit.bary = params.bary;
@@ -79,6 +82,7 @@ void build_levels(const FeatureImage& feature, const Mask& mask, const BuildPara
         if (params.refine > 0 || params.objective == Objective::kRgb)
             refine_level(level.mesh, feature, mask, params.objective, refinement,
                          part_of(progress, begin, middle));
+        report.seconds.refine += watch.lap();
         level.map = tracking.tracked()
                         ? fit_given_map(level.mesh, feature, tracking.take_map(k), fit, mask)
                         : fit_map(level.mesh, feature, fit, part_of(progress, middle, begin + share), mask);
@@ -86,6 +90,7 @@ void build_levels(const FeatureImage& feature, const Mask& mask, const BuildPara
         report.levels.push_back(
             {map_rms(level.mesh, level.map, feature), map_rms(level.mesh, trivial, feature)});
         levels.push_back(std::move(level));
+        report.seconds.map += watch.lap();
     }
 }
 
@@ -100,10 +105,12 @@ BuildResult build_mesh_image(const Image& image, const BuildParams& params, cons
             throw Error(ErrorCode::kUnsupported, "the picture has samples that are not finite");
     // A container's colours are codes of [0, 1]. What lies outside could only mislead the fit: L*u*v* of
     // negative light has no bound.
+    Stopwatch watch;
     const FeatureImage feature = luv_image(image, Range::kClipped);
 
     mask = checked(std::move(mask), image);
     BuildResult result;
+    result.report.seconds.collapse = watch.lap();
     result.report.pixels = mask.empty() ? static_cast<std::int64_t>(image.pixel_count()) : mask.count();
     const auto pixels = static_cast<double>(result.report.pixels);
     const std::vector<CollapseTarget> targets = collapse_targets(params, pixels);

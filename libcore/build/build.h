@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "libcore/base/progress.h"
+#include "libcore/collapse/metric.h"
 #include "libcore/image/image.h"
 #include "libcore/image/mask.h"
 #include "libcore/param/mesh_image.h"
@@ -22,6 +23,7 @@ struct StopParams {
 };
 
 inline constexpr int kMaxLevels = 32;
+inline constexpr int kMaxSmoothing = 64;
 
 /// The pyramid: nested base meshes of one run, each with a pixel map of its own.
 struct PyramidParams {
@@ -50,10 +52,13 @@ inline constexpr int kMaxRefine = 1000;
 struct BuildParams {
     StopParams stop;  ///< of the finest level
     PyramidParams levels;
+    Metric metric = Metric::kFlattened;
+    Solver solver = Solver::kClosed;
     double geometry_weight = 3.0;  ///< lambda: geometry against colour in the quadrics [L*u*v*^2 / px^2]; > 0
     double color_weight = 1.0;     ///< of colour in the quadrics; only the ratio counts, 1e-9 to 1e9
     bool rebuild_quadrics = false;  ///< take quadrics anew from the mesh at every halving ("memoryless")
     bool total_priority = false;    ///< edges go by total error, as in the paper, not by what a merge adds
+    std::optional<int> smoothing;   ///< passes of [1 2 1] / 4 before gradients are taken; none: by density
     std::optional<MapKind> map;     ///< none: relaxed, or trivial where projection_color_weight is 0
     /// relaxed: of colour against smoothness; tracked: of squared L*u*v* against squared pixels in the
     /// flattened rings. 0 is the trivial map and excludes the two others, which need more; none: the map's
@@ -73,7 +78,15 @@ struct LevelReport {
     double gouraud_rms = 0;  ///< base mesh drawn without the map [L*u*v*]
 };
 
+/// Wall time of the stages, all levels together [s].
+struct BuildSeconds {
+    double collapse = 0;  ///< with L*u*v* and the dense mesh
+    double refine = 0;
+    double map = 0;  ///< with the fit of colours, and the figures of LevelReport
+};
+
 struct BuildReport {
+    BuildSeconds seconds;
     std::int64_t pixels = 0;  ///< meshed: those inside the mask, or all
     std::int64_t collapses = 0;
     std::int64_t retracted = 0;  ///< collapses that the tracked map has forbidden

@@ -12,6 +12,12 @@
 #include "libcore/image/channel_count.h"
 
 namespace imgmesh {
+
+// Compiled in dense_collapser.cpp.
+extern template class Collapser<DenseQuadric<3>>;
+extern template class Collapser<DenseQuadric<8>>;
+extern template class Collapser<DenseQuadric<16>>;
+
 namespace {
 
 // The first channels of every item, or all and zeros behind them.
@@ -24,12 +30,11 @@ std::vector<float> with_channels(const std::vector<float>& values, int from, int
     return out;
 }
 
-// grid.feature has C channels.
-template <int C>
-std::vector<CollapseResult> collapse(const GridMesh& grid, const CollapseParams& params,
-                                     std::span<const CollapseTarget> targets, const Progress& progress,
-                                     const CollapseHooks& hooks) {
-    Collapser<Quadric<C>> collapser(grid, params, hooks);
+template <class Q>
+std::vector<CollapseResult> collapse_by(const GridMesh& grid, const CollapseParams& params,
+                                        std::span<const CollapseTarget> targets, const Progress& progress,
+                                        const CollapseHooks& hooks) {
+    Collapser<Q> collapser(grid, params, hooks);
     std::vector<CollapseResult> levels;
     for (const CollapseTarget& target : targets) {
         collapser.run(target, progress);
@@ -37,6 +42,16 @@ std::vector<CollapseResult> collapse(const GridMesh& grid, const CollapseParams&
         if (hooks.reached) hooks.reached(levels.size() - 1, levels.back());
     }
     return levels;
+}
+
+// grid.feature has C channels.
+template <int C>
+std::vector<CollapseResult> collapse(const GridMesh& grid, const CollapseParams& params,
+                                     std::span<const CollapseTarget> targets, const Progress& progress,
+                                     const CollapseHooks& hooks) {
+    if (params.metric == Metric::kFlattened && params.solver == Solver::kClosed)
+        return collapse_by<Quadric<C>>(grid, params, targets, progress, hooks);
+    return collapse_by<DenseQuadric<C>>(grid, params, targets, progress, hooks);
 }
 
 }  // namespace
