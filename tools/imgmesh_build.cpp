@@ -10,6 +10,7 @@
 #include "libcore/base/parallel.h"
 #include "libcore/base/stopwatch.h"
 #include "libcore/build/build.h"
+#include "libcore/build/presets.h"
 #include "libcore/image/color.h"
 #include "libcore/metrics/metrics.h"
 #include "tools/common/names.h"
@@ -48,6 +49,15 @@ void add_options(CLI::App& app, Options& o) {
     add_inputs(app, "IMAGE", o.inputs, "Pictures to read");
     add_output(app, o.output,
                "Container to write (.glb, .gltf), or a folder, ended by /, for NAME.glb of each");
+    // Before all that it sets, so that other options, wherever they stand, count after it.
+    add_choice<BuildParams, BuildParams>(app, "--preset", o.params,
+                                         {{"fast", preset_params(Preset::kFast)},
+                                          {"default", preset_params(Preset::kDefault)},
+                                          {"best", preset_params(Preset::kBest)},
+                                          {"fem", preset_params(Preset::kFem)}},
+                                         "Values of the options below, for speed, as usual, for the lowest "
+                                         "error of the mesh drawn alone, or for "
+                                         "triangles of good shape");
     const StopParams stop;
     CLI::Option* const faces = add_count(app, "--faces", o.params.stop.faces, {2}, "Stop at this many faces");
     CLI::Option* const vertices =
@@ -85,7 +95,14 @@ void add_options(CLI::App& app, Options& o) {
     add_count(
         app, "--refine", o.params.refine, {0, kMaxRefine},
         cat("Rounds that move vertices, flip edges and put vertices elsewhere to lower the error (default ",
-            params.refine, ")"));
+            kUsualRefine, ")"));
+    add_number(app, "--shape-weight", o.params.shape_weight, {0},
+               cat("Weight of the triangles' shape against error in refinement (default ",
+                   params.shape_weight, ")"));
+    add_number(app, "--exchange", o.params.exchange, {0, 1},
+               cat("Share of the vertices that each round of refinement adds and takes away elsewhere; slow "
+                   "(default ",
+                   params.exchange, ")"));
     add_choice<Objective, Objective>(
         app, "--objective", o.params.objective, {{"luv", Objective::kLuv}, {"rgb", Objective::kRgb}},
         "Error to lower: L*u*v*, or sRGB with colours for the mesh drawn alone (default luv)");
@@ -116,10 +133,19 @@ void add_options(CLI::App& app, Options& o) {
         "paper, or none moved (default relaxed)");
     BuildParams tracked;
     tracked.map = MapKind::kTracked;
-    add_number(app, "--projection-color-weight", o.params.projection_color_weight, {0},
-               cat("Weight of colour in the pixel map, 0 for the trivial map (default ",
-                   format_number(map_color_weight(params)), ", tracked ",
-                   format_number(map_color_weight(tracked)), ")"));
+    CLI::Option* const projection =
+        add_number(app, "--projection-color-weight", o.params.projection_color_weight, {0},
+                   cat("Weight of colour in the pixel map, 0 for the trivial map (default ",
+                       format_number(map_color_weight(params)), ", tracked ",
+                       format_number(map_color_weight(tracked)), ")"));
+    add_value(
+        app, "--map-smoothness", "X",
+        [&o](const std::string& text) {
+            o.params.projection_color_weight = 1 / parse_number("--map-smoothness", text, {1e-9, 1e12});
+        },
+        cat("Smoothness of the pixel map against colour: 1 / projection color weight (default ",
+            format_number(1 / map_color_weight(params)), ")"))
+        ->excludes(projection);
     app.add_flag("--visits", o.params.visits, "Store how often the collapse touched each pixel");
     add_choice(app, "--bary", o.params.bary, bary_choices(),
                "Precision of the pixel map (default half where the map stays one to one, else float)");

@@ -64,7 +64,9 @@ void build_levels(const FeatureImage& feature, const Mask& mask, const BuildPara
     fit.bary = params.bary;
     fit.keep_colors = params.objective == Objective::kRgb;
     RefineParams refinement;
-    refinement.rounds = params.refine;
+    refinement.rounds = refine_rounds(params);
+    refinement.shape_weight = params.shape_weight;
+    refinement.exchange = params.exchange;
     refinement.min_quality = params.min_quality;
     refinement.max_face_area = collapse.max_face_area;
     BuildReport& report = result.report;
@@ -78,8 +80,8 @@ void build_levels(const FeatureImage& feature, const Mask& mask, const BuildPara
         Level level{std::move(collapsed[k].mesh), {}, collapsed[k].error * params.color_weight};
         const double share = 0.3 / static_cast<double>(collapsed.size()),
                      begin = 0.7 + share * static_cast<double>(k);
-        const double middle = params.refine > 0 ? begin + 0.7 * share : begin;
-        if (params.refine > 0 || params.objective == Objective::kRgb)
+        const double middle = refinement.rounds > 0 ? begin + 0.7 * share : begin;
+        if (refinement.rounds > 0 || params.objective == Objective::kRgb)
             refine_level(level.mesh, feature, mask, params.objective, refinement,
                          part_of(progress, begin, middle));
         report.seconds.refine += watch.lap();

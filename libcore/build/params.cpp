@@ -4,7 +4,6 @@
 #include <sstream>
 
 #include "libcore/base/error.h"
-#include "libcore/param/fit_map.h"
 #include "libcore/param/track.h"
 
 namespace imgmesh {
@@ -59,8 +58,9 @@ void check_params(const BuildParams& p) {
     require(!p.projection_color_weight || projection == 0 ||
                 p.map.value_or(MapKind::kRelaxed) != MapKind::kTrivial,
             cat("the trivial map has projection color weight 0, not ", projection));
-    require(map_kind(p) != MapKind::kTracked || p.refine == 0,
-            "a tracked map follows the collapse alone: no refinement after it");
+    require(
+        map_kind(p) != MapKind::kTracked || p.refine.value_or(0) == 0,
+        cat("a tracked map follows the collapse alone: refine is ", p.refine.value_or(0), ", expected 0"));
     require(p.smoothing.value_or(0) >= 0 && p.smoothing.value_or(0) <= kMaxSmoothing,
             cat("smoothing is ", p.smoothing.value_or(0), ", expected 0 to ", kMaxSmoothing));
     require(p.levels.count >= 1 && p.levels.count <= kMaxLevels,
@@ -85,8 +85,11 @@ void check_params(const BuildParams& p) {
     // The dense mesh has triangles of three pixels, and of q = 0.87.
     require(p.max_cluster.value_or(3) >= 3,
             cat("max cluster is ", p.max_cluster.value_or(3), ", expected 3 or more"));
-    require(p.refine >= 0 && p.refine <= kMaxRefine,
-            cat("refine is ", p.refine, ", expected 0 to ", kMaxRefine));
+    require(p.refine.value_or(0) >= 0 && p.refine.value_or(0) <= kMaxRefine,
+            cat("refine is ", p.refine.value_or(0), ", expected 0 to ", kMaxRefine));
+    require(p.exchange >= 0 && p.exchange <= 1, cat("exchange is ", p.exchange, ", expected 0 to 1"));
+    require(std::isfinite(p.shape_weight) && p.shape_weight >= 0,
+            cat("shape weight is ", p.shape_weight, ", expected a finite number, 0 or more"));
     require(p.min_quality >= 0 && p.min_quality <= 0.8,
             cat("min quality is ", p.min_quality, ", expected 0 to 0.8"));
 }
@@ -104,7 +107,12 @@ double map_color_weight(const BuildParams& p) {
         case MapKind::kRelaxed:
             break;
     }
-    return p.projection_color_weight.value_or(FitParams{}.color_weight);
+    return p.projection_color_weight.value_or(kUsualMapColorWeight);
+}
+
+int refine_rounds(const BuildParams& p) {
+    const int usual = map_kind(p) == MapKind::kTracked ? 0 : kUsualRefine;
+    return static_cast<int>(p.refine.value_or(usual));
 }
 
 std::vector<CollapseTarget> collapse_targets(const BuildParams& params, double pixels) {
@@ -163,7 +171,11 @@ std::vector<BuildParameter> listed_params(const BuildParams& p, const CollapsePa
     out.emplace_back("projection-color-weight", map_color_weight(p));
     if (p.visits) out.emplace_back("visits", true);
     out.emplace_back("smoothing", std::int64_t{collapse.smoothing});
-    out.emplace_back("refine", std::int64_t{p.refine});
+    out.emplace_back("refine", std::int64_t{refine_rounds(p)});
+    if (refine_rounds(p) > 0) {
+        out.emplace_back("shape-weight", p.shape_weight);
+        out.emplace_back("exchange", p.exchange);
+    }
     out.emplace_back("objective", std::string(p.objective == Objective::kRgb ? "rgb" : "luv"));
     if (p.max_cluster) out.emplace_back("max-cluster", *p.max_cluster);
     if (p.min_quality > 0) out.emplace_back("min-quality", p.min_quality);

@@ -14,7 +14,7 @@ class Maps(CliCase):
     def test_each_map_is_stored_and_recorded(self):
         rms = {}
         for kind in ("relaxed", "tracked", "trivial"):
-            image = self.built("--map", kind)
+            image = self.built("--map", kind, "--refine", "0")
             rms[kind] = image["map_rms"]
             info = self.report("imgmesh-info", "p.glb")
             self.assertEqual(info["build"]["map"], kind)

@@ -82,6 +82,7 @@ TEST_CASE("tracked build: each level has its own map, closer to the picture than
     const Image image = sample_picture(Kind::kDisc, 60, 50);
     BuildParams params = with_map(MapKind::kTracked, 3);
     params.levels.count = 2;
+    params.refine = 0;
     const BuildResult tracked = build_mesh_image(image, params);
     params.map = MapKind::kTrivial;
     const BuildResult trivial = build_mesh_image(image, params);
@@ -189,7 +190,7 @@ TEST_CASE("tracked build: which map it is, is listed") {
     };
     BuildParams zero;
     zero.projection_color_weight = 0;
-    CHECK(listed({}) == std::pair<std::string, double>("relaxed", 1.0 / 30));
+    CHECK(listed({}) == std::pair<std::string, double>("relaxed", kUsualMapColorWeight));
     CHECK(listed(zero) == std::pair<std::string, double>("trivial", 0));
     CHECK(listed(with_map(MapKind::kTrivial)) == std::pair<std::string, double>("trivial", 0));
     CHECK(listed(with_map(MapKind::kTracked)) == std::pair<std::string, double>("tracked", 0.1));
