@@ -62,9 +62,9 @@ void build_levels(const FeatureImage& feature, const Mask& mask, const BuildPara
     FitParams fit;
     fit.color_weight = map_color_weight(params);
     fit.bary = params.bary;
-    fit.keep_colors = params.objective == Objective::kRgb;
+    fit.keep_colors = params.quadric_colors || params.objective == Objective::kRgb;
     RefineParams refinement;
-    refinement.rounds = refine_rounds(params);
+    refinement.rounds = static_cast<int>(refine_rounds(params));
     refinement.shape_weight = params.shape_weight;
     refinement.exchange = params.exchange;
     refinement.min_quality = params.min_quality;

@@ -61,6 +61,9 @@ void check_params(const BuildParams& p) {
     require(
         map_kind(p) != MapKind::kTracked || p.refine.value_or(0) == 0,
         cat("a tracked map follows the collapse alone: refine is ", p.refine.value_or(0), ", expected 0"));
+    require(!p.quadric_colors || (p.refine.value_or(0) == 0 && p.objective == Objective::kLuv),
+            "colors are the quadrics', but refinement and the objective rgb fit their own: expected refine 0 "
+            "and objective luv");
     require(p.smoothing.value_or(0) >= 0 && p.smoothing.value_or(0) <= kMaxSmoothing,
             cat("smoothing is ", p.smoothing.value_or(0), ", expected 0 to ", kMaxSmoothing));
     require(p.levels.count >= 1 && p.levels.count <= kMaxLevels,
@@ -110,11 +113,6 @@ double map_color_weight(const BuildParams& p) {
     return p.projection_color_weight.value_or(kUsualMapColorWeight);
 }
 
-int refine_rounds(const BuildParams& p) {
-    const int usual = map_kind(p) == MapKind::kTracked ? 0 : kUsualRefine;
-    return static_cast<int>(p.refine.value_or(usual));
-}
-
 std::vector<CollapseTarget> collapse_targets(const BuildParams& params, double pixels) {
     std::vector<CollapseTarget> targets;
     for (const std::int64_t faces : params.levels.faces) targets.push_back({.faces = faces});
@@ -141,13 +139,22 @@ CollapseParams collapse_params(const BuildParams& params, const CollapseTarget& 
     out.solver = params.solver;
     out.geometry_weight = static_cast<float>(params.geometry_weight / params.color_weight);
     out.rebuild_quadrics = params.rebuild_quadrics;
-    out.total_priority = params.total_priority;
     out.tiles = map_kind(params) != MapKind::kTracked && !params.visits;
+    // Summing up what merges add and smoothing are not part of what others published.
+    const bool published = params.metric != Metric::kFlattened;
+    out.total_priority = params.total_priority.value_or(published);
     out.min_shape = static_cast<float>(params.min_quality);
     const auto vertices = static_cast<double>(std::max(finest.vertices, finest.faces / 2));
     // With an error alone the density is not known beforehand; the default's serves.
-    out.smoothing = params.smoothing.value_or(smoothing_passes(vertices > 0 ? pixels / vertices : 100));
+    const int passes = published ? 0 : smoothing_passes(vertices > 0 ? pixels / vertices : 100);
+    out.smoothing = params.smoothing.value_or(passes);
     return out;
+}
+
+std::int64_t refine_rounds(const BuildParams& params) {
+    const bool plain =
+        params.metric != Metric::kFlattened || params.quadric_colors || map_kind(params) == MapKind::kTracked;
+    return params.refine.value_or(plain ? 0 : kUsualRefine);
 }
 
 std::vector<BuildParameter> listed_params(const BuildParams& p, const CollapseParams& collapse) {
@@ -165,13 +172,14 @@ std::vector<BuildParameter> listed_params(const BuildParams& p, const CollapsePa
     if (p.metric != Metric::kHoppe) out.emplace_back("geometry-weight", p.geometry_weight);
     out.emplace_back("color-weight", p.color_weight);
     out.emplace_back("quadrics", std::string(p.rebuild_quadrics ? "rebuilt" : "accumulated"));
-    out.emplace_back("priority", std::string(p.total_priority ? "total" : "increment"));
+    out.emplace_back("priority", std::string(collapse.total_priority ? "total" : "increment"));
     constexpr const char* kMaps[] = {"relaxed", "tracked", "trivial"};
     out.emplace_back("map", std::string(kMaps[static_cast<std::size_t>(map_kind(p))]));
     out.emplace_back("projection-color-weight", map_color_weight(p));
     if (p.visits) out.emplace_back("visits", true);
+    out.emplace_back("colors", std::string(p.quadric_colors ? "quadric" : "fitted"));
     out.emplace_back("smoothing", std::int64_t{collapse.smoothing});
-    out.emplace_back("refine", std::int64_t{refine_rounds(p)});
+    out.emplace_back("refine", refine_rounds(p));
     if (refine_rounds(p) > 0) {
         out.emplace_back("shape-weight", p.shape_weight);
         out.emplace_back("exchange", p.exchange);
