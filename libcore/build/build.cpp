@@ -16,9 +16,24 @@
 namespace imgmesh {
 namespace {
 
-// The colour channels that the mesh was made from, as the file had them.
-std::vector<std::string> color_channels(const Image& image) {
-    return image.channel("R") >= 0 ? std::vector<std::string>{"R", "G", "B"} : std::vector<std::string>{"Y"};
+// The channels that the mesh is made from, as the file has them.
+std::vector<std::string> used_channels(const Image& image, const std::vector<ChannelChoice>& choices) {
+    if (choices.empty()) return split_names(image.channel_names).color;
+    std::vector<std::string> names;
+    for (const ChannelChoice& choice : choices) names.push_back(choice.name);
+    return names;
+}
+
+// Features as a reader gets them: colours without their weight on the colours' grid, other channels in their
+// own unit.
+void take_weights_out(BaseMesh& mesh, const FeatureSpace& space) {
+    for (Id v = 0; v < mesh.vertex_count(); ++v) {
+        float* f = mesh.feature_of(v);
+        for (int c = 0; c < space.features(); ++c) f[c] /= space.weight(c);
+        if (!space.color || space.color_weight == 1) continue;
+        const Vec3f color = storable_color(Vec3f(f), space.gamut);
+        std::copy(color.data(), color.data() + 3, f);
+    }
 }
 
 // A part [begin, end] of the whole, as a progress of its own.
@@ -35,14 +50,16 @@ std::int64_t largest_patch(const Level& level) {
 }
 
 // Collapse and maps with the collapse's limits as they stand.
-std::vector<Level> build_levels(const FeatureImage& feature, const BuildParams& params,
-                                const CollapseParams& collapse, std::span<const CollapseTarget> targets,
-                                BuildReport& report, const Progress& progress) {
+std::vector<Level> build_levels(const FeatureImage& feature, const FeatureSpace& space,
+                                const BuildParams& params, const CollapseParams& collapse,
+                                std::span<const CollapseTarget> targets, BuildReport& report,
+                                const Progress& progress) {
     std::vector<CollapseResult> collapsed =
         collapse_edges(grid_mesh(feature), collapse, targets, part_of(progress, 0, 0.7));
     FitParams fit;
     fit.color_weight = params.projection_color_weight;
     fit.bary = params.bary;
+    fit.space = space;
     report = {collapsed.back().collapses, {}};
     std::vector<Level> levels;
     for (std::size_t k = 0; k < collapsed.size(); ++k) {
@@ -52,7 +69,11 @@ std::vector<Level> build_levels(const FeatureImage& feature, const BuildParams& 
         level.map = fit_map(level.mesh, feature, fit, part_of(progress, begin, begin + share));
         const PixelMap trivial = trivial_map(level.mesh, feature.width, feature.height);
         report.levels.push_back(
-            {map_rms(level.mesh, level.map, feature), map_rms(level.mesh, trivial, feature)});
+            {map_rms(level.mesh, level.map, feature), map_rms(level.mesh, trivial, feature), {}});
+        for (int c = space.color ? 3 : 0; c < space.features(); ++c)
+            report.levels.back().plain_rms.push_back(feature_rms(level.mesh, level.map, feature, c) /
+                                                     space.weight(c));
+        take_weights_out(level.mesh, space);
         levels.push_back(std::move(level));
     }
     return levels;
@@ -66,9 +87,10 @@ BuildResult build_mesh_image(const Image& image, const BuildParams& params, cons
     for (const float sample : image.data)
         if (!std::isfinite(sample))
             throw Error(ErrorCode::kUnsupported, "the picture has samples that are not finite");
-    // A container's colours are codes of [0, 1]. What lies outside could only mislead the fit: L*u*v* of
-    // negative light has no bound.
-    const FeatureImage feature = luv_image(image, Range::kClipped);
+    // What lies outside of the colours that a container holds could only mislead the fit: L*u*v* of negative
+    // light has no bound.
+    const FeatureSpace space = feature_space(image, params.channels);
+    const FeatureImage feature = extract_features(image, space);
 
     const auto pixels = static_cast<double>(image.pixel_count());
     const std::vector<CollapseTarget> targets = collapse_targets(params, pixels);
@@ -77,7 +99,7 @@ BuildResult build_mesh_image(const Image& image, const BuildParams& params, cons
     std::vector<Level>& levels = result.mesh_image.levels;
     if (params.max_cluster) collapse.max_face_area = static_cast<float>(*params.max_cluster);
     for (;;) {
-        levels = build_levels(feature, params, collapse, targets, result.report, progress);
+        levels = build_levels(feature, space, params, collapse, targets, result.report, progress);
         if (!params.max_cluster) break;
         // The collapse bounds a face's area; the map decides how many pixels that becomes.
         std::int64_t largest = 0;
@@ -90,8 +112,13 @@ BuildResult build_mesh_image(const Image& image, const BuildParams& params, cons
         collapse.max_face_area *=
             0.95f * static_cast<float>(*params.max_cluster) / static_cast<float>(largest);
     }
-    result.mesh_image.source = {image.width,       image.height,          image.color_space,
-                                image.sample_type, color_channels(image), false};
+    result.mesh_image.source = {image.width,
+                                image.height,
+                                image.color_space,
+                                image.sample_type,
+                                used_channels(image, params.channels),
+                                false,
+                                space.gamut};
     result.mesh_image.parameters = listed_params(params, collapse);
     const bool half = levels.front().map.precision == WeightPrecision::kHalf;
     result.mesh_image.parameters.emplace_back("bary", std::string(half ? "half" : "float"));

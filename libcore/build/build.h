@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "libcore/base/progress.h"
+#include "libcore/image/feature_space.h"
 #include "libcore/image/image.h"
 #include "libcore/param/mesh_image.h"
 
@@ -32,7 +33,8 @@ struct PyramidParams {
 };
 
 struct BuildParams {
-    StopParams stop;  ///< of the finest level
+    std::vector<ChannelChoice> channels;  ///< the feature space; none: the picture's colour
+    StopParams stop;                      ///< of the finest level
     PyramidParams levels;
     double geometry_weight = 3.0;  ///< lambda: geometry against colour in the quadrics [L*u*v*^2 / px^2]; > 0
     double color_weight = 1.0;     ///< of colour in the quadrics; only the ratio counts, 1e-9 to 1e9
@@ -46,8 +48,9 @@ struct BuildParams {
 
 /// Figures of a level, measured on what a reader gets back.
 struct LevelReport {
-    double map_rms = 0;      ///< through the pixel map [L*u*v*]
-    double gouraud_rms = 0;  ///< base mesh drawn without the map [L*u*v*]
+    double map_rms = 0;             ///< through the pixel map [L*u*v*, or features with their weights]
+    double gouraud_rms = 0;         ///< base mesh drawn without the map, likewise
+    std::vector<double> plain_rms;  ///< of each channel beside the colour, through the map [its own unit]
 };
 
 struct BuildReport {
@@ -60,10 +63,12 @@ struct BuildResult {
     BuildReport report;
 };
 
-/// picture -> L*u*v* -> dense mesh -> collapse -> base mesh -> pixel map -> least-squares colours.
-/// Linear light is clipped to [0, 1]. A side of one pixel counts as a strip one pixel wide (docs/format.md).
-/// Alpha is ignored. Same result for any number of threads. Throws Error(kUsage) for a parameter out of
-/// range, Error(kUnsupported) for a picture without colour channels or with values that are not finite.
+/// picture -> features -> dense mesh -> collapse -> base mesh -> pixel map -> least-squares features.
+/// Linear light below 0 is clipped to 0, and above 1 to 1 unless the picture is one of floats (gamut_of). A
+/// side of one pixel counts as a strip one pixel wide (docs/format.md). Alpha is ignored. Same result for any
+/// number of threads. Throws Error(kUsage) for a parameter out of range, Error(kUnsupported) for a picture
+/// without colour channels or with values that are not finite, and as feature_space() and extract_features()
+/// do.
 BuildResult build_mesh_image(const Image& image, const BuildParams& params, const Progress& progress = {});
 
 }  // namespace imgmesh

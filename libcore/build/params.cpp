@@ -17,6 +17,11 @@ int smoothing_passes(double pixels_per_vertex) {
     return pixels_per_vertex >= 250 ? 4 : pixels_per_vertex >= 66 ? 2 : pixels_per_vertex >= 12 ? 1 : 0;
 }
 
+std::ostream& operator<<(std::ostream& out, const ChannelChoice& choice) {
+    out << choice.name;
+    return choice.weight == 1 ? out : out << ':' << choice.weight;
+}
+
 template <typename T>
 std::string joined(const std::vector<T>& values) {
     std::ostringstream out;
@@ -112,6 +117,7 @@ CollapseParams collapse_params(const BuildParams& params, const CollapseTarget& 
 
 std::vector<BuildParameter> listed_params(const BuildParams& p, const CollapseParams& collapse) {
     std::vector<BuildParameter> out{{"metric", std::string("flattened")}};
+    if (!p.channels.empty()) out.emplace_back("channels", joined(p.channels));
     if (stops_by_itself(p)) {
         if (p.stop.faces) out.emplace_back("faces", *p.stop.faces);
         if (p.stop.vertices) out.emplace_back("vertices", *p.stop.vertices);

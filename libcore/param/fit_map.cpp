@@ -34,10 +34,11 @@ PixelMap stored(const BaseMesh& mesh, const MovingPixels& pixels, const std::vec
                 "the weights are too coarse for faces this large: --bary float holds them");
 }
 
-void round_colors(BaseMesh& mesh, float weight) {
+void round_colors(BaseMesh& mesh, const FeatureSpace& space) {
+    const float weight = space.color_weight;
     for (Id v = 0; v < mesh.vertex_count(); ++v) {
         const Eigen::Map<Vec3f> color(mesh.feature_of(v));
-        const Vec3f storable = weight * storable_color(color / weight);
+        const Vec3f storable = weight * storable_color(color / weight, space.gamut);
         std::copy(storable.data(), storable.data() + 3, mesh.feature_of(v));
     }
 }
@@ -65,7 +66,7 @@ PixelMap fit_map(BaseMesh& mesh, const FeatureImage& feature, const FitParams& p
     }
     PixelMap map = stored(mesh, pixels, face_fields(mesh), neighbors, params.bary);
     fit(map);
-    if (params.space.color) round_colors(mesh, params.space.color_weight);
+    if (params.space.color) round_colors(mesh, params.space);
     return map;
 }
 
