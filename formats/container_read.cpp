@@ -6,9 +6,12 @@
 #include "formats/atomic_file.h"
 #include "formats/container.h"
 #include "formats/exr_layers.h"
-#include "formats/finding_codes.h"
+#include "formats/findings.h"
 #include "formats/glb.h"
 #include "formats/gltf_asset.h"
+#include "formats/gltf_names.h"
+#include "formats/mesh_advice.h"
+#include "formats/validate.h"
 #include "libcore/base/error.h"
 
 namespace imgmesh {
@@ -52,9 +55,9 @@ void copy_to(std::vector<T>& out, View bytes) {
     std::memcpy(out.data(), bytes.data(), bytes.size());
 }
 
-StoredMesh load_mesh(const AssetLevel& level, View buffer) {
+StoredMesh load_mesh(const AssetLevel& level, View buffer, Findings& findings) {
     if (level.is_draco)
-        return decode_draco_mesh(cut(buffer, level.draco), level.ids, level.vertices, level.faces);
+        return decode_draco_mesh(cut(buffer, level.draco), level.ids, level.vertices, level.faces, findings);
     StoredMesh mesh;
     copy_to(mesh.faces, cut(buffer, level.indices));
     copy_to(mesh.position, cut(buffer, level.positions));
@@ -62,68 +65,97 @@ StoredMesh load_mesh(const AssetLevel& level, View buffer) {
     return mesh;
 }
 
-BaseMesh load_level(const AssetLevel& level, View buffer) {
-    const StoredMesh mesh = load_mesh(level, buffer);
+BaseMesh load_level(const AssetLevel& level, const SourceInfo& source, View buffer, Findings& findings) {
+    const StoredMesh mesh = load_mesh(level, buffer, findings);
     const std::string topology = topology_hash(mesh);
     if (topology != level.topology)
-        refuse("mesh.topology",
-               cat("the mesh has the hash ", topology, ", its pixel map was made for ", level.topology));
-    return base_from_stored(mesh);
+        findings.add("mesh.topology", cat("the mesh has the hash ", topology, ", its pixel map was made for ",
+                                          level.topology));
+    const std::size_t before = findings.errors();
+    BaseMesh base = base_from_stored(mesh, findings);
+    if (findings.collects() && findings.errors() == before) advise_on_mesh(mesh, level, source, findings);
+    return base;
 }
 
-std::vector<LayerPart> load_layers(const Asset& asset, View bytes) {
+std::vector<LayerPart> load_layers(const Asset& asset, View bytes, Findings& findings) {
     ExpectedLayers expected{asset.source.width, asset.source.height, {}, {}, asset.source.has_mask};
     for (std::size_t k = 0; k < asset.levels.size(); ++k) {
+        const AssetLevel& level = asset.levels[k];
         expected.parts.push_back(level_name(k));
-        expected.faces.push_back(asset.levels[k].faces);
+        expected.faces.push_back(level.is_sound ? level.faces : kNone);
     }
-    return decode_exr_layers(bytes, expected);
+    return decode_exr_layers(bytes, expected, findings);
 }
 
-ContainerFacts facts_of(const Asset& asset, View buffer) {
-    ContainerFacts facts;
-    facts.version = asset.version;
+void add_level_facts(const Asset& asset, View buffer, ContainerFacts& facts) {
     for (const AssetLevel& level : asset.levels)
         facts.mesh_bytes +=
             level.draco.length + level.indices.length + level.positions.length + level.colors.length;
     if (asset.levels[0].is_draco) facts.draco = draco_mode(cut(buffer, asset.levels[0].draco));
-    return facts;
 }
 
-Container read(const std::string& path, const ContainerLimits& limits) {
+// All levels whose meshes and parts can be looked at.
+void read_levels(const Asset& asset, View buffer, std::vector<LayerPart>& parts, Findings& findings,
+                 MeshImage& image) {
+    for (std::size_t k = 0; k < asset.levels.size(); ++k) {
+        const AssetLevel& level = asset.levels[k];
+        BaseMesh mesh;
+        if (level.is_sound)
+            findings.attempt(asset.places[k].pointer,
+                             [&] { mesh = load_level(level, asset.source, buffer, findings); });
+        if (k >= parts.size()) continue;
+        image.levels.push_back({std::move(mesh), std::move(parts[k].map), level.error});
+        if (level.is_sound && !parts[k].topology.empty() && parts[k].topology != level.topology)
+            findings.add("layers.topology",
+                         cat(parts[k].name, " was made for a mesh of hash ", parts[k].topology,
+                             ", the mesh has ", level.topology),
+                         at_part(parts[k].name));
+    }
+}
+
+Container read(const std::string& path, const ContainerLimits& limits, Findings& findings) {
     const std::filesystem::path folder = std::filesystem::path(path).parent_path();
     FileReader files(limits.max_bytes);
     const Bytes main = files.read(path);
     GlbView glb{{reinterpret_cast<const char*>(main.data()), main.size()}, {}};
-    if (is_glb(main)) glb = unpack_glb(main);
-    Asset asset = asset_from_json(glb.json, limits);
+    if (is_glb(main)) glb = unpack_glb(main, findings);
+    Asset asset = asset_from_json(glb.json, limits, findings);
 
     Bytes buffer_file, layer_file;
     View buffer = glb.binary, layers;
     if (!asset.buffer_name.empty()) buffer = buffer_file = files.read((folder / asset.buffer_name).string());
-    if (asset.buffer_length > buffer.size())
-        refuse("gltf.buffer",
-               cat("the buffer has ", buffer.size(), " bytes, its byteLength is ", asset.buffer_length));
-    if (asset.layers_name.empty())
-        layers = cut(buffer, asset.layers);
-    else
+    const bool is_whole = asset.has_buffer && findings.attempt("/buffers/0", [&] {
+        if (asset.buffer_length > buffer.size())
+            refuse("gltf.buffer",
+                   cat("the buffer has ", buffer.size(), " bytes, its byteLength is ", asset.buffer_length));
+    });
+    // The binary chunk of a .glb is padded to a multiple of four.
+    if (is_whole && buffer.size() - asset.buffer_length > (asset.buffer_name.empty() ? 3u : 0u))
+        findings.add("gltf.buffer_tail",
+                     cat("the buffer has ", buffer.size(), " bytes, its byteLength is ", asset.buffer_length),
+                     at_pointer("/buffers/0/byteLength"));
+    if (!asset.layers_name.empty())
         layers = layer_file = files.read((folder / asset.layers_name).string());
+    else if (is_whole && asset.has_layers)
+        layers = cut(buffer, asset.layers);
 
     Container container;
-    container.facts = facts_of(asset, buffer);
+    container.facts.version = asset.version;
     container.facts.files = files.names();
     container.facts.total_bytes = files.total();
     container.facts.layer_bytes = layers.size();
+    // Pixels come first: that so many are there bounds what the meshes may claim. So a validator does not
+    // decode meshes either where the layers are not read; what it has told by then says why.
+    std::vector<LayerPart> parts;
+    if (!asset.has_levels || !asset.has_layers || !(is_whole || !asset.layers_name.empty())) return container;
+    if (!findings.attempt(cat("/extensions/", kPixelMap, "/layers"),
+                          [&] { parts = load_layers(asset, layers, findings); }))
+        return container;
+    if (!is_whole) return container;
     MeshImage& image = container.mesh_image;
-    // Pixels come first: that so many are there bounds what the meshes may claim.
-    std::vector<LayerPart> parts = load_layers(asset, layers);
-    for (std::size_t k = 0; k < parts.size(); ++k) {
-        const AssetLevel& level = asset.levels[k];
-        image.levels.push_back({load_level(level, buffer), std::move(parts[k].map), level.error});
-        if (!parts[k].topology.empty() && parts[k].topology != level.topology)
-            refuse("layers.topology", cat(parts[k].name, " was made for a mesh of hash ", parts[k].topology,
-                                          ", the mesh has ", level.topology));
-    }
+    read_levels(asset, buffer, parts, findings, image);
+    if (findings.errors() > 0) return container;
+    add_level_facts(asset, buffer, container.facts);
     image.visits = std::move(parts[0].visits);
     image.source = std::move(asset.source);
     image.generator = std::move(asset.generator);
@@ -135,7 +167,8 @@ Container read(const std::string& path, const ContainerLimits& limits) {
 
 Container read_container(const std::string& path, const ContainerLimits& limits) {
     try {
-        return read(path, limits);
+        Findings findings = Findings::strict();
+        return read(path, limits, findings);
     } catch (const FindingError& finding) {
         std::string text = finding.what();
         // Names from the file are quoted as they are; the message stays one line.
@@ -143,6 +176,12 @@ Container read_container(const std::string& path, const ContainerLimits& limits)
             text.begin(), text.end(), [](unsigned char c) { return c < 32 || c == 127; }, ' ');
         throw Error(finding.error_code(), cat(path, ": [", finding.code(), "] ", text));
     }
+}
+
+std::vector<Issue> validate_container(const std::string& path, const ContainerLimits& limits) {
+    Findings findings = Findings::collecting();
+    findings.attempt("", [&] { read(path, limits, findings); });
+    return std::move(findings.issues());
 }
 
 }  // namespace imgmesh

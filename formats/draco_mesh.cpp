@@ -10,7 +10,7 @@
 #include <bit>
 #include <memory>
 
-#include "formats/finding_codes.h"
+#include "formats/findings.h"
 #include "libcore/base/error.h"
 
 namespace imgmesh {
@@ -57,7 +57,8 @@ class HeaderReader {
     explicit HeaderReader(std::span<const std::uint8_t> bytes) : bytes_(bytes) {}
 
     std::uint8_t byte() {
-        if (at_ == bytes_.size()) refuse("draco.header", "the Draco mesh ends in its header");
+        if (at_ == bytes_.size())
+            refuse("draco.header", "the Draco mesh ends in its header", at_byte("draco", kHeaderBytes + at_));
         return bytes_[at_++];
     }
     // LEB128, at most 32 bits.
@@ -68,7 +69,8 @@ class HeaderReader {
             value |= std::uint64_t{b & 127u} << shift;
             if (b < 128) return value;
         }
-        refuse("draco.header", "a number in the Draco mesh's header is longer than 32 bits");
+        refuse("draco.header", "a number in the Draco mesh's header is longer than 32 bits",
+               at_byte("draco", kHeaderBytes + at_));
     }
 
   private:
@@ -78,16 +80,18 @@ class HeaderReader {
 
 Header read_header(std::span<const std::uint8_t> bytes) {
     if (bytes.size() < kHeaderBytes || !std::equal(bytes.begin(), bytes.begin() + 5, "DRACO"))
-        refuse("draco.header", "the mesh does not start with DRACO");
+        refuse("draco.header", "the mesh does not start with DRACO", at_byte("draco", 0));
     if (bytes[5] != draco::kDracoMeshBitstreamVersionMajor ||
         bytes[6] != draco::kDracoMeshBitstreamVersionMinor)
-        refuse("draco.header",
-               cat("Draco bitstream version ", int{bytes[5]}, ".", int{bytes[6]}, ", expected 2.2"));
+        refuse("draco.version",
+               cat("Draco bitstream version ", int{bytes[5]}, ".", int{bytes[6]}, ", expected 2.2"),
+               at_byte("draco", 5));
     if (bytes[7] != draco::TRIANGULAR_MESH || bytes[8] > draco::MESH_EDGEBREAKER_ENCODING)
-        refuse("draco.header", "the Draco data is not a triangle mesh of a known method");
+        refuse("draco.header", "the Draco data is not a triangle mesh of a known method",
+               at_byte("draco", 7));
     // Metadata has nested sizes of its own and nothing that a container needs.
     if (bytes[9] != 0 || bytes[10] != 0)
-        refuse("draco.header", "the Draco mesh has metadata or unknown flags");
+        refuse("draco.metadata", "the Draco mesh has metadata or unknown flags", at_byte("draco", 9));
 
     HeaderReader in(bytes.subspan(kHeaderBytes));
     Header header{bytes[8], 0, 0, 0};
@@ -130,7 +134,7 @@ class GuardedDecoder : public Decoder {
 };
 
 template <typename Decoder>
-std::unique_ptr<draco::Mesh> decode_with(std::span<const std::uint8_t> bytes) {
+std::unique_ptr<draco::Mesh> decode_with(std::span<const std::uint8_t> bytes, Findings& findings) {
     draco::DecoderBuffer buffer;
     buffer.Init(reinterpret_cast<const char*>(bytes.data()), bytes.size());
     auto mesh = std::make_unique<draco::Mesh>();
@@ -140,6 +144,9 @@ std::unique_ptr<draco::Mesh> decode_with(std::span<const std::uint8_t> bytes) {
         refuse("draco.data",
                cat("Draco cannot decode the mesh: ",
                    status.error_msg_string().empty() ? "broken data" : status.error_msg_string()));
+    if (buffer.remaining_size() > 0)
+        findings.add("draco.tail", cat(buffer.remaining_size(), " bytes after the mesh"),
+                     at_byte("draco", static_cast<std::uint64_t>(buffer.decoded_size())));
     return mesh;
 }
 
@@ -160,9 +167,11 @@ void copy_values(const draco::Mesh& mesh, std::uint32_t unique_id, draco::Geomet
 }
 
 // A mesh whose header has been looked at.
-StoredMesh decode(std::span<const std::uint8_t> bytes, const DracoAttributeIds& ids, bool edgebreaker) {
-    const std::unique_ptr<draco::Mesh> mesh = edgebreaker ? decode_with<draco::MeshEdgebreakerDecoder>(bytes)
-                                                          : decode_with<draco::MeshSequentialDecoder>(bytes);
+StoredMesh decode(std::span<const std::uint8_t> bytes, const DracoAttributeIds& ids, bool edgebreaker,
+                  Findings& findings) {
+    const std::unique_ptr<draco::Mesh> mesh =
+        edgebreaker ? decode_with<draco::MeshEdgebreakerDecoder>(bytes, findings)
+                    : decode_with<draco::MeshSequentialDecoder>(bytes, findings);
     StoredMesh out;
     copy_values(*mesh, ids.position, draco::GeometryAttribute::POSITION, out.position);
     copy_values(*mesh, ids.color, draco::GeometryAttribute::COLOR, out.color);
@@ -205,7 +214,8 @@ DracoMesh encode_draco_mesh(const StoredMesh& mesh, DracoMode mode) {
     if (!status.ok())
         throw Error(ErrorCode::kInternal, cat("Draco cannot encode the mesh: ", status.error_msg_string()));
     DracoMesh result{{buffer.data(), buffer.data() + buffer.size()}, {}};
-    result.decoded = decode(result.bytes, ids, mode == DracoMode::kEdgebreaker);
+    Findings findings = Findings::strict();
+    result.decoded = decode(result.bytes, ids, mode == DracoMode::kEdgebreaker, findings);
     return result;
 }
 
@@ -215,7 +225,7 @@ DracoMode draco_mode(std::span<const std::uint8_t> bytes) {
 }
 
 StoredMesh decode_draco_mesh(std::span<const std::uint8_t> bytes, const DracoAttributeIds& ids,
-                             std::uint64_t vertices, std::uint64_t faces) {
+                             std::uint64_t vertices, std::uint64_t faces, Findings& findings) {
     const Header header = read_header(bytes);
     // Edgebreaker may split vertices but not merge them; each face has three.
     const bool edgebreaker = header.method == draco::MESH_EDGEBREAKER_ENCODING;
@@ -225,11 +235,17 @@ StoredMesh decode_draco_mesh(std::span<const std::uint8_t> bytes, const DracoAtt
                                   " faces, expected ", vertices, " and ", faces));
     if (header.seams > 1) refuse("draco.attributes", "more attributes than POSITION and COLOR");
 
-    StoredMesh mesh = decode(bytes, ids, edgebreaker);
+    StoredMesh mesh = decode(bytes, ids, edgebreaker, findings);
     if (mesh.faces.size() != faces || mesh.position.size() != vertices)
         refuse("mesh.counts", cat("the decoded mesh has ", mesh.position.size(), " vertices and ",
                                   mesh.faces.size(), " faces, expected ", vertices, " and ", faces));
     return mesh;
+}
+
+StoredMesh decode_draco_mesh(std::span<const std::uint8_t> bytes, const DracoAttributeIds& ids,
+                             std::uint64_t vertices, std::uint64_t faces) {
+    Findings findings = Findings::strict();
+    return decode_draco_mesh(bytes, ids, vertices, faces, findings);
 }
 
 }  // namespace imgmesh

@@ -10,6 +10,8 @@
 
 namespace imgmesh {
 
+class Findings;
+
 /// The unique ids of the two attributes in what encode_draco_mesh writes.
 struct DracoAttributeIds {
     std::uint32_t position = 0;
@@ -36,6 +38,8 @@ DracoMode draco_mode(std::span<const std::uint8_t> bytes);
 /// compared with `vertices` and `faces` before memory is taken. Indices are in range; positions and colours
 /// are whatever is stored. Throws FindingError.
 StoredMesh decode_draco_mesh(std::span<const std::uint8_t> bytes, const DracoAttributeIds& ids,
-                             std::uint64_t vertices, std::uint64_t faces);
+                             std::uint64_t vertices, std::uint64_t faces, Findings& findings);
+StoredMesh decode_draco_mesh(std::span<const std::uint8_t> bytes, const DracoAttributeIds& ids,
+                             std::uint64_t vertices, std::uint64_t faces);  ///< strict findings
 
 }  // namespace imgmesh

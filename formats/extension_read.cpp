@@ -31,21 +31,23 @@ SourceInfo read_image_member(const json& image, const ContainerLimits& limits) {
 
     const std::string space = string_member(image, "colorSpace", "ext.member");
     const auto color_space = parse_color_space(space);
-    if (!color_space) refuse("ext.member", cat("unknown colorSpace ", space));
+    if (!color_space) refuse("ext.value", cat("unknown colorSpace ", space), at_pointer("colorSpace"));
     source.color_space = *color_space;
 
     const std::string sample = string_member(image, "sampleType", "ext.member");
     const auto type = std::find(std::begin(kSampleTypes), std::end(kSampleTypes), sample);
-    if (type == std::end(kSampleTypes)) refuse("ext.member", cat("unknown sampleType ", sample));
+    if (type == std::end(kSampleTypes))
+        refuse("ext.value", cat("unknown sampleType ", sample), at_pointer("sampleType"));
     source.sample_type = static_cast<SampleType>(type - std::begin(kSampleTypes));
 
     const json& channels = member(image, "channels", "ext.member");
     if (!channels.is_array() || channels.empty() || channels.size() > kMaxChannels ||
         !std::all_of(channels.begin(), channels.end(), [](const json& c) { return c.is_string(); }))
-        refuse("ext.member", cat("\"channels\" is not an array of 1 to ", kMaxChannels, " names"));
+        refuse("ext.member", cat("\"channels\" is not an array of 1 to ", kMaxChannels, " names"),
+               at_pointer("channels"));
     source.channel_names = channels.get<std::vector<std::string>>();
     const json& mask = member(image, "hasMask", "ext.member");
-    if (!mask.is_boolean()) refuse("ext.member", "\"hasMask\" is not true or false");
+    if (!mask.is_boolean()) refuse("ext.member", "\"hasMask\" is not true or false", at_pointer("hasMask"));
     source.has_mask = mask.get<bool>();
     return source;
 }
@@ -65,7 +67,8 @@ void read_build_member(const json& build, Asset& asset) {
             asset.parameters.emplace_back(name, value.get<std::int64_t>());
         else
             refuse("ext.member",
-                   cat("the build parameter \"", name, "\" is not a number, a string or a boolean"));
+                   cat("the build parameter \"", name, "\" is not a number, a string or a boolean"),
+                   at_pointer(pointer_token(name)));
     }
 }
 
@@ -78,17 +81,19 @@ AssetLevel read_level_member(const json& extension, const SourceInfo& source, co
         static_cast<std::uint64_t>(limits.max_faces),
         2 * static_cast<std::uint64_t>(source.width) * static_cast<std::uint64_t>(source.height));
     if (level.faces < 1 || level.faces > most)
-        refuse("limits.faces", cat("a mesh of ", level.faces, " faces, expected 1 to ", most));
+        refuse("limits.faces", cat("a mesh of ", level.faces, " faces, expected 1 to ", most),
+               at_pointer("faces"));
     if (level.vertices < 3 || level.vertices > 3 * level.faces)
-        refuse("mesh.counts", cat("a mesh of ", level.vertices, " vertices and ", level.faces, " faces"));
+        refuse("mesh.counts", cat("a mesh of ", level.vertices, " vertices and ", level.faces, " faces"),
+               at_pointer("vertices"));
     const json& error = member(extension, "error", "ext.member");
     if (!error.is_number() || !(error.get<double>() >= 0))
-        refuse("ext.member", "\"error\" is not a number >= 0");
+        refuse("ext.member", "\"error\" is not a number >= 0", at_pointer("error"));
     level.error = error.get<double>();
     level.topology = string_member(extension, "topology", "ext.member");
     if (level.topology.size() != 64 ||
         level.topology.find_first_not_of("0123456789abcdef") != std::string::npos)
-        refuse("ext.member", "\"topology\" is not a SHA-256 in lower-case hex");
+        refuse("ext.member", "\"topology\" is not a SHA-256 in lower-case hex", at_pointer("topology"));
     return level;
 }
 

@@ -4,7 +4,7 @@
 #include <cstring>
 #include <limits>
 
-#include "formats/finding_codes.h"
+#include "formats/findings.h"
 #include "libcore/base/error.h"
 
 namespace imgmesh {
@@ -55,32 +55,39 @@ std::vector<std::uint8_t> pack_glb(std::string_view json, std::span<const std::u
     return bytes;
 }
 
-GlbView unpack_glb(std::span<const std::uint8_t> bytes) {
+GlbView unpack_glb(std::span<const std::uint8_t> bytes, Findings& findings) {
     if (!is_glb(bytes) || bytes.size() < kHeaderBytes || number(bytes, 4) != 2)
-        refuse("glb.header", "not a glTF 2.0 binary file");
+        refuse("glb.header", "not a glTF 2.0 binary file", at_byte("file", 0));
     if (number(bytes, 8) != bytes.size())
-        refuse("glb.length",
-               cat("the header says ", number(bytes, 8), " bytes, the file has ", bytes.size()));
+        findings.add("glb.length",
+                     cat("the header says ", number(bytes, 8), " bytes, the file has ", bytes.size()),
+                     at_byte("file", 8));
     GlbView view;
     bool has_json = false, has_binary = false;
     for (std::size_t at = kHeaderBytes; at < bytes.size();) {
-        if (bytes.size() - at < kChunkHeaderBytes) refuse("glb.chunk", "the file ends in a chunk's header");
+        if (bytes.size() - at < kChunkHeaderBytes)
+            refuse("glb.chunk", "the file ends in a chunk's header", at_byte("file", at));
         const std::uint32_t length = number(bytes, at), type = number(bytes, at + 4);
         at += kChunkHeaderBytes;
         if (length > bytes.size() - at)
-            refuse("glb.chunk", cat("a chunk of ", length, " bytes, ", bytes.size() - at, " are left"));
+            refuse("glb.chunk", cat("a chunk of ", length, " bytes, ", bytes.size() - at, " are left"),
+                   at_byte("file", at));
+        if (length % 4 != 0)
+            findings.add("glb.padding", cat("a chunk of ", length, " bytes"), at_byte("file", at));
         const auto content = bytes.subspan(at, length);
         if (!has_json) {
-            if (type != kJson) refuse("glb.chunk", "the first chunk is not JSON");
+            if (type != kJson) refuse("glb.chunk", "the first chunk is not JSON", at_byte("file", at));
             view.json = {reinterpret_cast<const char*>(content.data()), content.size()};
             has_json = true;
         } else if (type == kBinary && !has_binary) {
             view.binary = content;
             has_binary = true;
+        } else {
+            findings.add("glb.unknown_chunk", cat("a chunk of type ", type), at_byte("file", at));
         }
         at += length;
     }
-    if (!has_json) refuse("glb.chunk", "no JSON chunk");
+    if (!has_json) refuse("glb.chunk", "no JSON chunk", at_byte("file", kHeaderBytes));
     return view;
 }
 

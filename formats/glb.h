@@ -8,6 +8,8 @@
 
 namespace imgmesh {
 
+class Findings;
+
 struct GlbView {
     std::string_view json;
     std::span<const std::uint8_t> binary;  ///< empty without a binary chunk
@@ -20,6 +22,6 @@ bool is_glb(std::span<const std::uint8_t> bytes);
 std::vector<std::uint8_t> pack_glb(std::string_view json, std::span<const std::uint8_t> binary);
 
 /// Views into `bytes`. Unknown chunks are skipped. Throws FindingError.
-GlbView unpack_glb(std::span<const std::uint8_t> bytes);
+GlbView unpack_glb(std::span<const std::uint8_t> bytes, Findings& findings);
 
 }  // namespace imgmesh

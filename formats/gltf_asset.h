@@ -13,6 +13,8 @@
 
 namespace imgmesh {
 
+class Findings;
+
 /// Bytes of the asset's one buffer.
 struct ByteRange {
     std::uint64_t offset = 0;
@@ -31,7 +33,15 @@ struct AssetLevel {
     ByteRange draco;  ///< is_draco: the bitstream and its attributes
     DracoAttributeIds ids;
     ByteRange indices, positions, colors;  ///< else: uint32, 3 float32, 4 uint16, tightly packed
+    bool is_sound = true;  ///< false only for a validator: all but the node's index is unknown
     bool operator==(const AssetLevel&) const = default;
+};
+
+/// Where a level stands in the document.
+struct LevelPlace {
+    std::uint64_t node = 0, mesh = 0;
+    /// A JSON pointer to the primitive, or to the member of its Draco extension.
+    std::string pointer;
 };
 
 struct Asset {
@@ -44,6 +54,13 @@ struct Asset {
     std::string buffer_name;  ///< the file beside; empty for a .glb's binary chunk
     ByteRange layers;         ///< the EXR in the buffer, where `layers_name` is empty
     std::string layers_name;  ///< or its file beside
+
+    std::vector<LevelPlace> places;  ///< of the levels, as read
+    // What a validator may go on with; always true for a reader.
+    bool has_size = true;    ///< of the picture
+    bool has_levels = true;  ///< it is known how many there are
+    bool has_layers = true;  ///< it is known where the EXR is
+    bool has_buffer = true;  ///< likewise
 };
 
 /// The name of level k's node and EXR part.
@@ -53,7 +70,9 @@ std::string level_name(std::size_t k);
 std::string json_from_asset(const Asset& asset);
 
 /// The inverse. Every number is checked: sizes against `limits`, counts against each other, ranges against
-/// buffer_length. Safe for any text. Throws FindingError.
-Asset asset_from_json(std::string_view json, const ContainerLimits& limits);
+/// buffer_length. Safe for any text. Throws FindingError where `findings` does, or nothing can be said about
+/// the rest.
+Asset asset_from_json(std::string_view json, const ContainerLimits& limits, Findings& findings);
+Asset asset_from_json(std::string_view json, const ContainerLimits& limits);  ///< strict findings
 
 }  // namespace imgmesh

@@ -9,33 +9,18 @@
 
 #include "formats/extension_read.h"
 #include "formats/file_uri.h"
-#include "formats/finding_codes.h"
+#include "formats/findings.h"
+#include "formats/gltf_advice.h"
 #include "formats/gltf_asset.h"
 #include "formats/gltf_names.h"
 #include "formats/json_members.h"
+#include "formats/json_parse.h"
 #include "libcore/base/error.h"
 
 namespace imgmesh {
 namespace {
 
 using nlohmann::json;
-
-// A container's JSON has some kilobytes; a DOM of other content takes twenty times its text.
-constexpr std::size_t kMaxJsonBytes = std::size_t{64} << 20;
-
-json parse(std::string_view text, int max_depth) {
-    if (text.size() > kMaxJsonBytes)
-        refuse("limits.bytes", cat("JSON of ", text.size(), " bytes, at most ", kMaxJsonBytes));
-    const auto guard = [&](int depth, json::parse_event_t, json&) {
-        if (depth > max_depth) refuse("json.depth", cat("nested deeper than ", max_depth));
-        return true;
-    };
-    try {
-        return json::parse(text.begin(), text.end(), guard);
-    } catch (const json::exception& error) {
-        refuse("json.syntax", error.what());
-    }
-}
 
 // ---- The glTF part
 // --------------------------------------------------------------------------------------------
@@ -44,21 +29,26 @@ void check_integers(const json& value, const char* where) {
         const bool fits = value.is_number_unsigned()
                               ? value.get<std::uint64_t>() <= std::numeric_limits<int>::max()
                               : value.get<std::int64_t>() >= std::numeric_limits<int>::min();
-        if (!fits) refuse("gltf.range", cat("a number in \"", where, "\" has more than 32 bits"));
+        if (!fits)
+            refuse("gltf.integer", cat("a number in \"", where, "\" has more than 32 bits"),
+                   at_pointer(cat('/', where)));
     } else if (value.is_structured()) {
         for (const json& item : value) check_integers(item, where);
     }
 }
 
 void check_version(const json& document) {
-    if (!document.is_object()) refuse("gltf.structure", "the document is not a JSON object");
     const json& asset = member(document, "asset", "gltf.structure");
     const std::string version = string_member(asset, "version", "gltf.structure");
     if (!version.starts_with("2.")) refuse("gltf.version", cat("glTF version ", version, ", expected 2.0"));
+}
+
+void check_required(const json& document, Findings& findings) {
     if (const json* required = find(document, "extensionsRequired"))
         for (const json& name : *required)
             if (name != kDraco && name != kUnlit && name != kPixelMap)
-                refuse("gltf.required", cat("the asset requires the extension ", name.dump()));
+                findings.add("gltf.required", cat("the asset requires the extension ", name.dump()),
+                             at_pointer("/extensionsRequired"));
 }
 
 tinygltf::Model load_model(const json& document) {
@@ -98,10 +88,13 @@ const T& at(const std::vector<T>& items, int index, const char* what) {
 
 ByteRange view_range(const tinygltf::Model& model, std::uint64_t index, std::uint64_t buffer_length) {
     const tinygltf::BufferView& view = at(model.bufferViews, index, "bufferView");
-    if (view.buffer != 0) refuse("gltf.index", cat("buffer ", view.buffer, " of 1"));
+    const std::string pointer = cat("/bufferViews/", index);
+    if (view.buffer != 0) refuse("gltf.index", cat("buffer ", view.buffer, " of 1"), at_pointer(pointer));
     if (view.byteOffset > buffer_length || view.byteLength > buffer_length - view.byteOffset)
-        refuse("gltf.range", cat("bufferView ", index, " covers ", view.byteLength, " bytes from ",
-                                 view.byteOffset, ", the buffer has ", buffer_length));
+        refuse("gltf.range",
+               cat("bufferView ", index, " covers ", view.byteLength, " bytes from ", view.byteOffset,
+                   ", the buffer has ", buffer_length),
+               at_pointer(pointer));
     return {view.byteOffset, view.byteLength};
 }
 
@@ -119,12 +112,14 @@ constexpr Element kColors = {"COLOR_0", TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT, 
 const tinygltf::Accessor& checked_accessor(const tinygltf::Model& model, std::uint64_t index,
                                            const Element& want, std::uint64_t count) {
     const tinygltf::Accessor& accessor = at(model.accessors, index, "accessor");
+    const Place place = at_pointer(cat("/accessors/", index));
     if (accessor.componentType != want.component || accessor.type != want.type ||
         accessor.normalized != want.normalized || accessor.sparse.isSparse)
-        refuse("mesh.accessor", cat("the accessor of ", want.name, " has another type"));
+        refuse("mesh.accessor", cat("the accessor of ", want.name, " has another type"), place);
     if (accessor.count != count)
         refuse("mesh.counts",
-               cat("the accessor of ", want.name, " has ", accessor.count, " items, expected ", count));
+               cat("the accessor of ", want.name, " has ", accessor.count, " items, expected ", count),
+               place);
     return accessor;
 }
 
@@ -144,7 +139,7 @@ ByteRange accessor_range(const tinygltf::Model& model, const tinygltf::Accessor&
 std::uint64_t attribute_index(const tinygltf::Primitive& primitive, const char* name) {
     const auto it = primitive.attributes.find(name);
     if (it == primitive.attributes.end() || it->second < 0)
-        refuse("gltf.structure", cat("the mesh has no attribute ", name));
+        refuse("gltf.attribute", cat("the mesh has no attribute ", name));
     return static_cast<std::uint64_t>(it->second);
 }
 
@@ -153,12 +148,12 @@ void read_primitive(const json& document, const tinygltf::Model& model, int mesh
                     std::uint64_t buffer_length, AssetLevel& level) {
     const tinygltf::Mesh& mesh = at(model.meshes, mesh_index, "mesh");
     if (mesh.primitives.size() != 1 || mesh.primitives[0].mode != TINYGLTF_MODE_TRIANGLES)
-        refuse("gltf.structure", cat("mesh ", mesh_index, " is not one primitive of triangles"));
+        refuse("gltf.primitive", cat("mesh ", mesh_index, " is not one primitive of triangles"));
     const tinygltf::Primitive& primitive = mesh.primitives[0];
     // tinygltf drops what it does not take for a primitive.
     const json& sources = document["meshes"][static_cast<std::size_t>(mesh_index)]["primitives"];
     if (sources.size() != 1)
-        refuse("gltf.structure", cat("mesh ", mesh_index, " has something else than a primitive"));
+        refuse("gltf.primitive", cat("mesh ", mesh_index, " has something else than a primitive"));
     const json& source = sources[0];
     const auto& indices = checked_accessor(model, unsigned_member(source, "indices", "gltf.structure"),
                                            kIndices, 3 * level.faces);
@@ -191,7 +186,7 @@ void read_primitive(const json& document, const tinygltf::Model& model, int mesh
 }
 
 void read_levels(const json& document, const tinygltf::Model& model, const ContainerLimits& limits,
-                 Asset& asset) {
+                 Findings& findings, Asset& asset) {
     std::vector<std::pair<std::string, std::size_t>> parts;  // part, node
     const json& nodes = document["nodes"];
     const auto extension = [&](std::size_t node) {
@@ -208,48 +203,82 @@ void read_levels(const json& document, const tinygltf::Model& model, const Conta
             std::find_if(parts.begin(), parts.end(), [&](const auto& p) { return p.first == level_name(k); });
         if (part == parts.end())
             refuse("ext.level", cat("no node has the part ", level_name(k), " of ", parts.size(), " levels"));
-        AssetLevel level = read_level_member(*extension(part->second), asset.source, limits);
-        read_primitive(document, model, model.nodes[part->second].mesh, asset.buffer_length, level);
+        const std::size_t node = part->second;
+        const int mesh = model.nodes[node].mesh;
+        const std::string at_node = cat("/nodes/", node), at_mesh = cat("/meshes/", mesh);
+        AssetLevel level;
+        level.is_sound = findings.attempt(cat(at_node, "/extensions/", kPixelMap), [&] {
+            level = read_level_member(*extension(node), asset.source, limits);
+        }) && findings.attempt(mesh < 0 ? at_node : at_mesh, [&] {
+            read_primitive(document, model, mesh, asset.buffer_length, level);
+        });
         asset.levels.push_back(std::move(level));
+        asset.places.push_back({node, static_cast<std::uint64_t>(std::max(mesh, 0)), at_mesh});
     }
 }
 
-}  // namespace
+void read_layers_member(const json& layers, const tinygltf::Model& model, Asset& asset) {
+    if (string_member(layers, "mimeType", "ext.member") != kLayersMimeType)
+        refuse("ext.value", cat("the layers are not of type ", kLayersMimeType), at_pointer("mimeType"));
+    if (layers.contains("uri") == layers.contains("bufferView"))
+        refuse("ext.layers", "the layers have not either a uri or a bufferView");
+    if (layers.contains("uri"))
+        asset.layers_name = name_from_uri(string_member(layers, "uri", "ext.member"));
+    else
+        asset.layers =
+            view_range(model, unsigned_member(layers, "bufferView", "ext.member"), asset.buffer_length);
+}
 
-Asset asset_from_json(std::string_view text, const ContainerLimits& limits) {
-    const json document = parse(text, limits.max_json_depth);
-    check_version(document);
-    const json* extensions = find(document, "extensions");
-    const json* root = extensions ? find(*extensions, kPixelMap) : nullptr;
-    if (!root) refuse("ext.missing", cat("the asset has no extension ", kPixelMap));
-
-    Asset asset;
-    asset.version = string_member(*root, "version", "ext.member");
-    if (!asset.version.starts_with("1."))
-        refuse("ext.version", cat(kPixelMap, " version ", asset.version, ", expected 1.x"));
-    asset.source = read_image_member(member(*root, "image", "ext.member"), limits);
-    read_build_member(member(*root, "build", "ext.member"), asset);
-
+void read_buffer(const json& document, Asset& asset) {
     const json& buffers = member(document, "buffers", "gltf.buffer");
     if (!buffers.is_array() || buffers.size() != 1)
         refuse("gltf.buffer", cat(buffers.size(), " buffers, expected one"));
     asset.buffer_length = unsigned_member(buffers[0], "byteLength", "gltf.buffer");
     if (find(buffers[0], "uri"))
         asset.buffer_name = name_from_uri(string_member(buffers[0], "uri", "gltf.buffer"));
+}
+
+}  // namespace
+
+Asset asset_from_json(std::string_view text, const ContainerLimits& limits, Findings& findings) {
+    const json document = parse_json(text, limits.max_json_depth, findings);
+    if (!document.is_object()) refuse("gltf.structure", "the document is not a JSON object");
+    findings.attempt("/asset", [&] { check_version(document); });
+    check_required(document, findings);
+    const json* extensions = find(document, "extensions");
+    const json* root = extensions ? find(*extensions, kPixelMap) : nullptr;
+    if (!root) refuse("ext.missing", cat("the asset has no extension ", kPixelMap));
+
+    Asset asset;
+    const std::string at_root = cat("/extensions/", kPixelMap);
+    findings.attempt(at_root, [&] {
+        asset.version = string_member(*root, "version", "ext.member");
+        if (!asset.version.starts_with("1."))
+            refuse("ext.version", cat(kPixelMap, " version ", asset.version, ", expected 1.x"),
+                   at_pointer("version"));
+    });
+    asset.has_size = findings.attempt(at_root + "/image", [&] {
+        asset.source = read_image_member(member(*root, "image", "ext.member"), limits);
+    });
+    findings.attempt(at_root + "/build",
+                     [&] { read_build_member(member(*root, "build", "ext.member"), asset); });
+    asset.has_buffer = findings.attempt("/buffers", [&] { read_buffer(document, asset); });
 
     const tinygltf::Model model = load_model(document);
-    const json& layers = member(*root, "layers", "ext.member");
-    if (string_member(layers, "mimeType", "ext.member") != kLayersMimeType)
-        refuse("ext.member", cat("the layers are not of type ", kLayersMimeType));
-    if (layers.contains("uri") == layers.contains("bufferView"))
-        refuse("ext.member", "the layers have not either a uri or a bufferView");
-    if (layers.contains("uri"))
-        asset.layers_name = name_from_uri(string_member(layers, "uri", "ext.member"));
-    else
-        asset.layers =
-            view_range(model, unsigned_member(layers, "bufferView", "ext.member"), asset.buffer_length);
-    read_levels(document, model, limits, asset);
+    asset.has_layers = findings.attempt(at_root + "/layers", [&] {
+        const json& layers = member(*root, "layers", "ext.member");
+        if (asset.has_buffer || layers.contains("uri")) read_layers_member(layers, model, asset);
+    });
+    asset.has_levels = asset.has_size && asset.has_buffer && findings.attempt("/nodes", [&] {
+        read_levels(document, model, limits, findings, asset);
+    });
+    if (findings.collects()) advise_on_gltf(document, asset, findings);
     return asset;
+}
+
+Asset asset_from_json(std::string_view text, const ContainerLimits& limits) {
+    Findings findings = Findings::strict();
+    return asset_from_json(text, limits, findings);
 }
 
 }  // namespace imgmesh

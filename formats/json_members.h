@@ -23,14 +23,22 @@ inline const nlohmann::json& member(const nlohmann::json& object, const char* na
 
 inline std::uint64_t unsigned_member(const nlohmann::json& object, const char* name, FindingCode code) {
     const nlohmann::json& value = member(object, name, code);
-    if (!value.is_number_unsigned()) refuse(code, cat("\"", name, "\" is not a whole number >= 0"));
+    if (!value.is_number_unsigned())
+        refuse(code, cat("\"", name, "\" is not a whole number >= 0"), at_pointer(name));
     return value.get<std::uint64_t>();
 }
 
 inline std::string string_member(const nlohmann::json& object, const char* name, FindingCode code) {
     const nlohmann::json& value = member(object, name, code);
-    if (!value.is_string()) refuse(code, cat("\"", name, "\" is not a string"));
+    if (!value.is_string()) refuse(code, cat("\"", name, "\" is not a string"), at_pointer(name));
     return value.get<std::string>();
+}
+
+/// A member's name as a token of a JSON pointer.
+inline std::string pointer_token(const std::string& name) {
+    std::string token;
+    for (const char c : name) token += c == '~' ? "~0" : c == '/' ? "~1" : std::string(1, c);
+    return token;
 }
 
 }  // namespace imgmesh

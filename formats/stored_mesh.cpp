@@ -8,7 +8,7 @@
 #include <memory>
 #include <numeric>
 
-#include "formats/finding_codes.h"
+#include "formats/findings.h"
 #include "libcore/base/error.h"
 #include "libcore/image/color.h"
 
@@ -90,34 +90,51 @@ StoredMesh stored_from_base(const BaseMesh& mesh) {
     return stored;
 }
 
-BaseMesh base_from_stored(const StoredMesh& mesh) {
+BaseMesh base_from_stored(const StoredMesh& mesh, Findings& findings) {
+    Repeated off_grid(findings, "mesh.position"), alphas(findings, "mesh.color"),
+        indices(findings, "mesh.index"), turned(findings, "mesh.orientation");
     BaseMesh base;
     base.position.reserve(mesh.position.size());
     base.feature.reserve(3 * mesh.position.size());
     for (std::size_t v = 0; v < mesh.position.size(); ++v) {
         const auto& [x, y, z] = mesh.position[v];
         if (!on_grid(x) || !on_grid(y) || z != 0)
-            refuse("mesh.position",
-                   cat("vertex ", v, " is at (", x, ",", y, ",", z, "), expected multiples of 1/32 below ",
-                       kMaxCoordinate, " and z = 0"));
+            off_grid.hit([&, &x = x, &y = y, &z = z] {
+                return std::pair(cat("vertex ", v, " is at (", x, ",", y, ",", z,
+                                     "), expected multiples of 1/32 below ", kMaxCoordinate, " and z = 0"),
+                                 Place());
+            });
         base.position.emplace_back(x, 0.0f - y);
         const auto& [red, green, blue, alpha] = mesh.color[v];
-        if (alpha != 65535) refuse("mesh.color", cat("vertex ", v, " has alpha ", alpha, ", expected 65535"));
+        if (alpha != 65535)
+            alphas.hit([&, &alpha = alpha] {
+                return std::pair(cat("vertex ", v, " has alpha ", alpha, ", expected 65535"), Place());
+            });
         const Vec3f luv = color_from_codes({red, green, blue});
         base.feature.insert(base.feature.end(), luv.data(), luv.data() + 3);
     }
     for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
         const Face& face = mesh.faces[f];
         const Id largest = *std::max_element(face.begin(), face.end());
-        if (largest >= mesh.position.size())
-            refuse("mesh.index",
-                   cat("face ", f, " has vertex ", largest, ", the mesh has ", mesh.position.size()));
+        if (largest >= mesh.position.size()) {
+            indices.hit([&] {
+                return std::pair(
+                    cat("face ", f, " has vertex ", largest, ", the mesh has ", mesh.position.size()),
+                    Place());
+            });
+            continue;
+        }
         const auto [a, b, c] = corners(base, face);
         if (!(signed_area2(a, b, c) > 0))
-            refuse("mesh.orientation", cat("face ", f, " has no area or runs clockwise"));
+            turned.hit([&] { return std::pair(cat("face ", f, " has no area or runs clockwise"), Place()); });
     }
     base.faces = mesh.faces;
     return base;
+}
+
+BaseMesh base_from_stored(const StoredMesh& mesh) {
+    Findings findings = Findings::strict();
+    return base_from_stored(mesh, findings);
 }
 
 std::string topology_hash(const StoredMesh& mesh) {

@@ -11,6 +11,8 @@
 
 namespace imgmesh {
 
+class Findings;
+
 /// Positions are (x, -y, 0) [pixels], colours linear RGB and alpha as 16-bit codes. Parallel arrays.
 struct StoredMesh {
     std::vector<std::array<float, 3>> position;
@@ -28,8 +30,10 @@ inline constexpr int kMaxCoordinate = 131072;
 /// cannot hold without loss: no faces, other features than three, an index out of range, a position off
 /// kPositionStep, a face without area.
 StoredMesh stored_from_base(const BaseMesh& mesh);
-/// The inverse. Throws FindingError for indices, positions, colours or faces that are not as they must be.
-BaseMesh base_from_stored(const StoredMesh& mesh);
+/// The inverse. Errors: indices, positions, colours or faces that are not as they must be; with collecting
+/// findings the result is of use only where there are none.
+BaseMesh base_from_stored(const StoredMesh& mesh, Findings& findings);
+BaseMesh base_from_stored(const StoredMesh& mesh);  ///< strict findings
 
 /// Hex SHA-256 over the indices (uint32) and then the positions (three float32 a vertex), little endian.
 std::string topology_hash(const StoredMesh& mesh);

@@ -1,10 +1,12 @@
 // imgmesh-info: what is in a container, and whether it is sound. Does not link OpenImageIO.
-#include <optional>
+#include <map>
 #include <ostream>
 
 #include "formats/container.h"
+#include "formats/validate.h"
 #include "libcore/image/color.h"
 #include "libcore/metrics/metrics.h"
+#include "tools/common/limits.h"
 #include "tools/common/names.h"
 #include "tools/common/options.h"
 #include "tools/common/text.h"
@@ -17,12 +19,17 @@ namespace {
 struct Options {
     std::string input;
     bool validate = false;
+    bool warnings_as_errors = false;
+    ContainerLimits limits;
 };
 
 void add_options(CLI::App& app, Options& o) {
     add_input(app, "CONTAINER", o.input, "Container to read (.glb, .gltf)");
-    app.add_flag("--validate", o.validate,
-                 "Only tell whether the container is sound, with the finding if not");
+    CLI::Option* const validate = app.add_flag(
+        "--validate", o.validate, "Only tell whether the container is sound, with every finding");
+    app.add_flag("--warnings-as-errors", o.warnings_as_errors, "With --validate: warnings fail it too")
+        ->needs(validate);
+    add_container_limits(app, o.limits);
 }
 
 Report mesh_report(const MeshQuality& q) {
@@ -87,32 +94,77 @@ Report facts_report(const Container& container) {
             {"build", build}};
 }
 
-// What the reader says of `input`, "input: [code] message", in its parts; nothing where it could not be read.
-std::optional<Report> finding_of(const std::string& input, const std::string& text) {
-    const std::string head = input + ": [";
-    const std::size_t end = text.find("] ", head.size());
-    if (!text.starts_with(head) || end == std::string::npos) return {};
-    return Report{{"code", text.substr(head.size(), end - head.size())}, {"message", text.substr(end + 2)}};
+std::string severity_name(Severity severity) {
+    return severity == Severity::kError ? "error" : severity == Severity::kWarning ? "warning" : "info";
+}
+
+Report place_report(const Place& place) {
+    Report report = Report::object();
+    if (!place.pointer.empty()) report["pointer"] = place.pointer;
+    if (!place.part.empty()) report["part"] = place.part;
+    if (!place.channel.empty()) report["channel"] = place.channel;
+    if (place.pixel) report["pixel"] = {place.pixel->first, place.pixel->second};
+    if (place.byte) report.update({{"byte", *place.byte}, {"bytes_of", place.bytes_of}});
+    return report;
+}
+
+// The verdict; the first finding that counts as an error becomes the run's failure, as a reader tells it.
+Report validate(const Options& o, Context& context) {
+    std::map<Severity, std::uint64_t> counts;
+    Report findings = Report::array();
+    for (const Issue& issue : validate_container(o.input, o.limits)) {
+        const Finding& finding = *issue.finding;
+        ++counts[finding.severity];
+        const bool fails = finding.severity == Severity::kError ||
+                           (o.warnings_as_errors && finding.severity == Severity::kWarning);
+        if (fails && context.failures.empty())
+            context.failures.push_back({finding.error, cat(o.input, ": [", finding.code, "] ", issue.text)});
+        findings.push_back({{"code", finding.code},
+                            {"severity", severity_name(finding.severity)},
+                            {"message", issue.text},
+                            {"place", place_report(issue.place)},
+                            {"count", issue.count}});
+    }
+    return {{"valid", context.failures.empty()},
+            {"errors", counts[Severity::kError]},
+            {"warnings", counts[Severity::kWarning]},
+            {"infos", counts[Severity::kInfo]},
+            {"findings", findings}};
 }
 
 Report run(const Options& o, Context& context) {
     Report report = {{"input", o.input}};
-    if (!o.validate) {
-        report.update(facts_report(read_container(o.input)));
-        return report;
-    }
-    Report findings = Report::array();
-    try {
-        read_container(o.input);
-    } catch (const Error& e) {
-        const std::optional<Report> finding = finding_of(o.input, e.what());
-        if (!finding) throw;
-        context.failures.push_back({e.code(), e.what()});
-        findings.push_back(*finding);
-    }
-    report["valid"] = findings.empty();
-    report["findings"] = findings;
+    report.update(o.validate ? validate(o, context) : facts_report(read_container(o.input, o.limits)));
     return report;
+}
+
+std::string place_line(const Report& place) {
+    std::string text;
+    const auto append = [&](const std::string& item) { text += (text.empty() ? "" : ", ") + item; };
+    for (const char* name : {"pointer", "part", "channel"})
+        if (place.contains(name))
+            append((name == std::string("pointer") ? "" : cat(name, " ")) + place[name].get<std::string>());
+    if (place.contains("pixel")) append(cat("pixel ", place["pixel"][0], ",", place["pixel"][1]));
+    if (place.contains("byte"))
+        append(cat("byte ", place["byte"], " of the ", place["bytes_of"].get<std::string>()));
+    return text;
+}
+
+void print_verdict(const Report& report, std::ostream& out) {
+    out << printable_line(report["input"].get<std::string>()) << ": "
+        << (report["valid"] ? "valid" : "not valid");
+    if (!report["findings"].empty())
+        out << "; errors " << report["errors"] << ", warnings " << report["warnings"] << ", infos "
+            << report["infos"];
+    out << '\n';
+    for (const Report& f : report["findings"]) {
+        const std::string place = place_line(f["place"]);
+        std::string line = cat(f["severity"].get<std::string>(), " ", f["code"].get<std::string>(), ": ",
+                               f["message"].get<std::string>());
+        if (!place.empty()) line += cat(" [", place, "]");
+        if (f["count"] > 1) line += cat(" (", f["count"], " in all)");
+        out << "  " << printable_line(line) << '\n';
+    }
 }
 
 void print_level(const Report& level, std::ostream& out) {
@@ -135,12 +187,11 @@ void print_level(const Report& level, std::ostream& out) {
 }
 
 void print(const Report& report, std::ostream& out) {
-    const std::string input = printable_line(report["input"].get<std::string>());
     if (report.contains("valid")) {
-        // A finding is told as an error.
-        if (report["valid"]) out << input << ": valid\n";
+        print_verdict(report, out);
         return;
     }
+    const std::string input = printable_line(report["input"].get<std::string>());
     const auto text = [&](const char* key) { return report[key].get<std::string>(); };
     const auto bytes = [&](const char* part) {
         return format_bytes(report["bytes"][part].get<std::uint64_t>());

@@ -18,8 +18,12 @@ class Info(CliCase):
         """The finding of a broken container, which every tool refuses alike."""
         report = self.report("imgmesh-info", name, "--validate", code=code)
         self.assertFalse(report["valid"])
-        finding = report["findings"][0]
-        result = self.assert_error("imgmesh-info", [name, "--validate"], code, finding["code"], finding["message"])
+        finding = next(f for f in report["findings"] if f["severity"] == "error")
+        result = self.run_tool("imgmesh-info", name, "--validate")
+        self.assert_error_lines("imgmesh-info", result, code, 1)
+        for word in (finding["code"], finding["message"]):
+            self.assertIn(word, result.stderr)
+            self.assertIn(word, result.stdout)
         self.assertEqual(self.assert_error("imgmesh-info", [name], code).stderr, result.stderr)
         self.assert_error("imgmesh-reconstruct", [name, "-o", "out.png"], code, finding["code"])
         return finding
@@ -57,6 +61,38 @@ class Info(CliCase):
         for name in ("c.glb", "g.gltf"):
             self.assertEqual(self.run_ok("imgmesh-info", name, "--validate").stdout, f"{name}: valid\n")
             self.assertEqual(self.report("imgmesh-info", name, "--validate")["findings"], [])
+
+    def test_every_finding_and_its_place(self):
+        """Several defects at once, in the JSON and in the EXR of one container."""
+        def break_it(d):
+            d["extensions"]["IMGMESH_pixel_map"]["version"] = "2.0"
+            d["nodes"][0]["name"] = "x"
+            d["nodes"][0]["extensions"]["IMGMESH_pixel_map"]["topology"] = "0" * 64
+        report = self.report("imgmesh-info", self.edited(break_it), "--validate", code=5)
+        found = {f["code"]: f for f in report["findings"]}
+        self.assertEqual(set(found), {"ext.version", "gltf.names", "mesh.topology", "layers.topology"})
+        self.assertEqual((report["errors"], report["warnings"], report["infos"]), (3, 1, 0))
+        self.assertEqual(found["ext.version"]["place"], {"pointer": "/extensions/IMGMESH_pixel_map/version"})
+        self.assertEqual(found["mesh.topology"]["place"], {"pointer": "/meshes/0"})
+        self.assertEqual(found["layers.topology"]["place"], {"part": "lod0"})
+
+    def test_warnings(self):
+        name = self.edited(lambda d: d["nodes"][0].update(name="x"))
+        self.assertIn("warning gltf.names", self.run_ok("imgmesh-info", name, "--validate").stdout)
+        result = self.run_tool("imgmesh-info", name, "--validate", "--warnings-as-errors")
+        self.assert_error_lines("imgmesh-info", result, 4, 1)
+        self.assertIn("not valid", result.stdout)
+        self.assert_error("imgmesh-info", [name, "--warnings-as-errors"], 2, "--validate")
+
+    def test_limits(self):
+        size = (self.folder / "c.glb").stat().st_size
+        self.run_ok("imgmesh-info", "c.glb", "--max-bytes", size)
+        for option, value in (("--max-bytes", size - 1), ("--max-pixels", 48 * 32 - 1), ("--max-faces", 10),
+                              ("--max-json-depth", 2)):
+            self.assert_error("imgmesh-info", ["c.glb", option, value], 4, "[")
+            for wrong in ("0", "-1", "x", "1e3"):
+                self.assert_error("imgmesh-info", ["c.glb", option, wrong], 2, option, wrong)
+        self.assert_error("imgmesh-info", ["c.glb", "--max-levels", "0"], 2, "--max-levels")
 
     def test_truncated_anywhere(self):
         data = (self.folder / "c.glb").read_bytes()

@@ -1,0 +1,142 @@
+"""Faults while a container is replaced: whatever happens, the old one or the new one stands there, whole."""
+import os
+import pathlib
+import resource
+import signal
+import subprocess
+import tempfile
+import time
+
+import picture_files
+from support import BIN, CliCase, main
+
+NOBODY = 65534
+
+
+class Faults(CliCase):
+    def setUp(self):
+        super().setUp()
+        for name, seed in (("old.png", 1), ("new.png", 2)):
+            picture_files.png(self.folder / name, picture_files.noise(80, 60, seed=seed))
+        for name in ("c.glb", "c.gltf"):
+            self.run_ok("imgmesh-build", "old.png", "-o", name, "-q")
+            (self.folder / "alone").mkdir(exist_ok=True)
+            self.run_ok("imgmesh-build", "new.png", "-o", f"alone/{name}", "-q")
+
+    def picture(self, name):
+        """The picture that a container holds, which is valid and has no findings."""
+        report = self.report("imgmesh-info", name, "--validate")
+        self.assertEqual(report["findings"], [])
+        with tempfile.TemporaryDirectory() as folder:
+            self.run_ok("imgmesh-reconstruct", name, "-o", f"{folder}/x.ppm", "-q")
+            return pathlib.Path(folder, "x.ppm").read_bytes()
+
+    def start(self, name, **kwargs):
+        return subprocess.Popen([str(BIN / "imgmesh-build"), "new.png", "-o", name, "-q"], cwd=self.folder,
+                                stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, **kwargs)
+
+    def test_kill_at_any_moment(self):
+        old = {name: self.picture(name) for name in ("c.glb", "c.gltf")}
+        new = {name: self.picture(f"alone/{name}") for name in old}
+        before = set(self.files())
+        for name in old:
+            switched = 0
+            for attempt in range(12):
+                process = self.start(name)
+                if attempt % 2:  # as soon as another file stands in the folder: between the renames
+                    while process.poll() is None and set(os.listdir(self.folder)) <= before | {"alone"}:
+                        pass
+                    time.sleep(attempt * 0.0004)
+                else:
+                    time.sleep(0.01 * attempt)
+                process.send_signal(signal.SIGKILL)
+                process.wait(60)
+                picture = self.picture(name)
+                self.assertIn(picture, (old[name], new[name]))
+                switched += picture == new[name]
+                # A killed process leaves files behind, but under names of their own.
+                left = set(self.files()) - before
+                for file in left:
+                    self.assertRegex(file, r"^(\.imgmesh-.*|c(-[0-9a-f]{16})?\.(bin|exr))$")
+                # The next run is not kept from its work by them.
+                self.run_ok("imgmesh-build", "old.png", "-o", name, "-q")
+                self.assertEqual(self.picture(name), old[name])
+            self.assertLess(switched, 12, "never killed before the end")
+        self.assertEqual(self.picture("alone/c.gltf"), new["c.gltf"])
+
+    def test_replacing_leaves_one_set_of_files(self):
+        for picture in ("new.png", "old.png", "new.png", "new.png"):
+            self.run_ok("imgmesh-build", picture, "-o", "c.gltf", "-q")
+            files = sorted(f for f in self.files() if f.startswith("c") and not f.endswith(".glb"))
+            self.assertEqual(len(files), 3, files)
+            self.assertEqual(self.picture("c.gltf"), self.picture("alone/c.gltf") if picture == "new.png"
+                             else self.picture("c.glb"))
+
+    def test_ended_by_a_signal_leaves_nothing(self):
+        picture_files.png(self.folder / "new.png", picture_files.noise(500, 400))
+        before = self.files()
+        for name in ("c.glb", "c.gltf"):
+            for number in (signal.SIGTERM, signal.SIGINT, signal.SIGHUP):
+                process = self.start(name)
+                while process.poll() is None and set(self.files()) == set(before):
+                    pass
+                process.send_signal(number)
+                if process.wait(60) == -number:
+                    self.assertEqual(self.files(), before)
+                else:
+                    self.assertEqual(process.returncode, 0)
+                    self.run_ok("imgmesh-build", "old.png", "-o", name, "-q")
+
+    def test_full_disk_at_every_file(self):
+        """A limit on file size fails the first file that is longer, as a full disk does: the .bin, the .exr, the .glb."""
+        before = self.files()
+        sizes = sorted(len(data) for name, data in before.items() if name.startswith("alone/"))
+        for name in ("c.glb", "c.gltf"):
+            for size in [100, *(s - 1 for s in sizes)]:
+                limit = lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (size, size))
+                result = self.run_tool("imgmesh-build", "new.png", "-o", name, preexec_fn=limit)
+                if result.returncode == 0:  # longer than all files of this spelling
+                    self.run_ok("imgmesh-build", "old.png", "-o", name, "-q")
+                else:
+                    self.assert_error_lines("imgmesh-build", result, 3, 1)
+                    self.assertEqual(self.files(), before)
+
+    def test_full_disk(self):
+        """A file system of 64 kB, where one can be mounted."""
+        (self.folder / "disk").mkdir()
+        script = (f"mount -t tmpfs -o size=64k none disk && cp alone/c.gltf alone/c.bin alone/c.exr disk && "
+                  f"head -c 65536 /dev/zero > disk/filler; {BIN}/imgmesh-build old.png -o disk/c.gltf; echo $?; ls -A disk;"
+                  f"cmp disk/c.gltf alone/c.gltf && cmp disk/c.exr alone/c.exr && cmp disk/c.bin alone/c.bin && echo same")
+        result = subprocess.run(["unshare", "--mount", "--map-root-user", "sh", "-c", script], cwd=self.folder, text=True,
+                                capture_output=True, check=False)
+        if "mount" in result.stderr or "unshare" in result.stderr:
+            self.skipTest("no file system can be mounted here")
+        self.assertEqual(result.stdout.split(), ["3", "c.bin", "c.exr", "c.gltf", "filler", "same"], result.stderr)
+        self.assertIn("No space left", result.stderr)
+
+    def test_read_only_folder(self):
+        os.chmod(self.folder, 0o555)
+        self.addCleanup(os.chmod, self.folder, 0o755)
+        before = self.files()
+        drop = (lambda: os.setuid(NOBODY)) if os.getuid() == 0 else None
+        for name in ("c.glb", "c.gltf", "d.glb"):
+            result = self.run_tool("imgmesh-build", "new.png", "-o", name, preexec_fn=drop)
+            self.assert_error_lines("imgmesh-build", result, 3, 1)
+            self.assertIn(name, result.stderr)
+        result = self.run_tool("imgmesh-reconstruct", "c.glb", "-o", "x.png", preexec_fn=drop)
+        self.assert_error_lines("imgmesh-reconstruct", result, 3, 1)
+        self.assertEqual(self.files(), before)
+
+    def test_closed_pipe(self):
+        """The report's reader is gone: an error, and the container is whole."""
+        for name in ("c.glb", "c.gltf"):
+            reader, writer = os.pipe()
+            os.close(reader)
+            result = self.run_tool("imgmesh-build", "new.png", "-o", name, "--json", stdout=writer)
+            os.close(writer)
+            self.assert_error_lines("imgmesh-build", result, 3, 1)
+            self.assertEqual(self.picture(name), self.picture(f"alone/{name}"))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,14 @@
+// Options for what a reader refuses before it takes memory.
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+#include "formats/container.h"
+
+namespace imgmesh {
+
+/// --max-bytes, --max-pixels, --max-faces, --max-levels, --max-json-depth; their help states the defaults,
+/// which are those that `limits` has.
+void add_container_limits(CLI::App& app, ContainerLimits& limits);
+
+}  // namespace imgmesh
