@@ -29,7 +29,9 @@ struct Options {
     BuildParams params;
     DracoMode draco = DracoMode::kEdgebreaker;
     std::optional<ColorSpace> color_space;
-    std::string alpha = "ignore";
+    bool cut = true;  // along alpha
+    std::string mask;
+    double alpha_threshold = 0.5;
 };
 
 struct Job {
@@ -93,8 +95,20 @@ void add_options(CLI::App& app, Options& o) {
     add_choice(app, "--draco", o.draco, draco_choices(), "Mesh compression (default edgebreaker)");
     add_choice(app, "--color-space", o.color_space, color_space_choices(),
                "Of the pictures' numbers, whatever their files say");
-    add_choice<std::string, std::string>(app, "--alpha", o.alpha, {{"ignore", "ignore"}},
-                                         "What becomes of an alpha channel (default ignore)");
+    add_choice<bool, bool>(app, "--alpha", o.cut, {{"cut", true}, {"ignore", false}},
+                           "What becomes of an alpha channel: only pixels that it shows are meshed, or all "
+                           "(default cut)");
+    add_value(
+        app, "--mask", "FILE",
+        [&o](const std::string& text) {
+            if (text.empty()) throw Error(ErrorCode::kUsage, "--mask '': expected a file name");
+            o.mask = text;
+        },
+        "Picture of the pictures' size: only pixels that its alpha, or else its light, shows are meshed, "
+        "whatever their own alpha says");
+    add_number(
+        app, "--alpha-threshold", o.alpha_threshold, {0, 1, true},
+        cat("Alpha, or light of a mask, from which on a pixel is meshed (default ", o.alpha_threshold, ")"));
 }
 
 // Which container each picture goes to. Throws Error(kUsage) for what can be seen to be wrong before any
@@ -127,16 +141,28 @@ std::vector<Job> plan_jobs(const Options& o) {
         for (std::string& file : container_files(job.output)) outputs.push_back(std::move(file));
     }
     check_distinct(o.inputs, outputs);
+    if (!o.mask.empty()) check_distinct({o.mask}, outputs);
     return jobs;
 }
 
 // The library knows no file; its refusals get the picture's name here.
 BuildResult build_named(const std::string& input, const Image& image, const BuildParams& params,
-                        const Progress& progress) {
+                        const Progress& progress, Mask mask) {
     try {
-        return build_mesh_image(image, params, progress);
+        return build_mesh_image(image, params, progress, std::move(mask));
     } catch (const Error& e) {
         throw Error(e.code(), cat(input, ": ", e.what()));
+    }
+}
+
+// What --mask says; empty() without it.
+Mask read_mask(const Options& o) {
+    if (o.mask.empty()) return {};
+    const Image picture = read_image(o.mask);
+    try {
+        return picture_mask(picture, static_cast<float>(o.alpha_threshold));
+    } catch (const Error& e) {
+        throw Error(e.code(), cat(o.mask, ": ", e.what()));
     }
 }
 
@@ -147,8 +173,14 @@ Report build_one(const Job& job, const Options& o, const Context& context, const
     for (const std::string& file : container_files(job.output))
         check_output(file, file == job.output ? context.overwrite : replace_others);
     const Image image = read_image(job.input, o.color_space);
-    BuildResult result = build_named(job.input, image, o.params, progress);
+    const bool cut = o.cut && o.mask.empty();
+    Mask mask = cut ? alpha_mask(image, static_cast<float>(o.alpha_threshold)) : read_mask(o);
+    BuildResult result = build_named(job.input, image, o.params, progress, std::move(mask));
     result.mesh_image.generator = context.generator;
+    if (result.mesh_image.source.has_mask) {
+        result.mesh_image.parameters.emplace_back("mask", std::string(cut ? "alpha" : "picture"));
+        result.mesh_image.parameters.emplace_back("alpha-threshold", o.alpha_threshold);
+    }
     write_container(job.output, result.mesh_image, {o.draco, context.overwrite});
 
     // The figures are those of what a reader gets.
@@ -171,7 +203,10 @@ Report build_one(const Job& job, const Options& o, const Context& context, const
                   {"width", image.width},
                   {"height", image.height},
                   {"color_space", color_space_name(image.color_space)},
-                  {"alpha", image.channel("A") >= 0 ? "ignored" : "none"}};
+                  {"alpha", image.channel("A") < 0 ? "none"
+                            : cut                  ? "cut"
+                                                   : "ignored"},
+                  {"pixels", result.report.pixels}};
     report.update(levels.front());  // the finest level's figures are the picture's
     report.update({{"levels", levels},
                    {"bytes", written.facts.total_bytes},
@@ -238,6 +273,8 @@ void print(const Report& report, std::ostream& out) {
         TextTable table;
         table.add("size", cat(image["width"], " x ", image["height"], " pixels"));
         if (image["alpha"] != "none") table.add("alpha", image["alpha"].get<std::string>());
+        if (image["pixels"] != image["width"].get<std::int64_t>() * image["height"].get<std::int64_t>())
+            table.add("cut-out", cat(image["pixels"], " pixels"));
         table.add("mesh", cat(image["vertices"], " vertices, ", image["faces"], " faces"));
         table.add("error",
                   cat("map ", number("map_rms"), ", Gouraud ", number("gouraud_rms"), " L*u*v* RMS"));

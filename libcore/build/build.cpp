@@ -49,25 +49,38 @@ std::int64_t largest_patch(const Level& level) {
     return *std::max_element(pixels.begin(), pixels.end());
 }
 
+// Empty where all pixels are inside.
+Mask checked(Mask mask, const Image& image) {
+    if (mask.empty()) return mask;
+    if (mask.width != image.width || mask.height != image.height)
+        throw Error(ErrorCode::kBadFile, cat("the mask is ", mask.width, "x", mask.height,
+                                             ", the picture is ", image.width, "x", image.height));
+    const std::int64_t inside = mask.count();
+    if (inside == 0) throw Error(ErrorCode::kUnsupported, "no pixel is inside the mask");
+    if (inside == static_cast<std::int64_t>(image.pixel_count())) return {};
+    return mask;
+}
+
 // Collapse and maps with the collapse's limits as they stand.
-std::vector<Level> build_levels(const FeatureImage& feature, const FeatureSpace& space,
+std::vector<Level> build_levels(const FeatureImage& feature, const FeatureSpace& space, const Mask& mask,
                                 const BuildParams& params, const CollapseParams& collapse,
                                 std::span<const CollapseTarget> targets, BuildReport& report,
                                 const Progress& progress) {
     std::vector<CollapseResult> collapsed =
-        collapse_edges(grid_mesh(feature), collapse, targets, part_of(progress, 0, 0.7));
+        collapse_edges(grid_mesh(feature, mask), collapse, targets, part_of(progress, 0, 0.7));
     FitParams fit;
     fit.color_weight = params.projection_color_weight;
     fit.bary = params.bary;
     fit.space = space;
-    report = {collapsed.back().collapses, {}};
+    report.collapses = collapsed.back().collapses;
+    report.levels.clear();
     std::vector<Level> levels;
     for (std::size_t k = 0; k < collapsed.size(); ++k) {
         Level level{std::move(collapsed[k].mesh), {}, collapsed[k].error * params.color_weight};
         const double share = 0.3 / static_cast<double>(collapsed.size()),
                      begin = 0.7 + share * static_cast<double>(k);
-        level.map = fit_map(level.mesh, feature, fit, part_of(progress, begin, begin + share));
-        const PixelMap trivial = trivial_map(level.mesh, feature.width, feature.height);
+        level.map = fit_map(level.mesh, feature, fit, part_of(progress, begin, begin + share), mask);
+        const PixelMap trivial = trivial_map(level.mesh, feature.width, feature.height, mask);
         report.levels.push_back(
             {map_rms(level.mesh, level.map, feature), map_rms(level.mesh, trivial, feature), {}});
         for (int c = space.color ? 3 : 0; c < space.features(); ++c)
@@ -81,25 +94,28 @@ std::vector<Level> build_levels(const FeatureImage& feature, const FeatureSpace&
 
 }  // namespace
 
-BuildResult build_mesh_image(const Image& image, const BuildParams& params, const Progress& progress) {
+BuildResult build_mesh_image(const Image& image, const BuildParams& params, const Progress& progress,
+                             Mask mask) {
     check_params(params);
     if (image.width < 1 || image.height < 1) throw Error(ErrorCode::kUsage, "the picture is empty");
     for (const float sample : image.data)
         if (!std::isfinite(sample))
             throw Error(ErrorCode::kUnsupported, "the picture has samples that are not finite");
+    mask = checked(std::move(mask), image);
     // What lies outside of the colours that a container holds could only mislead the fit: L*u*v* of negative
     // light has no bound.
-    const FeatureSpace space = feature_space(image, params.channels);
-    const FeatureImage feature = extract_features(image, space);
+    const FeatureSpace space = feature_space(image, params.channels, mask);
+    const FeatureImage feature = extract_features(image, space, mask);
 
-    const auto pixels = static_cast<double>(image.pixel_count());
+    BuildResult result;
+    result.report.pixels = mask.empty() ? static_cast<std::int64_t>(image.pixel_count()) : mask.count();
+    const auto pixels = static_cast<double>(result.report.pixels);
     const std::vector<CollapseTarget> targets = collapse_targets(params, pixels);
     CollapseParams collapse = collapse_params(params, targets.front(), pixels);
-    BuildResult result;
     std::vector<Level>& levels = result.mesh_image.levels;
     if (params.max_cluster) collapse.max_face_area = static_cast<float>(*params.max_cluster);
     for (;;) {
-        levels = build_levels(feature, space, params, collapse, targets, result.report, progress);
+        levels = build_levels(feature, space, mask, params, collapse, targets, result.report, progress);
         if (!params.max_cluster) break;
         // The collapse bounds a face's area; the map decides how many pixels that becomes.
         std::int64_t largest = 0;
@@ -117,7 +133,7 @@ BuildResult build_mesh_image(const Image& image, const BuildParams& params, cons
                                 image.color_space,
                                 image.sample_type,
                                 used_channels(image, params.channels),
-                                false,
+                                !mask.empty(),
                                 space.gamut};
     result.mesh_image.parameters = listed_params(params, collapse);
     const bool half = levels.front().map.precision == WeightPrecision::kHalf;

@@ -8,6 +8,7 @@
 #include "libcore/base/progress.h"
 #include "libcore/image/feature_space.h"
 #include "libcore/image/image.h"
+#include "libcore/image/mask.h"
 #include "libcore/param/mesh_image.h"
 
 namespace imgmesh {
@@ -54,6 +55,7 @@ struct LevelReport {
 };
 
 struct BuildReport {
+    std::int64_t pixels = 0;  ///< meshed: those inside the mask, or all
     std::int64_t collapses = 0;
     std::vector<LevelReport> levels;
 };
@@ -65,10 +67,16 @@ struct BuildResult {
 
 /// picture -> features -> dense mesh -> collapse -> base mesh -> pixel map -> least-squares features.
 /// Linear light below 0 is clipped to 0, and above 1 to 1 unless the picture is one of floats (gamut_of). A
-/// side of one pixel counts as a strip one pixel wide (docs/format.md). Alpha is ignored. Same result for any
-/// number of threads. Throws Error(kUsage) for a parameter out of range, Error(kUnsupported) for a picture
-/// without colour channels or with values that are not finite, and as feature_space() and extract_features()
-/// do.
-BuildResult build_mesh_image(const Image& image, const BuildParams& params, const Progress& progress = {});
+/// side of one pixel counts as a strip one pixel wide (docs/format.md). Alpha is ignored but for what `mask`
+/// has taken from it, and where it is chosen as a channel. Same result for any number of threads.
+///
+/// mask   the pixels to mesh (mask.h); empty() for all. Exactly the others get no face in the map. A mask
+/// with
+///        all pixels inside counts as none. Percents and shares are of the pixels inside.
+/// Throws Error(kUsage) for a parameter out of range, Error(kBadFile) for a mask of another size,
+/// Error(kUnsupported) for a mask without a pixel inside, and for a picture without colour channels or with
+/// values that are not finite; and as feature_space() and extract_features() do.
+BuildResult build_mesh_image(const Image& image, const BuildParams& params, const Progress& progress = {},
+                             Mask mask = {});
 
 }  // namespace imgmesh

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -12,6 +13,7 @@
 #include "libcore/collapse/bucket_queue.h"
 #include "libcore/collapse/collapse_edges.h"
 #include "libcore/collapse/edge_batch.h"
+#include "libcore/collapse/mask_outline.h"
 #include "libcore/collapse/ring_mesh.h"
 #include "libcore/collapse/star_limits.h"
 #include "libcore/collapse/vertex_quadrics.h"
@@ -35,6 +37,13 @@ struct Placement {
     float cost = kNever;  // by which the edge is filed; kNever where the merge is not allowed
 };
 
+template <class Q>
+std::vector<Q> initial_quadrics(const GridMesh& grid, const RingMesh& rings, const CollapseParams& params) {
+    const FeatureImage gradients = smoothed_vertices(grid, params.smoothing);
+    return grid.mask.empty() ? vertex_quadrics<Q::kChannels>(grid, gradients, params.geometry_weight)
+                             : vertex_quadrics<Q::kChannels>(grid, rings, gradients, params.geometry_weight);
+}
+
 /// Source and steps: collapse_edges.cpp. `Q` is the quadric that vertices carry: kChannels features,
 /// merged(a, b), at(x, y), feature(c, x, y), error, the minimiser (px, py) and best_x(y), best_y(x) on a
 /// line.
@@ -46,12 +55,14 @@ class Collapser {
           width_(grid.feature.width),
           height_(grid.feature.height),
           rings_(ring_mesh(grid)),
-          quadrics_(vertex_quadrics<Q::kChannels>(grid, smoothed(grid.feature, params.smoothing),
-                                                  params.geometry_weight)),
+          quadrics_(initial_quadrics<Q>(grid, rings_, params)),
           limits_(StarLimits::of(params.max_face_area, params.min_shape)),
-          vertices_(static_cast<std::int64_t>(rings_.size())),
+          dense_vertices_(live_vertices(rings_)),
+          vertices_(dense_vertices_),
           next_rebuild_(vertices_ / 2),
-          faces_(std::int64_t{2} * (grid.feature.width - 1) * (grid.feature.height - 1)) {}
+          faces_(face_count(rings_)) {
+        if (!grid.mask.empty()) outline_.emplace(grid, rings_);
+    }
 
     void run(const CollapseTarget& target, const Progress& progress) {
         target_ = target;
@@ -133,12 +144,13 @@ class Collapser {
 
     bool done() const { return vertices_ <= target_.vertices || faces_ <= target_.faces; }
     double fraction_done() const {
-        const auto start = static_cast<double>(rings_.size()), left = static_cast<double>(vertices_);
+        const auto start = static_cast<double>(dense_vertices_), left = static_cast<double>(vertices_);
         return (start - left) / std::max(1.0, start - static_cast<double>(target_.vertices));
     }
 
     // Where the merged vertex goes at best, and what that costs; legality of the star left aside.
     Placement minimiser(Id i, Id j, const Q& sum) const {
+        if (along_outline(i, j)) return outline_place(i, j, sum, [](const Placement&) { return true; });
         const BorderConstraint border = border_constraint(rings_[i], rings_[j]);
         if (!border.allowed) return {};
         Placement place{border.x, border.y};
@@ -155,6 +167,31 @@ class Collapser {
         return place;
     }
 
+    // Whether an edge joins two vertices on an outline of a cut-out, be it along it or through the inside.
+    bool along_outline(Id i, Id j) const { return outline_ && rings_[i].border() && rings_[j].border(); }
+
+    // The cheapest of the places that the outline has for the merged vertex, of those allowed.
+    template <class Allowed>
+    Placement outline_place(Id i, Id j, const Q& sum, const Allowed& allowed) const {
+        Placement best;
+        if (rings_[i].neighbor[0] != j && rings_[j].neighbor[0] != i) return best;
+        const MaskOutline::Places places = outline_->places(rings_, i, j, sum.px, sum.py);
+        for (int k = 0; k < places.count; ++k) {
+            const Vec2f& at = places.at[static_cast<std::size_t>(k)];
+            Placement p{at.x(), at.y(), 0};
+            p.cost = cost_at(i, j, sum, p);
+            if (p.cost < best.cost && allowed(p)) best = p;
+        }
+        return best;
+    }
+
+    // Whether the merge of i and j, with the ring `ring`, may stand at a place.
+    bool allowed(Id i, Id j, const MergedRing& ring, const Placement& place) {
+        const bool border = rings_[i].border() || rings_[j].border();
+        return limits_.allow(rings_, ring, border, place.x, place.y) &&
+               (!along_outline(i, j) || outline_->allows(rings_, i, j, place.x, place.y));
+    }
+
     float cost_at(Id i, Id j, const Q& sum, const Placement& place) const {
         return priority(i, j, sum.at(place.x, place.y) - quadrics_[i].error - quadrics_[j].error);
     }
@@ -165,8 +202,10 @@ class Collapser {
         return params_.total_priority ? added + (quadrics_[i].error + quadrics_[j].error) : added;
     }
 
-    // The cheapest legal one of midpoint and ends.
-    Placement fallback(Id i, Id j, const MergedRing& ring, const Q& sum) const {
+    // The cheapest legal one of midpoint and ends, or of the outline's places.
+    Placement fallback(Id i, Id j, const MergedRing& ring, const Q& sum) {
+        if (along_outline(i, j))
+            return outline_place(i, j, sum, [&](const Placement& p) { return allowed(i, j, ring, p); });
         const Ring &a = rings_[i], &b = rings_[j];
         Placement best;
         const BorderConstraint border = border_constraint(a, b);
@@ -189,7 +228,7 @@ class Collapser {
         if (!merge_rings(rings_, i, j, ring)) return;
         const Q sum = merged(quadrics_[i], quadrics_[j]);
         Placement place = minimiser(i, j, sum);
-        if (!limits_.allow(rings_, ring, rings_[i].border() || rings_[j].border(), place.x, place.y)) {
+        if (!allowed(i, j, ring, place)) {
             place = fallback(i, j, ring, sum);
             if (place.cost == kNever) return;
             if (BucketQueue::bucket_of(place.cost) > bucket) {
@@ -203,6 +242,7 @@ class Collapser {
         const float total = sum.at(place.x, place.y);
         if (total > target_.max_error) return;
         error_ = std::max(error_, static_cast<double>(total));
+        if (outline_) outline_->merge(rings_, i, j, place.x, place.y);
         apply_merge(rings_, i, j, ring);
         rings_[i].x = place.x;
         rings_[i].y = place.y;
@@ -246,10 +286,18 @@ class Collapser {
         for (int y = top; y < std::min(top + side, height_); ++y)
             for (int x = left; x < std::min(left + side, width_); ++x) {
                 const Id i = static_cast<Id>(y) * static_cast<Id>(width_) + static_cast<Id>(x);
-                for (int k = 0; k < rings_[i].valence; ++k)
-                    if (i < rings_[i].neighbor[k]) file(i, rings_[i].neighbor[k]);
+                file_edges_up(i);
             }
+        // A cut-out's further vertices, which have no place of their own among the pixels.
+        if (left == 0 && top == 0)
+            for (Id i = static_cast<Id>(width_) * static_cast<Id>(height_); i < rings_.size(); ++i)
+                file_edges_up(i);
         file_batch();
+    }
+
+    void file_edges_up(Id i) {
+        for (int k = 0; k < rings_[i].valence; ++k)
+            if (i < rings_[i].neighbor[k]) file(i, rings_[i].neighbor[k]);
     }
 
     // The costs of edges of some vertices all over the picture; of those that may collapse, in ascending
@@ -305,8 +353,9 @@ class Collapser {
     bool postponed_ = false;  // some legal edge costs more than the current threshold
     float threshold_ = 0;     // of the current window
     StarLimits limits_;
+    std::optional<MaskOutline> outline_;  // of a cut-out
     CollapseTarget target_;
-    std::int64_t vertices_, next_rebuild_, faces_, collapses_ = 0;
+    std::int64_t dense_vertices_, vertices_, next_rebuild_, faces_, collapses_ = 0;
     double error_ = 0;
 };
 

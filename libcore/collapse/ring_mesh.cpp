@@ -3,6 +3,7 @@
 #include <cassert>
 
 #include "libcore/base/parallel.h"
+#include "libcore/collapse/masked_rings.h"
 
 namespace imgmesh {
 namespace {
@@ -42,6 +43,7 @@ Ring grid_ring(const GridMesh& grid, int x, int y) {
 }
 
 RingMesh ring_mesh(const GridMesh& grid) {
+    if (!grid.mask.empty()) return masked_rings(grid);
     const int w = grid.feature.width;
     RingMesh rings(grid.feature.pixel_count());
     parallel_blocks(0, grid.feature.height, 16, [&](int begin, int end) {
@@ -51,6 +53,19 @@ RingMesh ring_mesh(const GridMesh& grid) {
                       static_cast<std::size_t>(x)] = grid_ring(grid, x, y);
     });
     return rings;
+}
+
+std::int64_t live_vertices(const RingMesh& rings) {
+    std::int64_t count = 0;
+    for (const Ring& ring : rings) count += ring.live();
+    return count;
+}
+
+std::int64_t face_count(const RingMesh& rings) {
+    std::int64_t corners = 0;
+    for (const Ring& ring : rings)
+        if (ring.live()) corners += ring.valence - (ring.border() ? 1 : 0);
+    return corners / 3;
 }
 
 bool merge_rings(const RingMesh& rings, Id i, Id j, MergedRing& merged) {

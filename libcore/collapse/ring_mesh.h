@@ -40,10 +40,13 @@ static_assert(sizeof(Ring) == 64);
 
 using RingMesh = std::vector<Ring>;
 
-/// The ring of vertex (x, y) of a grid mesh, vertex ids as there.
+/// The ring of vertex (x, y) of a grid mesh without a mask, vertex ids as there.
 Ring grid_ring(const GridMesh& grid, int x, int y);
-/// The rings of all of its vertices.
+/// The rings of all vertices of a grid mesh.
 RingMesh ring_mesh(const GridMesh& grid);
+
+std::int64_t live_vertices(const RingMesh& rings);
+std::int64_t face_count(const RingMesh& rings);
 
 /// Neighbours of the vertex that would replace the edge (i, j), in the order of Ring::neighbor.
 struct MergedRing {

@@ -1,5 +1,7 @@
 #include "libcore/collapse/vertex_quadrics.h"
 
+#include <algorithm>
+
 #include "libcore/base/parallel.h"
 #include "libcore/collapse/ring_mesh.h"
 
@@ -91,36 +93,74 @@ std::vector<Quadric<C>> vertex_quadrics(const GridMesh& grid, const FeatureImage
     return quadrics;
 }
 
-template <int C>
-std::vector<Quadric<C>> current_quadrics(const RingMesh& rings, const std::vector<Quadric<C>>& before,
-                                         float lambda) {
+namespace {
+
+// Sums over the faces of any mesh. own(v): features at vertex v; slope(v, k, out): those of the vertex's k-th
+// neighbour less its own, from which gradients come.
+template <int C, class Own, class Slope>
+std::vector<Quadric<C>> quadrics_over(const RingMesh& rings, float lambda, const Own& own,
+                                      const Slope& slope) {
     std::vector<Quadric<C>> quadrics(rings.size());
     parallel_blocks(0, static_cast<int>(rings.size()), 1 << 14, [&](int first, int last) {
-        for (std::size_t v = static_cast<std::size_t>(first); v < static_cast<std::size_t>(last); ++v) {
+        for (Id v = static_cast<Id>(first); v < static_cast<Id>(last); ++v) {
             const Ring& ring = rings[v];
             if (!ring.live()) continue;
-            float s[C], d[kMaxValence][C], ox[kMaxValence], oy[kMaxValence];
-            for (int c = 0; c < C; ++c) s[c] = before[v].feature(c, ring.x, ring.y);
+            float d[kMaxValence][C], ox[kMaxValence], oy[kMaxValence];
             for (int k = 0; k < ring.valence; ++k) {
                 const Ring& n = rings[ring.neighbor[k]];
                 ox[k] = n.x - ring.x;
                 oy[k] = n.y - ring.y;
-                for (int c = 0; c < C; ++c) d[k][c] = before[ring.neighbor[k]].feature(c, n.x, n.y) - s[c];
+                slope(v, k, d[k]);
             }
             Accumulator<C> sum;
             for (int k = 0; k < ring.valence - (ring.border() ? 1 : 0); ++k) {
                 const int m = k + 1 == ring.valence ? 0 : k + 1;
                 sum.add(ox[k], oy[k], d[k], ox[m], oy[m], d[m]);
             }
+            float s[C];
+            own(v, s);
             quadrics[v] = sum.finish(ring.x, ring.y, s, lambda);
         }
     });
     return quadrics;
 }
 
+}  // namespace
+
+template <int C>
+std::vector<Quadric<C>> vertex_quadrics(const GridMesh& grid, const RingMesh& rings,
+                                        const FeatureImage& gradients, float lambda) {
+    return quadrics_over<C>(
+        rings, lambda, [&](Id v, float* s) { std::copy_n(grid.feature.pixel(v), C, s); },
+        [&](Id v, int k, float* out) {
+            const float *from = gradients.pixel(v), *to = gradients.pixel(rings[v].neighbor[k]);
+            for (int c = 0; c < C; ++c) out[c] = to[c] - from[c];
+        });
+}
+
+template <int C>
+std::vector<Quadric<C>> current_quadrics(const RingMesh& rings, const std::vector<Quadric<C>>& before,
+                                         float lambda) {
+    const auto feature = [&](Id v, int c) { return before[v].feature(c, rings[v].x, rings[v].y); };
+    return quadrics_over<C>(
+        rings, lambda,
+        [&](Id v, float* s) {
+            for (int c = 0; c < C; ++c) s[c] = feature(v, c);
+        },
+        [&](Id v, int k, float* out) {
+            for (int c = 0; c < C; ++c) out[c] = feature(rings[v].neighbor[k], c) - feature(v, c);
+        });
+}
+
 template std::vector<Quadric<3>> vertex_quadrics<3>(const GridMesh&, const FeatureImage&, float);
 template std::vector<Quadric<8>> vertex_quadrics<8>(const GridMesh&, const FeatureImage&, float);
 template std::vector<Quadric<16>> vertex_quadrics<16>(const GridMesh&, const FeatureImage&, float);
+template std::vector<Quadric<3>> vertex_quadrics<3>(const GridMesh&, const RingMesh&, const FeatureImage&,
+                                                    float);
+template std::vector<Quadric<8>> vertex_quadrics<8>(const GridMesh&, const RingMesh&, const FeatureImage&,
+                                                    float);
+template std::vector<Quadric<16>> vertex_quadrics<16>(const GridMesh&, const RingMesh&, const FeatureImage&,
+                                                      float);
 template std::vector<Quadric<3>> current_quadrics<3>(const RingMesh&, const std::vector<Quadric<3>>&, float);
 template std::vector<Quadric<8>> current_quadrics<8>(const RingMesh&, const std::vector<Quadric<8>>&, float);
 template std::vector<Quadric<16>> current_quadrics<16>(const RingMesh&, const std::vector<Quadric<16>>&,

@@ -14,11 +14,17 @@ namespace imgmesh {
 /// (Hoppe 1999). A face's colours are those of its corners at this vertex, its gradient is taken from
 /// `gradients`, usually a smoothed copy of grid.feature and of its size.
 ///
-/// grid, gradients   C channels; C is 3, 8 or 16 (padded_features)
+/// grid, gradients   C channels; C is 3, 8 or 16 (padded_features); no mask
 /// lambda            geometry against colour [feature^2 / px^2], > 0
 /// return            one quadric a vertex, in the grid's order
 template <int C>
 std::vector<Quadric<C>> vertex_quadrics(const GridMesh& grid, const FeatureImage& gradients, float lambda);
+
+/// The same for any grid mesh, with or without a mask; rings: ring_mesh(grid), gradients: of all its
+/// vertices.
+template <int C>
+std::vector<Quadric<C>> vertex_quadrics(const GridMesh& grid, const RingMesh& rings,
+                                        const FeatureImage& gradients, float lambda);
 
 /// The same over the faces of the mesh as it stands, positions from `rings`, colours from the quadrics
 /// `before`.

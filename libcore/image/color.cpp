@@ -197,14 +197,14 @@ bool has_srgb_primaries(ColorSpace space) {
 
 }  // namespace
 
-Gamut gamut_of(const Image& image) {
-    if (image.sample_type != SampleType::kHalf && image.sample_type != SampleType::kFloat)
-        return Gamut::kDisplay;
+Gamut gamut_of(const Image& image, const Mask& mask) {
     const ColorChannels channels(image);
-    if (!channels.any()) return Gamut::kDisplay;
-    for (std::size_t i = 0; i < image.data.size(); i += static_cast<std::size_t>(image.channels))
-        if (linear_from_encoded(image.color_space, channels.at(image.data.data() + i)).maxCoeff() > 1)
+    const bool floats = image.sample_type == SampleType::kHalf || image.sample_type == SampleType::kFloat;
+    for (std::size_t i = 0; floats && channels.any() && i < image.pixel_count(); ++i) {
+        const Vec3f encoded = channels.at(image.data.data() + i * static_cast<std::size_t>(image.channels));
+        if (mask.contains(i) && linear_from_encoded(image.color_space, encoded).maxCoeff() > 1)
             return Gamut::kLight;
+    }
     return Gamut::kDisplay;
 }
 

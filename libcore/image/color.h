@@ -6,6 +6,7 @@
 
 #include "libcore/base/types.h"
 #include "libcore/image/image.h"
+#include "libcore/image/mask.h"
 
 namespace imgmesh {
 
@@ -55,8 +56,8 @@ inline constexpr float kMostLight = 1 << 20;
 /// fine enough for any eye, and coarse enough for storable_color() to come back to the same bits.
 Vec3f storable_light(const Vec3f& luv);
 
-/// kLight for a picture of floats with linear light above 1 in some pixel, else kDisplay.
-Gamut gamut_of(const Image& image);
+/// kLight for a picture of floats with linear light above 1 in some pixel of the mask, else kDisplay.
+Gamut gamut_of(const Image& image, const Mask& mask = {});
 
 /// What luv_image does with linear light: nothing, or clip it to [0, 1] or to [0, kMostLight].
 enum class Range { kAny, kClipped, kLight };

@@ -46,7 +46,7 @@ SplitNames split_names(const std::vector<std::string>& names) {
     return split;
 }
 
-FeatureSpace feature_space(const Image& image, const std::vector<ChannelChoice>& choices) {
+FeatureSpace feature_space(const Image& image, const std::vector<ChannelChoice>& choices, const Mask& mask) {
     check_choices(image, choices);
     std::vector<std::string> names;
     for (const ChannelChoice& choice : choices) names.push_back(choice.name);
@@ -55,7 +55,7 @@ FeatureSpace feature_space(const Image& image, const std::vector<ChannelChoice>&
         throw Error(ErrorCode::kUnsupported, "the picture has no colour: neither channels R, G, B nor Y");
     FeatureSpace space;
     space.color = !split.color.empty();
-    if (space.color) space.gamut = gamut_of(image);
+    if (space.color) space.gamut = gamut_of(image, mask);
     const auto weight = [&](const std::string& name) {
         for (const ChannelChoice& choice : choices)
             if (choice.name == name) return static_cast<float>(choice.weight);
@@ -76,7 +76,7 @@ FeatureSpace feature_space(const Image& image, const std::vector<ChannelChoice>&
     return space;
 }
 
-FeatureImage extract_features(const Image& image, const FeatureSpace& space) {
+FeatureImage extract_features(const Image& image, const FeatureSpace& space, const Mask& mask) {
     FeatureImage color;
     if (space.color) color = luv_image(image, space.gamut == Gamut::kLight ? Range::kLight : Range::kClipped);
     if (space.plain.empty() && space.color_weight == 1) return color;
@@ -89,7 +89,7 @@ FeatureImage extract_features(const Image& image, const FeatureSpace& space) {
         for (std::size_t c = 0; c < from.size(); ++c) {
             const float value =
                 image.data[i * static_cast<std::size_t>(image.channels) + static_cast<std::size_t>(from[c])];
-            const float feature = value * space.plain_weight[c];
+            const float feature = mask.contains(i) ? value * space.plain_weight[c] : 0;
             if (!(std::abs(feature) <= kLargestFeature)) {
                 const auto width = static_cast<std::size_t>(image.width);
                 throw Error(ErrorCode::kUnsupported,

@@ -6,6 +6,7 @@
 
 #include "libcore/image/channel_count.h"
 #include "libcore/image/color.h"
+#include "libcore/image/mask.h"
 
 namespace imgmesh {
 
@@ -39,19 +40,20 @@ struct ChannelChoice {
     double weight = 1;  ///< of its values as they are, beside L*u*v* with L* from 0 to 100; > 0
 };
 
-/// The space of the chosen channels, of the picture's colour for none. R, G, B must have one weight. Throws
-/// Error(kUsage) for a channel that is chosen twice, a weight that is not finite and above 0, different
-/// weights of R, G and B and more than kMaxFeatures features; kBadFile for a channel that the picture does
-/// not have; kUnsupported for a picture without colour where none is chosen.
-FeatureSpace feature_space(const Image& image, const std::vector<ChannelChoice>& choices);
+/// The space of the chosen channels, of the picture's colour for none. R, G, B must have one weight. What is
+/// outside `mask` does not count. Throws Error(kUsage) for a channel that is chosen twice, a weight that is
+/// not finite and above 0, different weights of R, G and B and more than kMaxFeatures features; kBadFile for
+/// a channel that the picture does not have; kUnsupported for a picture without colour where none is chosen.
+FeatureSpace feature_space(const Image& image, const std::vector<ChannelChoice>& choices,
+                           const Mask& mask = {});
 
 /// The largest value of a plain feature: the determinants of quadrics of a whole picture have room then in
 /// floats.
 inline constexpr float kLargestFeature = 1e5f;
 
 /// The picture in `space`, which is of that picture: L*u*v* and the values of the plain channels, each times
-/// its weight. Light is clipped to the gamut's range. Throws Error(kUnsupported) for a feature above
-/// kLargestFeature or not finite.
-FeatureImage extract_features(const Image& image, const FeatureSpace& space);
+/// its weight; the latter 0 outside `mask`. Light is clipped to the gamut's range. Throws Error(kUnsupported)
+/// for a feature inside above kLargestFeature or not finite.
+FeatureImage extract_features(const Image& image, const FeatureSpace& space, const Mask& mask = {});
 
 }  // namespace imgmesh

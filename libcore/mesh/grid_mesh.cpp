@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "libcore/base/parallel.h"
+#include "libcore/mesh/mask_fans.h"
 
 namespace imgmesh {
 namespace {
@@ -28,13 +29,40 @@ FeatureImage doubled_sides(FeatureImage in) {
 
 constexpr int kRowsPerBlock = 32;
 
+// How many vertices pixel (x, y) has beside its first one.
+int further_vertices(const GridMesh& mesh, int x, int y) {
+    switch (strip_at(mesh.mask, x, y)) {
+        case Strip::kAlongX:
+        case Strip::kAlongY:
+            return 1;
+        case Strip::kAlone:
+            return 3;
+        case Strip::kNoStrip:
+            break;
+    }
+    // Which diagonal a cell has does not change the number of fans: it joins faces of one cell alone.
+    return std::max(0, fans_at(mesh.mask, x, y, [](int) { return false; }).count - 1);
+}
+
+void append_copies(const std::vector<Id>& copies, FeatureImage& feature) {
+    const auto channels = static_cast<std::size_t>(feature.channels);
+    feature.data.reserve(feature.data.size() + copies.size() * channels);
+    for (const Id pixel : copies)
+        for (std::size_t c = 0; c < channels; ++c) feature.data.push_back(feature.data[pixel * channels + c]);
+}
+
 }  // namespace
 
-GridMesh grid_mesh(FeatureImage feature) {
+GridMesh grid_mesh(FeatureImage feature, Mask mask) {
     GridMesh mesh;
-    mesh.origin_x = feature.width == 1 ? -0.5f : 0.0f;
-    mesh.origin_y = feature.height == 1 ? -0.5f : 0.0f;
-    mesh.feature = doubled_sides(std::move(feature));
+    mesh.mask = std::move(mask);
+    if (mesh.mask.empty()) {
+        mesh.origin_x = feature.width == 1 ? -0.5f : 0.0f;
+        mesh.origin_y = feature.height == 1 ? -0.5f : 0.0f;
+        mesh.feature = doubled_sides(std::move(feature));
+    } else {
+        mesh.feature = std::move(feature);
+    }
     const FeatureImage& f = mesh.feature;
     const int cells = f.width - 1;
     mesh.diagonal.resize(static_cast<std::size_t>(cells) * static_cast<std::size_t>(f.height - 1));
@@ -47,6 +75,12 @@ GridMesh grid_mesh(FeatureImage feature) {
                               static_cast<std::size_t>(x)] = falling <= rising;
             }
     });
+    if (mesh.mask.empty()) return mesh;
+    for (int y = 0; y < f.height; ++y)
+        for (int x = 0; x < f.width; ++x)
+            mesh.copies.insert(mesh.copies.end(), static_cast<std::size_t>(further_vertices(mesh, x, y)),
+                               static_cast<Id>(y * f.width + x));
+    append_copies(mesh.copies, mesh.feature);
     return mesh;
 }
 
@@ -79,6 +113,26 @@ FeatureImage smoothed(const FeatureImage& feature, int passes) {
         });
     }
     return image;
+}
+
+FeatureImage smoothed_vertices(const GridMesh& grid, int passes) {
+    if (grid.mask.empty()) return smoothed(grid.feature, passes);
+    // Smoothed colours times insides over smoothed insides.
+    const int c = grid.feature.channels;
+    FeatureImage weighted{grid.feature.width, grid.feature.height, c + 1, {}}, out = grid.feature;
+    weighted.data.assign(weighted.pixel_count() * static_cast<std::size_t>(c + 1), 0.0f);
+    for (std::size_t i = 0; i < weighted.pixel_count(); ++i) {
+        if (!grid.mask.contains(i)) continue;
+        std::copy_n(grid.feature.pixel(i), c, weighted.pixel(i));
+        weighted.pixel(i)[c] = 1;
+    }
+    weighted = smoothed(weighted, passes);
+    for (std::size_t i = 0; i < weighted.pixel_count(); ++i)
+        if (grid.mask.contains(i))
+            for (int k = 0; k < c; ++k) out.pixel(i)[k] = weighted.pixel(i)[k] / weighted.pixel(i)[c];
+    out.data.resize(out.pixel_count() * static_cast<std::size_t>(c));
+    append_copies(grid.copies, out);
+    return out;
 }
 
 }  // namespace imgmesh

@@ -1,33 +1,53 @@
-// The dense mesh that the collapse starts from: one vertex a pixel (paper sec. 3.1).
+// The dense mesh that the collapse starts from: one vertex a pixel (paper sec. 3.1), or a few where a mask
+// leaves less than triangles.
 #pragma once
 
 #include <vector>
 
 #include "libcore/image/image.h"
+#include "libcore/image/mask.h"
 
 namespace imgmesh {
 
 /// A W x H grid of pixels as a triangle mesh. Connectivity is implicit: cell (x, y) is the quad of pixels (x,
 /// y) to (x+1, y+1), split by one diagonal; vertex (x, y) has the number y * W + x.
+///
+/// With a mask, cells of four pixels inside have two triangles, those of three have one. A pixel where the
+/// mask pinches is one vertex for every fan of triangles around it, and one that is in no triangle belongs to
+/// a strip one pixel wide, of two vertices a pixel (four for a single one) half a pixel beside it; see
+/// mask_fans.h, masked_rings.h. The first of a pixel's vertices has the pixel's number, the others follow
+/// those of all pixels. Docs: docs/decisions/0005-cut-outs.md.
 struct GridMesh {
-    FeatureImage feature;  ///< at the vertices; width, height >= 2
+    FeatureImage feature;  ///< at the vertices: `data` goes on with those of `copies`; sides >= 2 but for
+                           ///< masks
     float origin_x = 0;    ///< position of vertex (0, 0) [pixels]: 0, or -0.5 where the picture's
     float origin_y = 0;    ///< side is one pixel, which then counts as a strip one pixel wide
     std::vector<std::uint8_t> diagonal;  ///< (W-1) x (H-1): 1 joins top left to bottom right, 0 the other two
+
+    Mask mask;               ///< empty() for the whole picture
+    std::vector<Id> copies;  ///< pixels of the vertices W * H, W * H + 1, ..., ascending
 
     bool falling_diagonal(int x, int y) const {
         return diagonal[static_cast<std::size_t>(y) * static_cast<std::size_t>(feature.width - 1) +
                         static_cast<std::size_t>(x)] != 0;
     }
+    std::size_t vertex_count() const { return feature.pixel_count() + copies.size(); }
+    /// The pixel that vertex v stands for.
+    Id pixel_of(Id v) const { return v < feature.pixel_count() ? v : copies[v - feature.pixel_count()]; }
 };
 
 /// Splits each cell along the diagonal whose ends differ less in feature space (paper sec. 3.1); ties fall
-/// from top left to bottom right. A side of one pixel is doubled at -0.5 and +0.5. Takes any size from 1 x 1.
-GridMesh grid_mesh(FeatureImage feature);
+/// from top left to bottom right. A side of one pixel is doubled at -0.5 and +0.5, without a mask. Takes any
+/// size from 1 x 1. mask: empty(), or of the picture's size with a pixel inside.
+GridMesh grid_mesh(FeatureImage feature, Mask mask = {});
 
 /// A copy smoothed by `passes` of the separable [1 2 1] / 4 filter, borders repeated. Gradients are taken
 /// from such a copy: most of the error of gradient-based quadrics is noise in per-pixel gradients
 /// (docs/paper-map.md).
 FeatureImage smoothed(const FeatureImage& feature, int passes);
+
+/// The same for the vertices of `grid`: with a mask the filter's weights outside count as none, so that
+/// colours outside do not bleed in, and `data` goes on with those of grid.copies.
+FeatureImage smoothed_vertices(const GridMesh& grid, int passes);
 
 }  // namespace imgmesh

@@ -19,6 +19,7 @@ PixelMap unrounded_map(const MovingPixels& pixels, const std::vector<FaceField>&
         for (int x = 0; x < map.width; ++x) {
             const Vec2f p = pixels.image_of(x, y);
             const Id face = pixels.face[pixels.index(x, y)];
+            if (face == kNone) continue;
             map.coords[pixels.index(x, y)] = {face, fields[face].u(p.x(), p.y()),
                                               fields[face].v(p.x(), p.y())};
         }
@@ -46,14 +47,14 @@ void round_colors(BaseMesh& mesh, const FeatureSpace& space) {
 }  // namespace
 
 PixelMap fit_map(BaseMesh& mesh, const FeatureImage& feature, const FitParams& params,
-                 const Progress& progress) {
-    const PixelMap trivial = trivial_map(mesh, feature.width, feature.height);
+                 const Progress& progress, const Mask& mask) {
+    const PixelMap trivial = trivial_map(mesh, feature.width, feature.height, mask);
     const auto fit = [&](const PixelMap& map) {
         fit_colors(mesh, feature, {{&map, 1 - params.gouraud_share}, {&trivial, params.gouraud_share}},
                    params.space);
     };
     const std::vector<Face> neighbors = face_neighbors(mesh);
-    MovingPixels pixels = resting_pixels(trivial);
+    MovingPixels pixels = resting_pixels(trivial, mask);
     fit(trivial);
     // A strip of one pixel has no cell whose fold could be watched; its map stays trivial.
     const int rounds = params.color_weight > 0 && feature.width > 1 && feature.height > 1 ? params.rounds : 0;

@@ -6,6 +6,7 @@
 #include "libcore/base/progress.h"
 #include "libcore/image/feature_space.h"
 #include "libcore/image/image.h"
+#include "libcore/image/mask.h"
 #include "libcore/mesh/base_mesh.h"
 #include "libcore/param/pixel_map.h"
 
@@ -24,10 +25,11 @@ struct FitParams {
 /// Finds the pixel map (relax.h, storable_map.h) and replaces the mesh's features by the least-squares ones,
 /// colours rounded to what a container holds. The map is a bijection of the pixel grid onto the mesh.
 ///
-/// mesh     covers the picture's rectangle; positions on kPositionStep
+/// mesh     covers the picture's rectangle, or every pixel inside the mask; positions on kPositionStep
+/// mask     empty(), or of the picture's size: pixels outside get no face
 /// feature  the picture, params.space.features() channels
 /// Throws Error(kUnsupported) where params.bary is too coarse for the mesh's faces.
 PixelMap fit_map(BaseMesh& mesh, const FeatureImage& feature, const FitParams& params,
-                 const Progress& progress = {});
+                 const Progress& progress = {}, const Mask& mask = {});
 
 }  // namespace imgmesh

@@ -8,16 +8,21 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <cstdlib>
 #include <limits>
 
 #include "libcore/base/parallel.h"
 #include "libcore/base/simd.h"
+#include "libcore/mesh/mask_fans.h"
 
 namespace imgmesh {
 namespace {
 
 constexpr float kLongestStep = 0.5f;
 constexpr int kHalvings = 2;
+
+// A pixel that slides along an outline lies on the edge of a face, up to the rounding of its weights.
+constexpr float kWeightSlack = 1e-4f;
 
 // The eight pixels around one, from the east over the south. Straight neighbours are the even ones.
 constexpr int kStepX[8] = {1, 1, 0, -1, -1, -1, 0, 1};
@@ -103,7 +108,8 @@ struct Sweep {
     void move_pixel(int x, int y) const {
         const int w = pixels.width, h = pixels.height;
         const std::size_t index = pixels.index(x, y);
-        // Pixels that do not exist are not-a-number, which is never the lesser.
+        if (pixels.outside(index)) return;
+        // Pixels that do not exist, or are outside, are not-a-number, which is never the lesser.
         float nx[8], ny[8], mean_x = 0, mean_y = 0, count = 0;
         for (int k = 0; k < 8; ++k) {
             const int i = x + kStepX[k], j = y + kStepY[k];
@@ -112,7 +118,7 @@ struct Sweep {
             const float dy = inside ? pixels.dy[pixels.index(i, j)] : std::numeric_limits<float>::quiet_NaN();
             nx[k] = static_cast<float>(i) + dx;
             ny[k] = static_cast<float>(j) + dy;
-            if (k % 2 != 0 || !inside) continue;
+            if (k % 2 != 0 || std::isnan(dx)) continue;
             mean_x += dx;
             mean_y += dy;
             ++count;
@@ -128,24 +134,33 @@ struct Sweep {
         for (std::size_t c = 0; c < further.features; ++c, f += 3)
             step.add(f[1], f[2], f[0] + f[1] * (px - field.ax) + f[2] * (py - field.ay) - color[3 + c]);
         step.solve(sx, sy);
-        if (x == 0 || x == w - 1) sx = 0;
-        if (y == 0 || y == h - 1) sy = 0;
+        if (pixels.pinned_x(x, y)) sx = 0;
+        if (pixels.pinned_y(x, y)) sy = 0;
         for (int half = 0; half <= kHalvings; ++half, sx *= 0.5f, sy *= 0.5f) {
             const float qx = clamped(px + sx, 0, static_cast<float>(w - 1));
             const float qy = clamped(py + sy, 0, static_cast<float>(h - 1));
             if (!(least_area(qx, qy, nx, ny) >= kLeastMovingArea)) continue;
-            place(index, qx - rest_x, qy - rest_y);
-            pixels.face[index] = walk_to({qx, qy}, pixels.face[index], fields, neighbors);
+            const Id face = walk_to({qx, qy}, pixels.face[index], fields, neighbors);
+            if (may_lie_in(face, qx, qy)) place(index, qx - rest_x, qy - rest_y, face);
             return;
         }
     }
 
-    void place(std::size_t index, float dx, float dy) const {
+    void place(std::size_t index, float dx, float dy, Id face) const {
         pixels.dx[index] = dx;
         pixels.dy[index] = dy;
+        pixels.face[index] = face;
     }
 
-    // move_pixel() for (x, y), (x + 2, y), ... (x + 14, y), none of them on a side; three features.
+    // Whether the walk to (x, y) ended there, and not at an outline in between. A rectangle has none.
+    bool may_lie_in(Id face, float x, float y) const {
+        if (pixels.freedom.empty()) return true;
+        const float u = fields[face].u(x, y), v = fields[face].v(x, y);
+        return std::min({u, v, 1 - u - v}) >= -kWeightSlack;
+    }
+
+    // move_pixel() for (x, y), (x + 2, y), ... (x + 14, y), none of them on a side, all deep; three
+    // features.
     IMGMESH_INLINE void move_eight(int x, int y) const {
         const std::size_t index = pixels.index(x, y);
         Float8 field[2][8];
@@ -198,10 +213,19 @@ struct Sweep {
         for (int l = 0; l < 8; ++l) {
             if (!moved[l]) continue;
             const std::size_t i = index + 2 * static_cast<std::size_t>(l);
-            place(i, dx[l], dy[l]);
-            if (least_weight[l] < 0)
-                pixels.face[i] = walk_to({to_x[l], to_y[l]}, pixels.face[i], fields, neighbors);
+            Id face = pixels.face[i];
+            if (least_weight[l] < 0) {
+                face = walk_to({to_x[l], to_y[l]}, face, fields, neighbors);
+                if (!may_lie_in(face, to_x[l], to_y[l])) continue;
+            }
+            place(i, dx[l], dy[l], face);
         }
+    }
+
+    bool all_deep(std::size_t index) const {
+        std::uint8_t all = kDeep;
+        for (std::size_t lane = 0; lane < 16; lane += 2) all &= pixels.freedom[index + lane];
+        return all != 0;
     }
 
     IMGMESH_INLINE void move_row(int y, int parity) const {
@@ -212,7 +236,12 @@ struct Sweep {
                 move_pixel(0, y);
                 x = 2;
             }
-            for (; x + 16 < w; x += 16) move_eight(x, y);  // which reads up to x + 16
+            for (; x + 16 < w; x += 16) {  // move_eight() reads up to x + 16
+                if (pixels.freedom.empty() || all_deep(pixels.index(x, y)))
+                    move_eight(x, y);
+                else
+                    for (int lane = 0; lane < 16; lane += 2) move_pixel(x + lane, y);
+            }
         }
         for (; x < w; x += 2) move_pixel(x, y);
     }
@@ -224,14 +253,35 @@ struct Sweep {
 #endif
 };
 
+std::uint8_t freedom_of(const Mask& mask, int x, int y) {
+    // Where an outline begins and ends at a pixel does not depend on diagonals.
+    const PixelFans fans = fans_at(mask, x, y, [](int) { return false; });
+    if (fans.count != 1) return kPinnedX | kPinnedY;
+    const Fan& fan = fans.fan[0];
+    if (!fan.closed) {
+        const int from = fan.direction[0], to = fan.direction[static_cast<std::size_t>(fan.count - 1)];
+        if (std::abs(from - to) != 4 || from % 2 != 0) return kPinnedX | kPinnedY;
+        return from % 4 == 0 ? kPinnedY : kPinnedX;
+    }
+    for (const PixelStep& d : kAround)
+        if (!mask.at(x + d.dx, y + d.dy)) return 0;
+    return kDeep;
+}
+
 }  // namespace
 
-MovingPixels resting_pixels(const PixelMap& trivial) {
-    MovingPixels pixels{trivial.width, trivial.height, {}, {}, {}};
+MovingPixels resting_pixels(const PixelMap& trivial, const Mask& mask) {
+    MovingPixels pixels{trivial.width, trivial.height, {}, {}, {}, {}};
     pixels.dx.assign(trivial.coords.size(), 0.0f);
     pixels.dy.assign(trivial.coords.size(), 0.0f);
     pixels.face.reserve(trivial.coords.size());
     for (const PixelCoord& coord : trivial.coords) pixels.face.push_back(coord.face);
+    if (mask.empty()) return pixels;
+    pixels.freedom.reserve(trivial.coords.size());
+    for (int y = 0; y < trivial.height; ++y)
+        for (int x = 0; x < trivial.width; ++x) pixels.freedom.push_back(freedom_of(mask, x, y));
+    for (std::size_t i = 0; i < pixels.face.size(); ++i)
+        if (pixels.outside(i)) pixels.dx[i] = pixels.dy[i] = std::numeric_limits<float>::quiet_NaN();
     return pixels;
 }
 

@@ -5,17 +5,34 @@
 #include <vector>
 
 #include "libcore/image/image.h"
+#include "libcore/image/mask.h"
 #include "libcore/param/face_field.h"
 #include "libcore/param/pixel_map.h"
 
 namespace imgmesh {
 
+/// What a pixel of a cut-out may do, as bits.
+enum Freedom : std::uint8_t {
+    kPinnedX = 1,  ///< x stays
+    kPinnedY = 2,  ///< y stays
+    kDeep = 4      ///< all eight pixels around it are inside too
+};
+
 /// Where each pixel of a W x H picture lies on the base mesh, while it is being moved.
 struct MovingPixels {
     int width = 0;
     int height = 0;
-    std::vector<float> dx, dy;  ///< image of the pixel less the pixel [pixels]
-    std::vector<Id> face;       ///< the face that the image lies in
+    std::vector<float> dx, dy;  ///< image of the pixel less the pixel [pixels]; NaN outside a mask
+    std::vector<Id> face;       ///< the face that the image lies in; kNone outside a mask
+    std::vector<std::uint8_t> freedom = {};  ///< of a cut-out's pixels, Freedom bits; empty without a mask
+
+    bool outside(std::size_t pixel) const { return face[pixel] == kNone; }
+    bool pinned_x(int x, int y) const {
+        return freedom.empty() ? x == 0 || x == width - 1 : freedom[index(x, y)] & kPinnedX;
+    }
+    bool pinned_y(int x, int y) const {
+        return freedom.empty() ? y == 0 || y == height - 1 : freedom[index(x, y)] & kPinnedY;
+    }
 
     std::size_t index(int x, int y) const {
         return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
@@ -26,8 +43,10 @@ struct MovingPixels {
     }
 };
 
-/// Every pixel at its own place, in its face of `trivial`.
-MovingPixels resting_pixels(const PixelMap& trivial);
+/// Every pixel inside the mask at its own place, in its face of `trivial`, which knows that mask. Pixels on a
+/// straight horizontal or vertical part of the mask's outline may slide along it; where it bends or pinches,
+/// and in strips one pixel wide, they rest. So the map takes the dense mesh onto itself.
+MovingPixels resting_pixels(const PixelMap& trivial, const Mask& mask = {});
 
 /// The least twice-area of a pixel triangle that moving keeps [px^2]; at rest it is 1.
 inline constexpr float kLeastMovingArea = 0.05f;
@@ -36,7 +55,8 @@ inline constexpr float kLeastMovingArea = 0.05f;
 /// pixel's, t the pixel displaced like the mean of its four neighbours. Steps are at most half a pixel and
 /// are halved until all four triangles (both diagonals) of each 2x2 cell around the pixel keep
 /// kLeastMovingArea, so the map stays a bijection. Pixels of the picture's sides slide along them, corners
-/// rest.
+/// rest; of a cut-out they do as `pixels.freedom` says, its triangles are those that have no pixel outside,
+/// and a pixel that would leave the mesh waits.
 ///
 /// feature    the picture, size of `pixels`; both sides at least 2
 /// further    further_fields() where it has more than three features

@@ -16,9 +16,13 @@ double area2(const Vec2d& p, const Vec2d& q, const Vec2d& r) {
     return (q.x() - p.x()) * (r.y() - p.y()) - (q.y() - p.y()) * (r.x() - p.x());
 }
 
-// The least of the four triangles of a cell.
+// The least of the four triangles of a cell. Those with a corner outside a mask are not-a-number and do not
+// count.
 double cell_area2(const Vec2d& tl, const Vec2d& tr, const Vec2d& bl, const Vec2d& br) {
-    return std::min({area2(tl, tr, br), area2(tl, br, bl), area2(tl, tr, bl), area2(tr, br, bl)});
+    double least = std::numeric_limits<double>::infinity();
+    for (const double area : {area2(tl, tr, br), area2(tl, br, bl), area2(tl, tr, bl), area2(tr, br, bl)})
+        if (area < least) least = area;
+    return least;
 }
 
 class Storing {
@@ -40,8 +44,9 @@ class Storing {
         parallel_blocks(0, map_.height, 16, [&](int first, int last) {
             for (int y = first; y < last; ++y)
                 for (int x = 0; x < map_.width; ++x)
-                    map_.row(y)[static_cast<std::size_t>(x)] =
-                        rounded(pixels_.face[pixels_.index(x, y)], pixels_.image_of(x, y).cast<double>());
+                    if (const Id face = pixels_.face[pixels_.index(x, y)]; face != kNone)
+                        map_.row(y)[static_cast<std::size_t>(x)] =
+                            rounded(face, pixels_.image_of(x, y).cast<double>());
         });
         // Mending is for the odd cell: photographs have one in a thousand at a few vertices, none at 1 %.
         // Where whole regions fold, the faces are too large, and trying each cell would take minutes.
@@ -61,6 +66,7 @@ class Storing {
 
   private:
     Vec2d position(const PixelCoord& coord) const {
+        if (coord.face == kNone) return Vec2d::Constant(std::numeric_limits<double>::quiet_NaN());
         const auto [a, b, c] = mesh_.faces[coord.face];
         const double u = coord.u, v = coord.v;
         return (1 - u - v) * mesh_.position[a].cast<double>() + u * mesh_.position[b].cast<double>() +
@@ -133,6 +139,7 @@ class Storing {
         for (int corner = 0; corner < 4; ++corner) {
             const int x = cell_x + corner % 2, y = cell_y + corner / 2;
             PixelCoord& coord = map_.coords[pixels_.index(x, y)];
+            if (coord.face == kNone) continue;
             PixelCoord best = coord;
             double best_area = area_around(x, y);
             const Vec2d center = pass % 2 ? position(coord) : pixels_.image_of(x, y).cast<double>();
@@ -141,8 +148,8 @@ class Storing {
                 for (int direction = 0; direction < 8 && best_area < 2 * kLeastStoredArea; ++direction) {
                     const double angle = direction * 0.78539816339744831;
                     Vec2d q = center + radius * Vec2d(std::cos(angle), std::sin(angle));
-                    if (x == 0 || x == map_.width - 1) q.x() = x;
-                    if (y == 0 || y == map_.height - 1) q.y() = y;
+                    if (pixels_.pinned_x(x, y)) q.x() = x;
+                    if (pixels_.pinned_y(x, y)) q.y() = y;
                     q = q.cwiseMax(0.0).cwiseMin(Vec2d(map_.width - 1, map_.height - 1));
                     coord = rounded(walk_to(q.cast<float>(), coord.face, fields_, neighbors_), q);
                     const double area = area_around(x, y);

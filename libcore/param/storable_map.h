@@ -13,7 +13,7 @@ namespace imgmesh {
 /// loses.
 inline constexpr double kLeastStoredArea = 0.01;
 
-/// Weights of every pixel, rounded to the grid of `precision` so that they sum to one, and the pixel
+/// Weights of every pixel inside, rounded to the grid of `precision` so that they sum to one, and the pixel
 /// triangles (both diagonals of each 2x2 cell) kept at kLeastStoredArea: pixels of a cell that rounding would
 /// fold are moved to other nearby grid points. Nothing where that fails: some face is too large for weights
 /// so coarse.

@@ -4,8 +4,11 @@
 
 namespace imgmesh {
 
-PixelMap trivial_map(const BaseMesh& mesh, int width, int height) {
-    return rasterize(mesh, sample_grid(width, height, 1));
+PixelMap trivial_map(const BaseMesh& mesh, int width, int height, const Mask& mask) {
+    PixelMap map = rasterize(mesh, sample_grid(width, height, 1));
+    for (std::size_t i = 0; i < map.coords.size(); ++i)
+        if (!mask.contains(i)) map.coords[i] = {};
+    return map;
 }
 
 }  // namespace imgmesh

@@ -30,10 +30,11 @@ void append_point(std::string& out, char command, const Vec2d& p) {
     append_number(out, p.y());
 }
 
-// Vertices on the picture's sides move out by half a pixel, to where the outermost pixels end.
+// Vertices on the picture's sides move out by half a pixel, to where the outermost pixels end. Not so those
+// of cut-outs, whose outlines run through pixel centres everywhere.
 std::vector<Vec2d> outward(const BaseMesh& mesh, const SourceInfo& source) {
-    const auto moved = [](float x, int side) {
-        if (side == 1) return double(x);  // already -0.5 .. 0.5
+    const auto moved = [&](float x, int side) {
+        if (side == 1 || source.has_mask) return double(x);  // already -0.5 .. 0.5
         if (x <= 0) return x - 0.5;
         return x >= static_cast<float>(side - 1) ? x + 0.5 : double(x);
     };

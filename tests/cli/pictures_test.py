@@ -132,6 +132,107 @@ class Pictures(CliCase):
         picture_files.png(self.folder / "in.png", picture_files.ramp(24, 16))
         self.assertEqual(self.build("in.png")["alpha"], "none")
 
+    def test_alpha_cuts(self):
+        """By default: outside there is nothing, inside is the picture. Half is the threshold."""
+        rgba = np.concatenate([picture_files.ramp(24, 16), np.ones((16, 24, 1))], axis=-1)
+        rgba[4:9, 6:12, 3] = 127 / 255  # a hole
+        rgba[:, 20:, 3] = 0
+        rgba[12, 22, 3] = 128 / 255  # and an island
+        picture_files.png(self.folder / "in.png", rgba)
+        inside = rgba[..., 3] > 0.5
+        for args, draco in (((), "edgebreaker"), (("--draco", "sequential"), ""), (("--draco", "none"), "")):
+            report, back = self.round_trip("in.png", "--density", "100", *args)
+            self.assertEqual((report["alpha"], report["pixels"]), ("cut", inside.sum()))
+            self.assertEqual(back.shape, (16, 24, 4))
+            np.testing.assert_array_equal(back[..., 3] > 0, inside)
+            original = np.round(rgba[..., :3] * 255) / 255
+            self.assertGreater(picture_files.psnr(back[inside][:, :3], original[inside]), EXACT_DB)
+        info = self.report("imgmesh-info", "out.glb")
+        self.assertTrue(info["has_mask"])
+        self.assertEqual(info["levels"][0]["map"]["pixels"], inside.sum())
+        self.assertEqual(info["levels"][0]["map"]["flipped_triangles"], 0)
+        difference = self.report("imgmesh-compare", "in.png", "out.glb")["difference"]
+        self.assertEqual(difference["pixels"], inside.sum())
+        self.assertEqual(self.build("in.png", "--alpha-threshold", "0.498")["pixels"], inside.sum() + 30)
+        self.assertEqual(self.build("in.png", "--alpha", "ignore")["alpha"], "ignored")
+        rgba[..., 3] = 1
+        picture_files.png(self.folder / "in.png", rgba)
+        self.assertEqual(self.build("in.png")["alpha"], "cut")  # of which an opaque one leaves all
+        self.assertFalse(self.report("imgmesh-info", "out.glb")["has_mask"])
+
+    def test_mask_goes_over_alpha(self):
+        rgba = np.concatenate([picture_files.noise(20, 15, 3), np.ones((15, 20, 1))], axis=-1)
+        rgba[:3, :, 3] = 0
+        picture_files.png(self.folder / "in.png", rgba)
+        inside = np.zeros((15, 20), dtype=bool)
+        inside[:10, 2:18] = True
+        inside[5, 5:9] = False
+        shades = inside[..., None].astype(float)
+        masks = {"grey": shades, "color": np.repeat(shades, 3, axis=-1),
+                 "alpha": np.concatenate([np.zeros((15, 20, 3)), shades], axis=-1),
+                 "opaque": np.concatenate([np.repeat(shades, 3, axis=-1), np.ones((15, 20, 1))], axis=-1)}
+        for name, samples in masks.items():
+            with self.subTest(name):
+                picture_files.png(self.folder / "mask.png", samples)
+                report, back = self.round_trip("in.png", "--mask", "mask.png")
+                self.assertEqual((report["alpha"], report["pixels"]), ("ignored", inside.sum()))
+                np.testing.assert_array_equal(back[..., 3] > 0, inside)
+
+    def test_cut_outs_of_any_depth_and_size(self):
+        """Odd sizes, 16 bits, float; the mask to the pixel, whatever the picture."""
+        for width, height in ((1, 1), (1, 7), (31, 17)):
+            alpha = (picture_files.noise(width, height, 1, seed=width) > 0.4).astype(float)
+            alpha[0, 0] = 1
+            for name in ("8.png", "16.png", "grey.png", "float.exr"):
+                color = picture_files.noise(width, height, 1 if name == "grey.png" else 3)
+                samples = np.concatenate([color, alpha], axis=-1)
+                with self.subTest(f"{name} {width}x{height}"):
+                    if name == "float.exr":
+                        picture_files.write_float(self.folder / name, samples, names=("R", "G", "B", "A"))
+                    else:
+                        picture_files.png(self.folder / name, samples, 16 if name == "16.png" else 8)
+                    report, back = self.round_trip(name)
+                    self.assertEqual(report["flipped_pixel_triangles"], 0)
+                    self.assertEqual(report["pixels"], alpha.sum())
+                    seen = back[..., 3] > 0 if back.shape[2] == 4 else np.ones((height, width), bool)
+                    np.testing.assert_array_equal(seen, alpha[..., 0] > 0)
+
+    def test_levels_and_drawings_of_a_cut_out(self):
+        y, x = np.mgrid[0:60, 0:80]
+        ring = np.abs(np.hypot(x - 40, y - 30) - 18) < 9
+        rgba = np.concatenate([picture_files.ramp(80, 60), ring[..., None].astype(float)], axis=-1)
+        picture_files.png(self.folder / "in.png", rgba)
+        report = self.build("in.png", "--levels", "3", "--density", "20", "--max-cluster", "60",
+                            "--min-quality", "0.2")
+        self.assertEqual(len(report["levels"]), 3)
+        for level in range(3):
+            mesh = self.report("imgmesh-info", "out.glb")["levels"][level]
+            self.assertEqual((mesh["map"]["pixels"], mesh["map"]["flipped_triangles"]), (ring.sum(), 0))
+            self.run_ok("imgmesh-reconstruct", "out.glb", "-o", "map.png", "--level", level)
+            np.testing.assert_array_equal(picture_files.read(self.folder / "map.png")[..., 3] > 0, ring)
+            for mode in ("gouraud", "wire", "flat"):  # the mesh covers the mask, and little else
+                self.run_ok("imgmesh-reconstruct", "out.glb", "-o", "d.png", "--mode", mode, "--level", level)
+                drawn = picture_files.read(self.folder / "d.png")[..., 3] > 0
+                self.assertTrue(np.all(drawn[ring]))
+                self.assertLess(drawn.sum() - ring.sum(), 0.1 * ring.sum())
+        self.run_ok("imgmesh-reconstruct", "out.glb", "-o", "wire.svg", "--mode", "wire")
+
+    def test_cut_outs_that_cannot_be(self):
+        rgba = np.concatenate([picture_files.ramp(12, 9), np.zeros((9, 12, 1))], axis=-1)
+        picture_files.png(self.folder / "clear.png", rgba)
+        picture_files.png(self.folder / "in.png", picture_files.ramp(12, 9))
+        picture_files.png(self.folder / "black.png", np.zeros((9, 12, 1)))
+        picture_files.png(self.folder / "small.png", np.ones((9, 11, 1)))
+        out = ("-o", "out.glb")
+        self.assert_error("imgmesh-build", ("clear.png", *out), 5, "clear.png", "no pixel is inside")
+        self.assert_error("imgmesh-build", ("in.png", *out, "--mask", "black.png"), 5, "no pixel is inside")
+        self.assert_error("imgmesh-build", ("in.png", *out, "--mask", "small.png"), 4, "11x9", "12x9")
+        self.assert_error("imgmesh-build", ("in.png", *out, "--mask", "none.png"), 3, "none.png")
+        self.assert_error("imgmesh-build", ("in.png", *out, "--mask", ""), 2, "--mask")
+        for threshold in ("0", "1.01", "-1", "nan", ""):
+            self.assert_error("imgmesh-build", ("in.png", *out, "--alpha-threshold", threshold), 2,
+                              "--alpha-threshold")
+
     def test_precision_of_the_map(self):
         picture_files.png(self.folder / "in.png", picture_files.ramp(24, 16))
         for precision in ("half", "float"):

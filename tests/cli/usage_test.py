@@ -63,7 +63,7 @@ class Usage(CliCase):
     def test_names_are_those_listed(self):
         for option, value, listed in (("--bary", "double", "half, float"),
                                       ("--draco", "zip", "edgebreaker, sequential, none"),
-                                      ("--color-space", "CMYK", "sRGB, linear"), ("--alpha", "keep", "ignore")):
+                                      ("--color-space", "CMYK", "sRGB, linear"), ("--alpha", "keep", "cut, ignore")):
             self.assert_error("imgmesh-build", ["in.png", "-o", "out.glb", option, value], 2, option, value, listed)
         self.assert_error("imgmesh-reconstruct", ["in.glb", "-o", "o.png", "--mode", "visits"], 2, "--mode", "wire")
         self.assert_error("imgmesh-reconstruct", ["in.glb", "-o", "o.png", "--depth", "12"], 2, "--depth", "16")

@@ -1,0 +1,89 @@
+// The dense mesh at one pixel of a cut-out: its fans of triangles, or the strip that it is part of.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "libcore/image/mask.h"
+
+namespace imgmesh {
+
+/// The eight pixels around one, counter-clockwise on screen (y down) from the east; odd ones are diagonals.
+struct PixelStep {
+    int dx, dy;
+};
+inline constexpr PixelStep kAround[8] = {{1, 0},  {1, -1}, {0, -1}, {-1, -1},
+                                         {-1, 0}, {-1, 1}, {0, 1},  {1, 1}};
+
+/// Consecutive triangles around a pixel: directions (indices into kAround) of their other corners in
+/// counter-clockwise order; a closed fan does not repeat its first one.
+struct Fan {
+    std::array<std::uint8_t, 8> direction{};
+    int count = 0;
+    bool closed = false;
+
+    bool has(int d) const {
+        for (int k = 0; k < count; ++k)
+            if (direction[static_cast<std::size_t>(k)] == d) return true;
+        return false;
+    }
+};
+
+/// All fans of a pixel, each a vertex of its own: more than one where the mask pinches.
+struct PixelFans {
+    std::array<Fan, 4> fan;
+    int count = 0;
+};
+
+/// diagonal_through(q): whether the diagonal of cell q (of directions 2q to 2q + 2) ends at this pixel.
+/// None for a pixel outside, or inside of which every cell has fewer than three pixels inside.
+template <typename DiagonalThrough>
+PixelFans fans_at(const Mask& mask, int x, int y, const DiagonalThrough& diagonal_through) {
+    PixelFans out;
+    if (!mask.at(x, y)) return out;
+    bool inside[8];
+    for (int d = 0; d < 8; ++d) inside[d] = mask.at(x + kAround[d].dx, y + kAround[d].dy);
+    // The triangles, from one direction to another.
+    std::array<std::array<std::uint8_t, 2>, 8> faces{};
+    int count = 0;
+    const auto add = [&](int from, int to) {
+        faces[static_cast<std::size_t>(count++)] = {static_cast<std::uint8_t>(from),
+                                                    static_cast<std::uint8_t>(to)};
+    };
+    for (int q = 0; q < 4; ++q) {
+        const int a = 2 * q, d = a + 1, b = (a + 2) % 8;
+        if (inside[a] && inside[b] && !(inside[d] && diagonal_through(q))) {
+            add(a, b);
+        } else {
+            if (inside[a] && inside[d]) add(a, d);
+            if (inside[d] && inside[b]) add(d, b);
+        }
+    }
+    const auto follows = [&](int k) {  // face k on the one before it
+        return faces[static_cast<std::size_t>((k + count - 1) % count)][1] ==
+               faces[static_cast<std::size_t>(k)][0];
+    };
+    int first = 0;
+    while (first < count && follows(first)) ++first;
+    if (count == 0) return out;
+    const bool closed = first == count;
+    for (int n = 0; n < count; ++n) {
+        const int k = closed ? n : (first + n) % count;
+        const auto [from, to] = faces[static_cast<std::size_t>(k)];
+        if (n == 0 || (!closed && !follows(k))) {
+            Fan& fan = out.fan[static_cast<std::size_t>(out.count++)];
+            fan.closed = closed;
+            fan.direction[static_cast<std::size_t>(fan.count++)] = from;
+        }
+        Fan& fan = out.fan[static_cast<std::size_t>(out.count - 1)];
+        if (!closed || n + 1 < count) fan.direction[static_cast<std::size_t>(fan.count++)] = to;
+    }
+    return out;
+}
+
+/// How a pixel inside the mask that is in no triangle is meshed: as part of a strip one pixel wide along a
+/// row or a column, or as a square of its own.
+enum class Strip { kNoStrip, kAlongX, kAlongY, kAlone };
+Strip strip_at(const Mask& mask, int x, int y);
+
+}  // namespace imgmesh
