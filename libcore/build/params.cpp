@@ -38,6 +38,7 @@ bool stops_by_itself(const BuildParams& p) {
 
 void check_params(const BuildParams& p) {
     const auto positive = [](double x) { return std::isfinite(x) && x > 0; };
+    check_channels(p.channels);
     require(p.stop.faces.value_or(2) >= 2,
             cat("faces is ", p.stop.faces.value_or(2), ", expected 2 or more"));
     require(p.stop.vertices.value_or(4) >= 4,

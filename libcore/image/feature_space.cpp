@@ -18,19 +18,16 @@ std::string listed(const std::vector<std::string>& names) {
     return list;
 }
 
-void check_choices(const Image& image, const std::vector<ChannelChoice>& choices) {
-    for (std::size_t i = 0; i < choices.size(); ++i) {
-        const auto& [name, weight] = choices[i];
-        if (!(weight > 0 && std::isfinite(weight)))
-            throw Error(ErrorCode::kUsage, cat("channel ", name, " has the weight ", weight,
-                                               ", expected a finite number above 0"));
-        for (std::size_t k = 0; k < i; ++k)
-            if (choices[k].name == name)
-                throw Error(ErrorCode::kUsage, cat("channel ", name, " is chosen twice"));
-        if (image.channel(name) < 0)
-            throw Error(ErrorCode::kBadFile,
-                        cat("the picture has no channel ", name, ", it has ", listed(image.channel_names)));
-    }
+std::vector<std::string> names_of(const std::vector<ChannelChoice>& choices) {
+    std::vector<std::string> names;
+    for (const ChannelChoice& choice : choices) names.push_back(choice.name);
+    return names;
+}
+
+double weight_of(const std::vector<ChannelChoice>& choices, const std::string& name) {
+    for (const ChannelChoice& choice : choices)
+        if (choice.name == name) return choice.weight;
+    return 1;
 }
 
 }  // namespace
@@ -46,33 +43,44 @@ SplitNames split_names(const std::vector<std::string>& names) {
     return split;
 }
 
+void check_channels(const std::vector<ChannelChoice>& choices) {
+    const auto refuse = [](const std::string& text) { throw Error(ErrorCode::kUsage, text); };
+    const std::vector<std::string> names = names_of(choices);
+    for (const auto& [name, weight] : choices) {
+        if (!(weight > 0 && std::isfinite(weight)))
+            refuse(cat("channel ", name, " has the weight ", weight, ", expected a finite number above 0"));
+        if (std::ranges::count(names, name) > 1) refuse(cat("channel ", name, " is chosen twice"));
+    }
+    const SplitNames split = split_names(names);
+    for (const std::string& name : split.color)
+        if (weight_of(choices, name) != weight_of(choices, split.color[0]))
+            refuse("R, G and B are one colour and have one weight");
+    if (split.features() > kMaxFeatures)
+        refuse(cat("the channels are ", split.features(), " features, at most ", kMaxFeatures,
+                   split.color.empty() ? "" : "; a colour counts as three"));
+}
+
 FeatureSpace feature_space(const Image& image, const std::vector<ChannelChoice>& choices, const Mask& mask) {
-    check_choices(image, choices);
-    std::vector<std::string> names;
-    for (const ChannelChoice& choice : choices) names.push_back(choice.name);
-    const SplitNames split = split_names(choices.empty() ? image.channel_names : names);
-    if (choices.empty() && split.color.empty())
-        throw Error(ErrorCode::kUnsupported, "the picture has no colour: neither channels R, G, B nor Y");
+    check_channels(choices);
+    for (const ChannelChoice& choice : choices)
+        if (image.channel(choice.name) < 0)
+            throw Error(ErrorCode::kBadFile, cat("the picture has no channel ", choice.name, ", it has ",
+                                                 listed(image.channel_names)));
+    const SplitNames split = split_names(choices.empty() ? image.channel_names : names_of(choices));
     FeatureSpace space;
     space.color = !split.color.empty();
-    if (space.color) space.gamut = gamut_of(image, mask);
-    const auto weight = [&](const std::string& name) {
-        for (const ChannelChoice& choice : choices)
-            if (choice.name == name) return static_cast<float>(choice.weight);
-        return 1.0f;
-    };
-    if (space.color) space.color_weight = weight(split.color[0]);
-    for (const std::string& name : split.color)
-        if (weight(name) != space.color_weight)
-            throw Error(ErrorCode::kUsage,
-                        cat("channels R and ", name, " have the weights ", space.color_weight, " and ",
-                            weight(name), "; R, G and B are one colour"));
+    if (choices.empty() && !space.color)
+        throw Error(ErrorCode::kUnsupported,
+                    cat("the picture has no colour, neither channels R, G, B nor Y, but ",
+                        listed(image.channel_names), "; channels can be chosen"));
+    if (space.color) {
+        space.gamut = gamut_of(image, mask);
+        space.color_weight = static_cast<float>(weight_of(choices, split.color[0]));
+    }
     if (choices.empty()) return space;
     space.plain = split.plain;
-    for (const std::string& name : space.plain) space.plain_weight.push_back(weight(name));
-    if (space.features() > kMaxFeatures)
-        throw Error(ErrorCode::kUsage, cat("the channels are ", space.features(), " features, at most ",
-                                           kMaxFeatures, space.color ? "; a colour counts as three" : ""));
+    for (const std::string& name : space.plain)
+        space.plain_weight.push_back(static_cast<float>(weight_of(choices, name)));
     return space;
 }
 

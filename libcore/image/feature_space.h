@@ -40,10 +40,13 @@ struct ChannelChoice {
     double weight = 1;  ///< of its values as they are, beside L*u*v* with L* from 0 to 100; > 0
 };
 
-/// The space of the chosen channels, of the picture's colour for none. R, G, B must have one weight. What is
-/// outside `mask` does not count. Throws Error(kUsage) for a channel that is chosen twice, a weight that is
-/// not finite and above 0, different weights of R, G and B and more than kMaxFeatures features; kBadFile for
-/// a channel that the picture does not have; kUnsupported for a picture without colour where none is chosen.
+/// Throws Error(kUsage) for a channel that is chosen twice, a weight that is not finite and above 0,
+/// different weights of R, G and B and more than kMaxFeatures features.
+void check_channels(const std::vector<ChannelChoice>& choices);
+
+/// The space of the chosen channels, of the picture's colour for none. What is outside `mask` does not count.
+/// Throws as check_channels() does, Error(kBadFile) for a channel that the picture does not have,
+/// kUnsupported for a picture without colour where none is chosen.
 FeatureSpace feature_space(const Image& image, const std::vector<ChannelChoice>& choices,
                            const Mask& mask = {});
 
