@@ -4,8 +4,10 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <atomic>
+#include <cassert>
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
@@ -35,21 +37,29 @@ struct Descriptor {
 
 // ---- Temporary names that a signal handler removes -------------------------------------------------------
 // More files than slots at one time is no error: those beyond are removed by their destructor alone.
-std::array<std::atomic<const char*>, 256> g_temporaries;
+struct Slot {
+    std::atomic<const char*> path;
+    std::atomic<const char*> guard;  // or null: the file goes only if this one was still there and went
+};
+std::array<Slot, 256> g_temporaries;
 std::atomic<bool> g_ending = false;
 static_assert(std::atomic<const char*>::is_always_lock_free, "a signal handler uses it");
 
-void register_temporary(const char* path) {
-    for (auto& slot : g_temporaries) {
+void register_temporary(const char* path, const char* guard = nullptr) {
+    static const char kReserved = 0;
+    for (Slot& slot : g_temporaries) {
         const char* empty = nullptr;
-        if (slot.compare_exchange_strong(empty, path)) return;
+        if (!slot.path.compare_exchange_strong(empty, &kReserved)) continue;
+        slot.guard = guard;
+        slot.path = path;  // the reserved slot's path, which names no file, is gone from here on
+        return;
     }
 }
 
 void forget_temporary(const char* path) {
-    for (auto& slot : g_temporaries) {
+    for (Slot& slot : g_temporaries) {
         const char* expected = path;
-        if (slot.compare_exchange_strong(expected, nullptr)) return;
+        if (slot.path.compare_exchange_strong(expected, nullptr)) return;
     }
     // Taken by a signal handler on another thread: the process is ending, and the string must live until
     // then.
@@ -59,8 +69,18 @@ void forget_temporary(const char* path) {
 // Async-signal-safe: lock-free atomics, unlink, pause, raise.
 extern "C" void remove_temporaries_and_end(int signal) {
     g_ending = true;
-    for (auto& slot : g_temporaries)
-        if (const char* path = slot.exchange(nullptr)) ::unlink(path);
+    const char* removed[g_temporaries.size()];
+    std::size_t count = 0;
+    for (Slot& slot : g_temporaries) {
+        if (slot.guard) continue;
+        const char* path = slot.path.exchange(nullptr);
+        if (path && ::unlink(path) == 0) removed[count++] = path;
+    }
+    for (Slot& slot : g_temporaries) {
+        const char* guard = slot.guard;
+        const char* path = guard ? slot.path.exchange(nullptr) : nullptr;
+        if (path && std::find(removed, removed + count, guard) != removed + count) ::unlink(path);
+    }
     ::raise(signal);  // SA_RESETHAND and SA_NODEFER: the default action, at once
 }
 
@@ -87,6 +107,14 @@ std::string resolve_target(const std::string& path, bool overwrite) {
     return target.string();
 }
 
+// A rename reaches the disk with the folder. Some file systems cannot flush folders; the file is complete
+// under its name all the same, so a failure here is none of ours.
+void flush_folder(const std::string& target) {
+    const std::filesystem::path folder = std::filesystem::path(target).parent_path();
+    const Descriptor dir(::open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+    if (dir.fd >= 0) ::fsync(dir.fd);
+}
+
 // Not mkstemp(), which makes files that nobody else can read whatever the umask says.
 int create_temporary(const std::string& target, std::string& name) {
     static std::atomic<unsigned> counter = 0;
@@ -95,8 +123,13 @@ int create_temporary(const std::string& target, std::string& name) {
         const std::string base =
             cat(".imgmesh-", ::getpid(), "-", counter.fetch_add(1), path.extension().string());
         name = (path.parent_path() / base).string();
+        register_temporary(name.c_str());  // before it exists, so that a signal finds it whenever it does
         const int fd = ::open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-        if (fd >= 0 || errno != EEXIST) return fd;  // a name in use was left by a killed run with our number
+        if (fd >= 0) return fd;
+        const int error = errno;
+        forget_temporary(name.c_str());
+        errno = error;
+        if (error != EEXIST) return fd;  // a name in use was left by a killed run with our number
     }
 }
 
@@ -106,11 +139,11 @@ AtomicFile::AtomicFile(std::string path, bool overwrite)
     : path_(std::move(path)), target_(resolve_target(path_, overwrite)), overwrite_(overwrite) {
     const Descriptor file(create_temporary(target_, temporary_path_));
     if (file.fd < 0) fail(path_, "cannot write", errno);
-    register_temporary(temporary_path_.c_str());
 }
 
 AtomicFile::~AtomicFile() {
-    if (!committed_) ::unlink(temporary_path_.c_str());
+    if (kept_) return;
+    ::unlink(temporary_path_.c_str());
     forget_temporary(temporary_path_.c_str());
 }
 
@@ -126,6 +159,26 @@ void AtomicFile::write(std::span<const std::uint8_t> bytes) {
 }
 
 void AtomicFile::commit() {
+    flush_and_rename();
+    keep();
+    flush_folder(target_);
+}
+
+void AtomicFile::place(const AtomicFile& before) {
+    assert(!overwrite_);  // what is removed in place of an old file would be lost with it
+    flush_and_rename();
+    forget_temporary(temporary_path_.c_str());
+    temporary_path_ = target_;
+    register_temporary(temporary_path_.c_str(), before.temporary_path_.c_str());
+    flush_folder(target_);
+}
+
+void AtomicFile::keep() {
+    kept_ = true;
+    forget_temporary(temporary_path_.c_str());
+}
+
+void AtomicFile::flush_and_rename() {
     {
         const Descriptor file(::open(temporary_path_.c_str(), O_WRONLY | O_CLOEXEC));
         if (file.fd < 0 || ::fsync(file.fd) != 0) fail(path_, "cannot write", errno);
@@ -142,12 +195,6 @@ void AtomicFile::commit() {
         }
     }
     if (status != 0) fail(path_, overwrite_ ? "cannot write" : "not overwritten", errno);
-    committed_ = true;
-    // The rename itself reaches the disk with the folder. Some file systems cannot flush folders; the file is
-    // complete under its name all the same, so a failure here is none of ours.
-    const std::filesystem::path folder = std::filesystem::path(target_).parent_path();
-    const Descriptor dir(::open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
-    if (dir.fd >= 0) ::fsync(dir.fd);
 }
 
 void remove_temporaries_on_signals() {

@@ -26,13 +26,20 @@ class AtomicFile {
     /// Replaces the temporary file's content.
     void write(std::span<const std::uint8_t> bytes);
     void commit();
+    /// As commit(), but until keep() destruction removes the file, now under its own name, and so do signals
+    /// as long as `before` is not committed: for a file that is of no use until `before`, which lives longer,
+    /// stands. Not with `overwrite`.
+    void place(const AtomicFile& before);
+    void keep();
 
   private:
+    void flush_and_rename();
+
     std::string path_;    ///< as given: for messages
     std::string target_;  ///< what is renamed to: `path_` with symbolic links followed
     std::string temporary_path_;
     bool overwrite_;
-    bool committed_ = false;
+    bool kept_ = false;
 };
 
 /// From now on SIGINT, SIGTERM and SIGHUP remove the temporary files of living AtomicFiles before they end

@@ -14,7 +14,7 @@ enum class DracoMode { kEdgebreaker, kSequential, kOff };
 
 struct ContainerOptions {
     DracoMode draco = DracoMode::kEdgebreaker;
-    bool overwrite = true;  ///< x.bin and x.exr are replaced only where there is an x.gltf they belong to
+    bool overwrite = true;  ///< replace what stands at the path; other files are never replaced
 };
 
 /// Writes `mesh_image`; the extension of `path` (.glb or .gltf) decides the spelling.
@@ -22,18 +22,16 @@ struct ContainerOptions {
 /// Loses nothing of a MeshImage whose positions lie on kPositionStep, whose colours are 16-bit linear codes
 /// (storable_color, libcore/image/color.h) and whose weights lie on the map's precision grid: read_container
 /// gives the same mesh and map back, up to the order of vertices and faces and the rotation of corners, which
-/// Draco chooses, and vertices without a face. Several files are renamed to their names last, the .gltf after
-/// what it refers to. Throws Error: kUsage for another extension; kIo where a file cannot be written.
+/// Draco chooses, and vertices without a face. The .gltf gets its name after what it refers to, and the files
+/// of a container that it replaces go last: at any moment the old container stands there or the new one.
+/// Throws Error: kUsage for another extension; kIo where a file cannot be written.
 void write_container(const std::string& path, const MeshImage& mesh_image,
                      const ContainerOptions& options = {});
 
-/// The files that write_container makes for `path`, itself first: a .gltf has a .bin and a .exr
-/// beside it. Throws Error(kUsage) for another extension.
+/// The names that write_container prefers for the files of `path`, itself first: a .gltf has a .bin and a
+/// .exr beside it, which get names with a hash where other files have these. Throws Error(kUsage) for another
+/// extension.
 std::vector<std::string> container_files(const std::string& path);
-
-/// Whether a container stands at `path` that refers to the files of container_files(path). Only then may a
-/// writer replace the ones beside it: anything else of these names may be somebody's picture.
-bool owns_its_files(const std::string& path);
 
 /// What read_container refuses before it takes memory.
 struct ContainerLimits {

@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "formats/atomic_file.h"
+#include "formats/companion_file.h"
 #include "formats/container.h"
 #include "formats/exr_layers.h"
 #include "formats/glb.h"
@@ -92,22 +93,28 @@ void write_glb(const std::string& path, Asset& asset, std::vector<std::uint8_t> 
     file.commit();
 }
 
+// The rename of the .gltf switches over: until then the files of the old container stay as they are, and only
+// then they go. A crash in between leaves files that nothing refers to.
 void write_gltf(const std::string& path, Asset& asset, const std::vector<std::uint8_t>& buffer,
                 const std::vector<std::uint8_t>& layers, bool overwrite) {
-    const std::vector<std::string> names = container_files(path);
-    const bool overwrite_others = overwrite && owns_its_files(path);
+    const std::vector<std::string> old_files = companions_of(path);
     AtomicFile gltf(path, overwrite);
-    AtomicFile bin(names[1], overwrite_others), exr(names[2], overwrite_others);
-    asset.buffer_name = std::filesystem::path(names[1]).filename().string();
-    asset.layers_name = std::filesystem::path(names[2]).filename().string();
+    CompanionFile bin(path, ".bin", buffer), exr(path, ".exr", layers);
+    asset.buffer_name = bin.name();
+    asset.layers_name = exr.name();
     asset.buffer_length = buffer.size();
     const std::string json = json_from_asset(asset);
-    bin.write(buffer);
-    exr.write(layers);
     gltf.write({reinterpret_cast<const std::uint8_t*>(json.data()), json.size()});
-    bin.commit();
-    exr.commit();
+    bin.place(gltf);
+    exr.place(gltf);
     gltf.commit();
+    bin.keep();
+    exr.keep();
+    for (const std::string& file : old_files) {
+        const std::string name = std::filesystem::path(file).filename().string();
+        std::error_code error;  // a file that stays behind is in nobody's way
+        if (name != bin.name() && name != exr.name()) std::filesystem::remove(file, error);
+    }
 }
 
 }  // namespace
@@ -116,20 +123,6 @@ std::vector<std::string> container_files(const std::string& path) {
     if (spelling_of(path) == Spelling::kGlb) return {path};
     const std::string stem = std::filesystem::path(path).replace_extension().string();
     return {path, stem + ".bin", stem + ".exr"};
-}
-
-bool owns_its_files(const std::string& path) {
-    const std::vector<std::string> names = container_files(path);
-    if (names.size() == 1) return true;
-    try {
-        constexpr std::uint64_t kMaxJsonBytes = 1 << 24;  // ours have a few kilobytes
-        const std::vector<std::uint8_t> bytes = read_file(path, kMaxJsonBytes);
-        const Asset asset = asset_from_json({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, {});
-        return asset.buffer_name == std::filesystem::path(names[1]).filename() &&
-               asset.layers_name == std::filesystem::path(names[2]).filename();
-    } catch (const std::exception&) {
-        return false;  // absent, or no container that a reader accepts
-    }
 }
 
 void write_container(const std::string& path, const MeshImage& mesh_image, const ContainerOptions& options) {

@@ -1,16 +1,15 @@
 #include "formats/stored_mesh.h"
 
-#include <openssl/evp.h>
-
 #include <algorithm>
 #include <bit>
 #include <cmath>
 #include <compare>
-#include <memory>
 #include <numeric>
+#include <span>
 #include <tuple>
 
 #include "formats/findings.h"
+#include "formats/sha256.h"
 #include "libcore/base/error.h"
 #include "libcore/image/color.h"
 
@@ -201,20 +200,11 @@ BaseMesh base_from_stored(const StoredMesh& mesh) {
 }
 
 std::string topology_hash(const StoredMesh& mesh) {
-    const std::unique_ptr<EVP_MD_CTX, decltype(&EVP_MD_CTX_free)> context(EVP_MD_CTX_new(), EVP_MD_CTX_free);
-    std::array<unsigned char, 32> digest;
     static_assert(sizeof(Face) == 12 && sizeof(mesh.position[0]) == 12, "no padding");
-    if (!context || !EVP_DigestInit_ex(context.get(), EVP_sha256(), nullptr) ||
-        !EVP_DigestUpdate(context.get(), mesh.faces.data(), mesh.faces.size() * sizeof(Face)) ||
-        !EVP_DigestUpdate(context.get(), mesh.position.data(), mesh.position.size() * 12) ||
-        !EVP_DigestFinal_ex(context.get(), digest.data(), nullptr))
-        throw Error(ErrorCode::kInternal, "libcrypto has no SHA-256");
-    std::string hex;
-    for (const unsigned byte : digest) {
-        hex += "0123456789abcdef"[byte >> 4];
-        hex += "0123456789abcdef"[byte & 15];
-    }
-    return hex;
+    const auto bytes = [](const auto& values) {
+        return std::span(reinterpret_cast<const std::uint8_t*>(values.data()), values.size() * 12);
+    };
+    return sha256_hex({bytes(mesh.faces), bytes(mesh.position)});
 }
 
 FaceMatch match_faces(const StoredMesh& from, const StoredMesh& to) {

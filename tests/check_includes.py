@@ -13,7 +13,7 @@ INCLUDE = re.compile(r'^\s*#\s*include\s*[<"]([^>"]+)[>"]', re.MULTILINE)
 SOURCES = {".h", ".hpp", ".cpp", ".inl"}
 
 # Which part of libcore formats may know: values, no algorithms.
-VALUES = re.compile(r"libcore/(base/|image/|mesh/|param/pixel_map\.h$|param/mesh_image\.h$)")
+VALUES = re.compile(r"libcore/(base/|image/|mesh/|param/pixel_map\.h$|param/mesh_image\.h$|warp/warp_edits\.h$)")
 # Libraries by the names of their headers.
 TBB = re.compile(r"(oneapi/)?tbb(/|\.h$)")
 FILE_LIBRARIES = re.compile(r"OpenEXR/|Imath/|Imf\w*\.h|OpenImageIO/|draco/|tiny_gltf|tinygltf|nlohmann/|webp/|json/")
@@ -101,6 +101,8 @@ CASES = [
     ("formats/a.cpp", "libcore/param/pixel_map.h", False),
     ("formats/a.cpp", "libcore/param/mesh_image.h", False),
     ("formats/a.cpp", "libcore/base/error.h", False),
+    ("formats/a.cpp", "libcore/warp/warp_edits.h", False),
+    ("formats/a.cpp", "libcore/warp/warp_image.h", True),
     ("formats/a.h", "OpenEXR/ImfHeader.h", False),
     ("formats/a.cpp", "nlohmann/json.hpp", False),
     ("tools/a.cpp", "CLI/CLI.hpp", False),

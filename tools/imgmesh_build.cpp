@@ -79,6 +79,13 @@ void add_options(CLI::App& app, Options& o) {
         app, "--min-quality", o.params.min_quality, {0, 0.8},
         "Least q = 4 sqrt(3) area / sum of squared edges of a triangle, whatever the limits above say");
     const BuildParams params;
+    add_count(
+        app, "--refine", o.params.refine, {0, kMaxRefine},
+        cat("Rounds that move vertices, flip edges and put vertices elsewhere to lower the error (default ",
+            params.refine, ")"));
+    add_choice<Objective, Objective>(
+        app, "--objective", o.params.objective, {{"luv", Objective::kLuv}, {"rgb", Objective::kRgb}},
+        "Error to lower: L*u*v*, or sRGB with colours for the mesh drawn alone (default luv)");
     add_number(app, "--geometry-weight", o.params.geometry_weight, {0, kNoLimit, true},
                cat("Weight of geometry in the quadrics (default ", params.geometry_weight, ")"));
     add_number(app, "--color-weight", o.params.color_weight, {0, kNoLimit, true},
@@ -170,10 +177,7 @@ Mask read_mask(const Options& o) {
 
 Report build_one(const Job& job, const Options& o, const Context& context, const Progress& progress) {
     const auto start = std::chrono::steady_clock::now();
-    // What stands beside a .gltf is replaced only where there is one that it belongs to.
-    const bool replace_others = context.overwrite && owns_its_files(job.output);
-    for (const std::string& file : container_files(job.output))
-        check_output(file, file == job.output ? context.overwrite : replace_others);
+    check_output(job.output, context.overwrite);
     const Image image = read_image(job.input, o.color_space);
     const bool cut = o.cut && o.mask.empty();
     Mask mask = cut ? alpha_mask(image, static_cast<float>(o.alpha_threshold)) : read_mask(o);

@@ -6,6 +6,7 @@
 
 #include "libcore/base/error.h"
 #include "libcore/build/params.h"
+#include "libcore/build/refine_level.h"
 #include "libcore/collapse/collapse_edges.h"
 #include "libcore/image/color.h"
 #include "libcore/mesh/grid_mesh.h"
@@ -72,6 +73,11 @@ std::vector<Level> build_levels(const FeatureImage& feature, const FeatureSpace&
     fit.color_weight = params.projection_color_weight;
     fit.bary = params.bary;
     fit.space = space;
+    fit.keep_colors = params.objective == Objective::kRgb;
+    RefineParams refinement;
+    refinement.rounds = params.refine;
+    refinement.min_quality = params.min_quality;
+    refinement.max_face_area = collapse.max_face_area;
     report.collapses = collapsed.back().collapses;
     report.levels.clear();
     std::vector<Level> levels;
@@ -79,7 +85,11 @@ std::vector<Level> build_levels(const FeatureImage& feature, const FeatureSpace&
         Level level{std::move(collapsed[k].mesh), {}, collapsed[k].error * params.color_weight};
         const double share = 0.3 / static_cast<double>(collapsed.size()),
                      begin = 0.7 + share * static_cast<double>(k);
-        level.map = fit_map(level.mesh, feature, fit, part_of(progress, begin, begin + share), mask);
+        const double middle = params.refine > 0 ? begin + 0.7 * share : begin;
+        if (params.refine > 0 || params.objective == Objective::kRgb)
+            refine_level(level.mesh, feature, mask, params.objective, refinement,
+                         part_of(progress, begin, middle));
+        level.map = fit_map(level.mesh, feature, fit, part_of(progress, middle, begin + share), mask);
         const PixelMap trivial = trivial_map(level.mesh, feature.width, feature.height, mask);
         report.levels.push_back(
             {map_rms(level.mesh, level.map, feature), map_rms(level.mesh, trivial, feature), {}});
@@ -105,6 +115,10 @@ BuildResult build_mesh_image(const Image& image, const BuildParams& params, cons
     // What lies outside of the colours that a container holds could only mislead the fit: L*u*v* of negative
     // light has no bound.
     const FeatureSpace space = feature_space(image, params.channels, mask);
+    const bool color_alone = space.color && space.features() == 3 && space.color_weight == 1;
+    if ((params.refine > 0 || params.objective == Objective::kRgb) &&
+        !(color_alone && space.gamut == Gamut::kDisplay))
+        throw Error(ErrorCode::kUnsupported, "refinement is for colour alone, without light above 1");
     const FeatureImage feature = extract_features(image, space, mask);
 
     BuildResult result;

@@ -33,6 +33,14 @@ struct PyramidParams {
         errors;  ///< instead: quadric error of each level, rising; then StopParams do not count
 };
 
+/// Which error refinement lowers, of the mesh drawn alone.
+enum class Objective {
+    kLuv,  ///< L*u*v*; colours are then fitted to the pixel map and to the drawing
+    kRgb   ///< encoded sRGB, interpolated as such; colours are what that drawing alone wants
+};
+
+inline constexpr int kMaxRefine = 1000;
+
 struct BuildParams {
     std::vector<ChannelChoice> channels;  ///< the feature space; none: the picture's colour
     StopParams stop;                      ///< of the finest level
@@ -44,6 +52,8 @@ struct BuildParams {
     double projection_color_weight = 1.0 / 30;  ///< of colour against smoothness in the map; 0: trivial map
     std::optional<WeightPrecision> bary;        ///< none: half where the map stays a bijection, else float
     std::optional<std::int64_t> max_cluster;    ///< no face with more pixels than this; >= 3
+    int refine = 0;  ///< rounds of refinement (refine/refine.h) of each level; 0 to kMaxRefine
+    Objective objective = Objective::kLuv;
     double min_quality = 0;  ///< no triangle of a lesser q = 4 sqrt(3) area / sum of squared edges; 0 to 0.8
 };
 
@@ -65,7 +75,8 @@ struct BuildResult {
     BuildReport report;
 };
 
-/// picture -> features -> dense mesh -> collapse -> base mesh -> pixel map -> least-squares features.
+/// picture -> features -> dense mesh -> collapse -> base mesh -> refinement -> pixel map -> least-squares
+/// features.
 /// Linear light below 0 is clipped to 0, and above 1 to 1 unless the picture is one of floats (gamut_of). A
 /// side of one pixel counts as a strip one pixel wide (docs/format.md). Alpha is ignored but for what `mask`
 /// has taken from it, and where it is chosen as a channel. Same result for any number of threads.

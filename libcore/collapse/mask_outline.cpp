@@ -158,7 +158,9 @@ bool MaskOutline::within_band(const RingMesh& rings, const Sides& s, const Vec2f
 }
 
 // What is gained lies within the band of the chain, other edges within that of their own. Points of an
-// outline are at most sqrt(2) apart, so something that touches has points nearer than 2 (0.75 + 0.71) < 3.
+// outline are at most sqrt(2) apart, so something that touches has points nearer than 2 (1 + 0.71), which
+// along either axis is 3 whole pixels. (Strips, whose points are not at pixel centres, are straight and
+// stay.)
 bool MaskOutline::collides(const RingMesh& rings, const Sides& s, const Vec2f& m) {
     constexpr int kReach = 3;
     const auto at = [&](Id v) { return Vec2f(rings[v].x, rings[v].y); };

@@ -9,9 +9,11 @@
 
 namespace imgmesh {
 
-/// No point of a simplified outline is farther from the dense one than this, nor the other way round [px]:
-/// stairs of one pixel become straight, two pixels do not.
-inline constexpr float kOutlineBand = 0.75f;
+/// No point of a simplified outline is farther from the dense one than this, nor the other way round [px].
+/// The pixels of a straight line are less than one pixel from a line that covers them, so stairs of any slope
+/// become straight; with 0.75 the flat ones stay, and a disc of 300 pixels keeps 116 outline vertices instead
+/// of 76 (docs/decisions/0005-cut-outs.md).
+inline constexpr float kOutlineBand = 1.0f;
 
 /// Two neighbours on an outline may merge where
 /// - the mesh only grows (a progressive hull), so that it always covers every pixel inside;

@@ -50,6 +50,7 @@ PixelMap fit_map(BaseMesh& mesh, const FeatureImage& feature, const FitParams& p
                  const Progress& progress, const Mask& mask) {
     const PixelMap trivial = trivial_map(mesh, feature.width, feature.height, mask);
     const auto fit = [&](const PixelMap& map) {
+        if (params.keep_colors) return;
         fit_colors(mesh, feature, {{&map, 1 - params.gouraud_share}, {&trivial, params.gouraud_share}},
                    params.space);
     };

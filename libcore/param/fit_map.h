@@ -18,12 +18,14 @@ struct FitParams {
     int rounds = 4;                       ///< of relaxation, colours refitted after each
     int sweeps = 4;                       ///< of relaxation a round
     FeatureSpace space;                   ///< of the picture
+    bool keep_colors = false;             ///< the mesh's features stay as they are, but for rounding
     double gouraud_share =
         0.1;  ///< how much the drawing without the map counts in the fit of colours, 0 to 1
 };
 
-/// Finds the pixel map (relax.h, storable_map.h) and replaces the mesh's features by the least-squares ones,
-/// colours rounded to what a container holds. The map is a bijection of the pixel grid onto the mesh.
+/// Finds the pixel map (relax.h, storable_map.h) and replaces the mesh's features by the least-squares ones
+/// (unless params.keep_colors), colours rounded to what a container holds. The map is a bijection of the
+/// pixel grid onto the mesh.
 ///
 /// mesh     covers the picture's rectangle, or every pixel inside the mask; positions on kPositionStep
 /// mask     empty(), or of the picture's size: pixels outside get no face

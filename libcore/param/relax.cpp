@@ -159,7 +159,7 @@ struct Sweep {
         return std::min({u, v, 1 - u - v}) >= -kWeightSlack;
     }
 
-    // move_pixel() for (x, y), (x + 2, y), ... (x + 14, y), none of them on a side, all deep; three
+    // move_pixel() for (x, y), (x + 2, y), ... (x + 14, y), none of them on a side or an outline; three
     // features.
     IMGMESH_INLINE void move_eight(int x, int y) const {
         const std::size_t index = pixels.index(x, y);
@@ -222,8 +222,8 @@ struct Sweep {
         }
     }
 
-    bool all_deep(std::size_t index) const {
-        std::uint8_t all = kDeep;
+    bool all_free(std::size_t index) const {
+        std::uint8_t all = kFree;
         for (std::size_t lane = 0; lane < 16; lane += 2) all &= pixels.freedom[index + lane];
         return all != 0;
     }
@@ -237,7 +237,7 @@ struct Sweep {
                 x = 2;
             }
             for (; x + 16 < w; x += 16) {  // move_eight() reads up to x + 16
-                if (pixels.freedom.empty() || all_deep(pixels.index(x, y)))
+                if (pixels.freedom.empty() || all_free(pixels.index(x, y)))
                     move_eight(x, y);
                 else
                     for (int lane = 0; lane < 16; lane += 2) move_pixel(x + lane, y);
@@ -263,9 +263,7 @@ std::uint8_t freedom_of(const Mask& mask, int x, int y) {
         if (std::abs(from - to) != 4 || from % 2 != 0) return kPinnedX | kPinnedY;
         return from % 4 == 0 ? kPinnedY : kPinnedX;
     }
-    for (const PixelStep& d : kAround)
-        if (!mask.at(x + d.dx, y + d.dy)) return 0;
-    return kDeep;
+    return kFree;
 }
 
 }  // namespace

@@ -15,7 +15,7 @@ namespace imgmesh {
 enum Freedom : std::uint8_t {
     kPinnedX = 1,  ///< x stays
     kPinnedY = 2,  ///< y stays
-    kDeep = 4      ///< all eight pixels around it are inside too
+    kFree = 4      ///< inside the outline, with triangles all around: its straight neighbours are inside too
 };
 
 /// Where each pixel of a W x H picture lies on the base mesh, while it is being moved.

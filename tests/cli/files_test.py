@@ -98,8 +98,17 @@ class Unwritable(CliCase):
                 (self.folder / name).mkdir()
                 if tool == "imgmesh-reconstruct":
                     self.assert_error(tool, [source, "-o", name], 3, name)
+
+    def test_names_beside_a_gltf_that_others_have(self):
+        """What stands there stays: the container's own files get other names."""
         (self.folder / "y.bin").mkdir()
-        self.assert_error("imgmesh-build", ["in.png", "-o", "y.gltf"], 3, "y.bin")
+        (self.folder / "y.exr").write_bytes(b"mine")
+        for options in ([], ["--no-overwrite"]):
+            self.run_ok("imgmesh-build", "in.png", "-o", "y.gltf", "-q", *options)
+            self.assertEqual((self.folder / "y.exr").read_bytes(), b"mine")
+            self.assertEqual(self.report("imgmesh-info", "y.gltf", "--validate")["findings"], [])
+            self.assertEqual(sorted(f.split("-")[0] for f in self.files() if f.startswith("y-")), ["y", "y"])
+            (self.folder / "y.gltf").unlink()
 
     def test_no_overwrite(self):
         for tool, source, names in self.runs:
@@ -108,8 +117,6 @@ class Unwritable(CliCase):
                 self.assert_error(tool, [source, "-o", name, "--no-overwrite"], 3, name)
         (self.folder / "x.svg").write_bytes(b"mine")
         self.assert_error(self.svg[0], [*self.svg[1:], "-o", "x.svg", "--no-overwrite"], 3, "x.svg")
-        (self.folder / "y.bin").write_bytes(b"mine")
-        self.assert_error("imgmesh-build", ["in.png", "-o", "y.gltf", "--no-overwrite"], 3, "y.bin")
         (self.folder / "dangling.glb").symlink_to("nowhere")
         self.assert_error("imgmesh-build", ["in.png", "-o", "dangling.glb", "--no-overwrite"], 3, "dangling.glb")
 
@@ -153,10 +160,11 @@ class Unwritable(CliCase):
         (self.folder / "x.exr").write_bytes(b"a picture of somebody's")
         (self.folder / "x.gltf").write_text(
             '{"asset":{"version":"2.0"},"buffers":[{"uri":"geometry.bin","byteLength":1}]}')
-        before = self.files()
-        result = self.run_tool("imgmesh-build", "p.png", "-o", "x.gltf")
-        self.assert_error_lines("imgmesh-build", result, 3, 1)
-        self.assertEqual(self.files(), before)
+        (self.folder / "geometry.bin").write_bytes(b"g")
+        self.run_ok("imgmesh-build", "p.png", "-o", "x.gltf", "-q")
+        self.assertEqual((self.folder / "x.exr").read_bytes(), b"a picture of somebody's")
+        self.assertEqual((self.folder / "geometry.bin").read_bytes(), b"g")
+        self.assertEqual(self.report("imgmesh-info", "x.gltf", "--validate")["findings"], [])
 
     def test_layers_of_another_mesh_are_refused(self):
         for name, seed in (("a", 1), ("b", 2)):

@@ -216,6 +216,7 @@ class Pictures(CliCase):
                 self.assertTrue(np.all(drawn[ring]))
                 self.assertLess(drawn.sum() - ring.sum(), 0.1 * ring.sum())
         self.run_ok("imgmesh-reconstruct", "out.glb", "-o", "wire.svg", "--mode", "wire")
+        self.assert_error("imgmesh-reconstruct", ("out.glb", "-o", "map.jpg"), 2, "map.jpg")
 
     def test_cut_outs_that_cannot_be(self):
         rgba = np.concatenate([picture_files.ramp(12, 9), np.zeros((9, 12, 1))], axis=-1)

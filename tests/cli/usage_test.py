@@ -49,6 +49,7 @@ class Usage(CliCase):
             "--geometry-weight": ["0"],
             "--color-weight": ["0"],
             "--projection-color-weight": ["-1e-9"],
+            "--refine": ["-1", "1001", "1.5", "all"],
             "--threads": ["0", "1025", "all"],
         }
         for option, values in wrong.items():
@@ -62,6 +63,7 @@ class Usage(CliCase):
 
     def test_names_are_those_listed(self):
         for option, value, listed in (("--bary", "double", "half, float"),
+                                      ("--objective", "lab", "luv, rgb"),
                                       ("--draco", "zip", "edgebreaker, sequential, none"),
                                       ("--color-space", "CMYK", "sRGB, linear"), ("--alpha", "keep", "cut, ignore")):
             self.assert_error("imgmesh-build", ["in.png", "-o", "out.glb", option, value], 2, option, value, listed)

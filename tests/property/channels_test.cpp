@@ -223,6 +223,18 @@ TEST_CASE(
         CHECK(a.levels[0].mesh.feature[i] == doctest::Approx(b.levels[0].mesh.feature[i]).epsilon(1e-4));
 }
 
+TEST_CASE("channels: refinement, which knows colour alone, is refused") {
+    const Image image = picture_with_depth();
+    BuildParams params = chosen({{"R"}, {"G"}, {"B"}, {"depth.Z"}});
+    params.refine = 1;
+    CHECK_THROWS_AS(build_mesh_image(image, params), Error);
+    params.channels.pop_back();
+    CHECK_NOTHROW(build_mesh_image(image, params));
+    Image light = image;
+    light.data[0] = 2;
+    CHECK_THROWS_AS(build_mesh_image(light, params), Error);
+}
+
 TEST_CASE("channels: a mesh without colour is drawn as its channels, and not as colour") {
     const Image image = picture_with_depth();
     const MeshImage built = build_mesh_image(image, chosen({{"depth.Z", 20}})).mesh_image;

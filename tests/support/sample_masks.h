@@ -27,6 +27,28 @@ inline Mask mask_of(const std::vector<std::string>& rows) {
     });
 }
 
+/// A small mask at random: noise, blobs, or blobs with noise; the same for the same seed; never without a
+/// pixel inside.
+inline Mask random_mask(std::uint32_t seed) {
+    std::mt19937 random(seed);
+    const auto below = [&](unsigned n) { return static_cast<int>(random() % n); };
+    const int width = 1 + below(22), height = 1 + below(18), kind = below(3), share = below(1000);
+    double cx[4], cy[4], cr[4];
+    for (int k = 0; k < 4; ++k) {
+        cx[k] = below(static_cast<unsigned>(width));
+        cy[k] = below(static_cast<unsigned>(height));
+        cr[k] = 1 + below(8);
+    }
+    Mask mask = mask_where(width, height, [&](int x, int y) {
+        if (kind == 0) return below(1000) < share;
+        bool inside = false;
+        for (int k = 0; k < 4; ++k) inside ^= std::hypot(x - cx[k], y - cy[k]) < cr[k];
+        return inside != (kind == 2 && below(20) == 0);
+    });
+    mask.inside[static_cast<std::size_t>(below(static_cast<unsigned>(mask.inside.size())))] = 1;
+    return mask;
+}
+
 struct NamedMask {
     std::string name;
     Mask mask;

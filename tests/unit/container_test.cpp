@@ -258,9 +258,17 @@ TEST_CASE("container: usage and files that are there already") {
     // photo.exr may be the picture that the container is made from.
     AtomicFile photo(folder / "photo.exr", true);
     photo.commit();
-    CHECK(code("photo.gltf", true) == ErrorCode::kIo);
+    CHECK(code("photo.gltf", true) == ErrorCode::kOk);
     CHECK(bytes_of(folder / "photo.exr").empty());
-    CHECK_FALSE(fs::exists(folder / "photo.bin"));
+    const std::vector<std::string> files = read_container(folder / "photo.gltf").facts.files;
+    CHECK(files[1] == folder / "photo.bin");
+    CHECK(fs::path(files[2]).filename().string().size() == std::string("photo-0123456789abcdef.exr").size());
+    // The same again changes nothing, another container leaves nothing of the old one.
+    CHECK(code("photo.gltf", true) == ErrorCode::kOk);
+    CHECK(read_container(folder / "photo.gltf").facts.files == files);
+    write_container(folder / "photo.gltf", random_mesh_image(9, 9, 1, WeightPrecision::kHalf, false, 4));
+    for (const std::string& file : {files[1], files[2]}) CHECK_FALSE(fs::exists(file));
+    CHECK(bytes_of(folder / "photo.exr").empty());
     CHECK_THROWS_AS(read_container(folder / "missing.glb"), Error);
 }
 

@@ -1,0 +1,17 @@
+// SHA-256 through libcrypto.
+#pragma once
+
+#include <cstdint>
+#include <initializer_list>
+#include <span>
+#include <string>
+
+namespace imgmesh {
+
+/// Of the pieces one after the other, in lower-case hex.
+std::string sha256_hex(std::initializer_list<std::span<const std::uint8_t>> pieces);
+inline std::string sha256_hex(std::span<const std::uint8_t> bytes) {
+    return sha256_hex({bytes});
+}
+
+}  // namespace imgmesh

@@ -1,0 +1,34 @@
+// Source: docs/decisions/0012-refinement.md. One round:
+//   1. vertices move by Gauss-Newton steps on position and own colour (refiner.cpp)
+//   2. edges flip where that lowers the squared error
+//   3. vertices are relocated (relocate.cpp)
+//   4. all colours are fitted by least squares
+#include "libcore/refine/refine.h"
+
+#include "libcore/refine/refiner.h"
+
+namespace imgmesh {
+
+RefineReport refine(BaseMesh& mesh, const FeatureImage& picture, const RefineParams& params,
+                    const Progress& progress, const Mask& mask) {
+    const PicturePlanes planes(picture, mask);
+    Refiner refiner(mesh, planes, params);
+    mesh = refiner.result();
+    RefineReport report;
+    report.error.push_back(refiner.total_error());
+    for (int round = 0; round < params.rounds; ++round) {
+        if (progress) progress(static_cast<double>(round) / params.rounds, "refine");
+        if (params.relocations > 0) report.relocations += refiner.relocate();
+        report.flips += refiner.flip_edges();
+        report.moves += refiner.move_vertices();
+        refiner.fit_colors();
+        // Every step lowers the error, so where nothing is left to gain only rounding moves it.
+        const double error = refiner.total_error();
+        if (!(error < report.error.back())) break;
+        report.error.push_back(error);
+        mesh = refiner.result();
+    }
+    return report;
+}
+
+}  // namespace imgmesh

@@ -1,0 +1,48 @@
+// Refinement: the base mesh's vertices, edges and colours adjusted to the picture's own pixels.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "libcore/base/progress.h"
+#include "libcore/image/image.h"
+#include "libcore/image/mask.h"
+#include "libcore/mesh/base_mesh.h"
+
+namespace imgmesh {
+
+/// Which colours a vertex may have: those of a container (in_gamut), or [0, 1] in each channel.
+enum class ColorRange { kLuv, kUnit };
+
+struct RefineParams {
+    int rounds = 0;          ///< of colours, moves, flips and relocations; >= 0
+    double min_quality = 0;  ///< no new triangle of a lesser q = 4 sqrt(3) area / sum of squared edges
+    double max_face_area = std::numeric_limits<double>::infinity();  ///< no new triangle larger [px^2]
+    double shape_weight = 0;    ///< of sum (1/q - 1) over faces, in mean squared errors of a face; >= 0
+    double relocations = 0.02;  ///< share of the vertices that may be put elsewhere in a round; 0 to 1
+    ColorRange range = ColorRange::kLuv;
+};
+
+struct RefineReport {
+    /// Squared error summed over pixels and channels: with fitted colours at the start, then after each
+    /// round.
+    std::vector<double> error;
+    std::int64_t moves = 0, flips = 0, relocations = 0;
+};
+
+/// Lowers the squared error of the mesh drawn with colours interpolated linearly over its faces. Each round
+/// fits all colours by least squares, moves vertices by Gauss-Newton steps, flips edges, and takes vertices
+/// from where their loss costs least to where they gain most; every single step lowers the error, so it never
+/// rises. The number of vertices stays.
+///
+/// mesh     any outline, three channels, positions on kPositionStep; corners and outlines other than straight
+///          sides of the bounding box stay, vertices of such sides slide
+/// picture  what to draw, in the space of mesh.feature; pixels outside the mesh do not count,
+///          nor do those outside `mask`, which is empty() or of the picture's size
+///
+/// Source: docs/decisions/0012-refinement.md. Deterministic; one thread.
+RefineReport refine(BaseMesh& mesh, const FeatureImage& picture, const RefineParams& params,
+                    const Progress& progress = {}, const Mask& mask = {});
+
+}  // namespace imgmesh

@@ -1,0 +1,264 @@
+#include "libcore/refine/refiner.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "libcore/image/color.h"
+
+namespace imgmesh {
+
+// No new triangle is thinner than the collapse allows (collapse/star_limits.h).
+constexpr double kFatness = 0.05;
+
+void Refiner::add_shape(Cost& cost, const Vec2f& a, const Vec2f& b, const Vec2f& c) const {
+    const double area2 = signed_area2(a, b, c);
+    const double ab = (b - a).squaredNorm(), bc = (c - b).squaredNorm(), ca = (a - c).squaredNorm();
+    if (!(area2 > kFatness * std::max({ab, bc, ca})) || area2 > 2 * params_.max_face_area) cost.legal = false;
+    const double q = area2 > 0 ? 2 * std::sqrt(3.0) * area2 / (ab + bc + ca) : 1e-6;
+    cost.least_q = std::min(cost.least_q, q);
+    cost.shape += 1 / q - 1;
+}
+
+Refiner::Refiner(const BaseMesh& mesh, const PicturePlanes& picture, const RefineParams& params)
+    : picture_(picture), params_(params), mesh_(mesh), error_(mesh.faces.size(), 0.0) {
+    fit_colors();
+    shape_unit_ = params.shape_weight * total_error() / static_cast<double>(mesh.faces.size());
+}
+
+double Refiner::total_error() const {
+    double sum = 0;
+    for (Id f = 0; f < mesh_.faces.size(); ++f)
+        if (mesh_.live_face(f)) sum += error_[f];
+    return sum;
+}
+
+Vec3f Refiner::allowed(const Vec3f& color) const {
+    if (params_.range == ColorRange::kLuv) return in_gamut(color);
+    return color.cwiseMax(0.0f).cwiseMin(1.0f);
+}
+
+bool Refiner::better(const Cost& now, const Cost& before) const {
+    // Gains within the rounding of the sums are none.
+    const double slack = 1e-5 * before.error + 1e-9;
+    if (!now.legal || !(now.error < before.error - slack)) return false;
+    // A face below the floor may only become better.
+    if (now.least_q < params_.min_quality && now.least_q < before.least_q) return false;
+    return now.error + shape_unit_ * now.shape < before.error + shape_unit_ * before.shape;
+}
+
+double Refiner::face_error(const Face& face) const {
+    return corner_sums(picture_, corner(face[0]), corner(face[1]), corner(face[2])).ee;
+}
+
+Refiner::Cost Refiner::cost_of(const Star& star) const {
+    Cost cost;
+    for (int k = 0; k < star.size; ++k) {
+        const Id f = star.face[static_cast<std::size_t>(k)];
+        const auto [a, b, c] = mesh_.faces[f];
+        cost.error += error_[f];
+        add_shape(cost, mesh_.position[a], mesh_.position[b], mesh_.position[c]);
+    }
+    return cost;
+}
+
+// Least squares over all pixels by projected Gauss-Seidel, as in param/fit_colors.cpp, on changes of the
+// colours; the faces' errors follow from the same sums.
+void Refiner::fit_colors() {
+    std::vector<FaceSums> sums(mesh_.faces.size());
+    for (Id f = 0; f < mesh_.faces.size(); ++f)
+        if (mesh_.live_face(f)) {
+            const auto [a, b, c] = mesh_.faces[f];
+            sums[f] = face_sums(picture_, corner(a), corner(b), corner(c));
+        }
+    const std::vector<Vec3f> before = mesh_.color;
+    std::vector<Vec3d> change(mesh_.position.size(), Vec3d::Zero());
+    constexpr int kPasses = 6;
+    // A vertex that no pixel touches stays as it is.
+    constexpr double kPull = 1e-3;
+    Star star;
+    for (int pass = 0; pass < kPasses; ++pass)
+        for (Id v = 0; v < mesh_.position.size(); ++v) {
+            if (!mesh_.star(v, star)) continue;
+            double diagonal = kPull;
+            Vec3d rhs = kPull * change[v];
+            for (int k = 0; k < star.size; ++k) {
+                const Id f = star.face[static_cast<std::size_t>(k)];
+                const std::size_t i = star.corner[static_cast<std::size_t>(k)];
+                diagonal += sums[f].ww[i][i];
+                rhs -= sums[f].we[i];
+                for (const std::size_t j : {(i + 1) % 3, (i + 2) % 3})
+                    rhs -= sums[f].ww[i][j] * change[mesh_.faces[f][j]];
+            }
+            const Vec3f best = before[v] + (rhs / diagonal).cast<float>(), next = allowed(best);
+            if ((next - best).squaredNorm() >= (mesh_.color[v] - best).squaredNorm()) continue;
+            mesh_.color[v] = next;
+            change[v] = (next - before[v]).cast<double>();
+        }
+    for (Id f = 0; f < mesh_.faces.size(); ++f) {
+        if (!mesh_.live_face(f)) continue;
+        double e = sums[f].ee;
+        for (std::size_t i = 0; i < 3; ++i) {
+            const Vec3d& di = change[mesh_.faces[f][i]];
+            e += 2 * di.dot(sums[f].we[i]);
+            for (std::size_t j = 0; j < 3; ++j) e += sums[f].ww[i][j] * di.dot(change[mesh_.faces[f][j]]);
+        }
+        error_[f] = std::max(0.0, e);
+    }
+}
+
+bool Refiner::place(const Star& star, const Vec2f& position, const Vec3f& color, double least_q,
+                    Placement& out) const {
+    out.position = position;
+    out.cost = {};
+    std::array<CornerSums, Star::kMost> sums;
+    double ww = 1e-3;
+    Vec3d we = Vec3d::Zero();
+    for (std::size_t k = 0; k < static_cast<std::size_t>(star.size); ++k) {
+        const Face& face = mesh_.faces[star.face[k]];
+        const std::size_t i = star.corner[k];
+        add_shape(out.cost, position, mesh_.position[face[(i + 1) % 3]], mesh_.position[face[(i + 2) % 3]]);
+    }
+    if (!out.cost.legal || out.cost.least_q < std::min(least_q, params_.min_quality)) return false;
+    for (std::size_t k = 0; k < static_cast<std::size_t>(star.size); ++k) {
+        const Face& face = mesh_.faces[star.face[k]];
+        const std::size_t i = star.corner[k];
+        sums[k] =
+            corner_sums(picture_, {position, color}, corner(face[(i + 1) % 3]), corner(face[(i + 2) % 3]));
+        ww += sums[k].ww;
+        we += sums[k].we;
+    }
+    out.color = allowed(color - (we / ww).cast<float>());
+    const Vec3d change = (out.color - color).cast<double>();
+    for (std::size_t k = 0; k < static_cast<std::size_t>(star.size); ++k) {
+        out.face_error[k] =
+            std::max(0.0, sums[k].ee + 2 * change.dot(sums[k].we) + sums[k].ww * change.squaredNorm());
+        out.cost.error += out.face_error[k];
+    }
+    return true;
+}
+
+void Refiner::set(const Star& star, Id v, const Placement& placement) {
+    mesh_.position[v] = placement.position;
+    mesh_.color[v] = placement.color;
+    for (std::size_t k = 0; k < static_cast<std::size_t>(star.size); ++k)
+        error_[star.face[k]] = placement.face_error[k];
+}
+
+// With e the drawing's error and w the vertex's weight, moving the vertex by d and its colour by s changes a
+// pixel's colour by w (s - G d), G the gradient of the pixel's face. Least squares over s leaves
+//   (sum ww G'G - M'M / ww) d = sum G'we - M'we / ww,   M = sum ww G.
+Vec2f Refiner::newton_step(const Star& star, Id v) const {
+    double hxx = 0, hxy = 0, hyy = 0, ww = 1e-3;
+    Vec2d rhs = Vec2d::Zero(), center = Vec2d::Zero();
+    Vec3d mx = Vec3d::Zero(), my = Vec3d::Zero(), we = Vec3d::Zero();
+    const Corner own = corner(v);
+    for (std::size_t k = 0; k < static_cast<std::size_t>(star.size); ++k) {
+        const Face& face = mesh_.faces[star.face[k]];
+        const std::size_t i = star.corner[k];
+        const Corner b = corner(face[(i + 1) % 3]), c = corner(face[(i + 2) % 3]);
+        const CornerSums sums = corner_sums(picture_, own, b, c);
+        const Vec2d pb = (b.position - own.position).cast<double>(),
+                    pc = (c.position - own.position).cast<double>();
+        const Vec3d db = (b.color - own.color).cast<double>(), dc = (c.color - own.color).cast<double>();
+        const double det = pb.x() * pc.y() - pb.y() * pc.x();
+        const Vec3d gx = (pc.y() * db - pb.y() * dc) / det, gy = (pb.x() * dc - pc.x() * db) / det;
+        hxx += sums.ww * gx.squaredNorm();
+        hxy += sums.ww * gx.dot(gy);
+        hyy += sums.ww * gy.squaredNorm();
+        rhs += Vec2d(gx.dot(sums.we), gy.dot(sums.we));
+        mx += sums.ww * gx;
+        my += sums.ww * gy;
+        we += sums.we;
+        ww += sums.ww;
+        center += pb + pc;
+    }
+    center /= 2 * star.size;
+    hxx -= mx.squaredNorm() / ww;
+    hxy -= mx.dot(my) / ww;
+    hyy -= my.squaredNorm() / ww;
+    rhs -= Vec2d(mx.dot(we), my.dot(we)) / ww;
+    // A pull to the ring's centre: what shape weighs, and a little where the colours say nothing.
+    const double pull =
+        1e-3 * (hxx + hyy) + 1e-6 + (star.closed ? shape_unit_ / (1 + center.squaredNorm()) : 0);
+    hxx += pull;
+    hyy += pull;
+    if (star.closed) rhs += shape_unit_ / (1 + center.squaredNorm()) * center;
+    const std::uint8_t fixed = mesh_.fixed[v];
+    if (fixed == RefineMesh::kFixedX) return {0, static_cast<float>(rhs.y() / hyy)};
+    if (fixed == RefineMesh::kFixedY) return {static_cast<float>(rhs.x() / hxx), 0};
+    const double det = hxx * hyy - hxy * hxy;
+    if (!(det > 0)) return {0, 0};
+    return {static_cast<float>((hyy * rhs.x() - hxy * rhs.y()) / det),
+            static_cast<float>((hxx * rhs.y() - hxy * rhs.x()) / det)};
+}
+
+bool Refiner::move_vertex(Id v) {
+    Star star;
+    if (mesh_.fixed[v] == RefineMesh::kFixed || !mesh_.star(v, star)) return false;
+    const Cost before = cost_of(star);
+    Vec2f step = newton_step(star, v);
+    double longest = 0;
+    for (std::size_t k = 0; k < static_cast<std::size_t>(star.size); ++k) {
+        const Face& face = mesh_.faces[star.face[k]];
+        longest = std::max(
+            longest,
+            double((mesh_.position[face[(star.corner[k] + 1u) % 3]] - mesh_.position[v]).squaredNorm()));
+    }
+    if (!std::isfinite(step.x()) || !std::isfinite(step.y())) return false;
+    const float limit = static_cast<float>(0.5 * std::sqrt(longest));
+    if (step.norm() > limit) step *= limit / step.norm();
+    Placement placement;
+    constexpr int kHalvings = 3;
+    Vec2f last = mesh_.position[v];
+    for (int half = 0; half <= kHalvings; ++half, step *= 0.5f) {
+        const Vec2f p(snapped(mesh_.position[v].x() + step.x()), snapped(mesh_.position[v].y() + step.y()));
+        if (p == mesh_.position[v] || p == last) break;
+        last = p;
+        if (place(star, p, mesh_.color[v], before.least_q, placement) && better(placement.cost, before)) {
+            set(star, v, placement);
+            return true;
+        }
+    }
+    return false;
+}
+
+std::int64_t Refiner::move_vertices() {
+    std::int64_t moves = 0;
+    for (Id v = 0; v < mesh_.position.size(); ++v)
+        if (mesh_.live_vertex(v)) moves += move_vertex(v);
+    return moves;
+}
+
+bool Refiner::flip_if_better(Id f, int i) {
+    const auto n = static_cast<std::size_t>(i);
+    const Id g = mesh_.across[f][n];
+    const Id p = mesh_.faces[f][n], a = mesh_.faces[f][(n + 1) % 3], b = mesh_.faces[f][(n + 2) % 3];
+    const std::size_t j = mesh_.across[g][0] == f ? 0 : mesh_.across[g][1] == f ? 1 : 2;
+    const Id q = mesh_.faces[g][j];
+    Cost before, after;
+    add_shape(after, mesh_.position[p], mesh_.position[a], mesh_.position[q]);
+    add_shape(after, mesh_.position[q], mesh_.position[b], mesh_.position[p]);
+    if (!after.legal) return false;
+    before.error = error_[f] + error_[g];
+    add_shape(before, mesh_.position[p], mesh_.position[a], mesh_.position[b]);
+    add_shape(before, mesh_.position[q], mesh_.position[b], mesh_.position[a]);
+    const double first = face_error({p, a, q}), second = face_error({q, b, p});
+    after.error = first + second;
+    if (!better(after, before)) return false;
+    mesh_.flip(f, i);
+    error_[f] = first;
+    error_[g] = second;
+    return true;
+}
+
+std::int64_t Refiner::flip_edges() {
+    std::int64_t flips = 0;
+    for (Id f = 0; f < mesh_.faces.size(); ++f)
+        for (int i = 0; i < 3; ++i) {
+            const Id g = mesh_.live_face(f) ? mesh_.across[f][static_cast<std::size_t>(i)] : kNone;
+            if (g != kNone && f < g) flips += flip_if_better(f, i);
+        }
+    return flips;
+}
+
+}  // namespace imgmesh

@@ -1,0 +1,79 @@
+// The state of a refinement, and its steps.
+#pragma once
+
+#include <vector>
+
+#include "libcore/refine/pixel_sums.h"
+#include "libcore/refine/refine.h"
+#include "libcore/refine/refine_mesh.h"
+
+namespace imgmesh {
+
+/// Source and steps: refine.cpp. Every step keeps `error` of each face up to date.
+class Refiner {
+  public:
+    Refiner(const BaseMesh& mesh, const PicturePlanes& picture, const RefineParams& params);
+
+    double total_error() const;
+    BaseMesh result() const { return mesh_.compact(); }
+
+    void fit_colors();
+    std::int64_t move_vertices();
+    std::int64_t flip_edges();
+    std::int64_t relocate();
+
+  private:
+    // What a star or a pair of faces costs: squared error, and the worst and the summed shape.
+    struct Cost {
+        double error = 0;    // summed squared error
+        double shape = 0;    // sum of 1/q - 1
+        double least_q = 1;  // least q
+        bool legal = true;   // every area positive and no sliver
+    };
+    // Vertex v somewhere, with its best colour there.
+    struct Placement {
+        Vec2f position;
+        Vec3f color;
+        Cost cost;
+        std::array<double, Star::kMost> face_error;
+    };
+
+    Corner corner(Id v) const { return {mesh_.position[v], mesh_.color[v]}; }
+    Vec3f allowed(const Vec3f& color) const;
+    bool better(const Cost& now, const Cost& before) const;
+    void add_shape(Cost& cost, const Vec2f& a, const Vec2f& b, const Vec2f& c) const;
+    Cost cost_of(const Star& star) const;
+    // The star with v at `position`, without and with its best colour. False where that is not legal.
+    bool place(const Star& star, const Vec2f& position, const Vec3f& color, double least_q,
+               Placement& out) const;
+    Vec2f newton_step(const Star& star, Id v) const;
+    bool move_vertex(Id v);
+    bool flip_if_better(Id f, int i);
+    void set(const Star& star, Id v, const Placement& placement);
+
+    struct Removal {
+        Id v, into;
+        double cost;
+    };
+    struct Insertion {
+        Id face;
+        int edge;  // opposite this corner, or -1 for the inside
+        Vec2f position;
+        Vec3f color;
+        double gain;
+    };
+    Removal best_removal(Id v) const;
+    Insertion best_insertion(Id f) const;
+    void try_insertion(Id f, int edge, const Vec2f& position, Insertion& best) const;
+    void remove(const Removal& removal);
+    Id insert(const Insertion& insertion);
+    double face_error(const Face& face) const;
+
+    const PicturePlanes& picture_;
+    RefineParams params_;
+    RefineMesh mesh_;
+    std::vector<double> error_;  // of each face
+    double shape_unit_ = 0;      // squared error that a shape cost of 1 weighs as much as
+};
+
+}  // namespace imgmesh

@@ -1,0 +1,40 @@
+// As-rigid-as-possible deformation of a base mesh.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "libcore/mesh/base_mesh.h"
+
+namespace imgmesh {
+
+/// Moves a mesh so that given vertices reach given places and every one-ring is turned, hardly stretched:
+/// the local/global iteration of Sorkine and Alexa 2007 in the plane, where the best rotation of a one-ring
+/// is one arc tangent. The matrix depends on the mesh and on *which* vertices are fixed; it is factorised
+/// once and serves every solve(), so that dragging a handle costs iterations alone.
+///
+/// Connected parts of the mesh without a fixed vertex stay where they are.
+class ArapSolver {
+  public:
+    /// fixed  the vertices whose places are given, ascending, each once; handles and pins alike
+    ArapSolver(const BaseMesh& mesh, const std::vector<Id>& fixed);
+    ~ArapSolver();
+    ArapSolver(ArapSolver&&) noexcept;
+    ArapSolver& operator=(ArapSolver&&) noexcept;
+
+    struct Result {
+        std::vector<Vec2d> moves;  ///< of every vertex [pixels]
+        int iterations = 0;
+    };
+    /// moves  of the fixed vertices, in their order [pixels]
+    /// Iterates until no vertex moves by more than `tolerance` [pixels] in an iteration, or
+    /// `max_iterations`. The same result each time, whatever was solved before. Where all moves are equal
+    /// the mesh is moved as a whole, exactly.
+    Result solve(const std::vector<Vec2d>& moves, double tolerance = 1e-3, int max_iterations = 200) const;
+
+  private:
+    struct State;
+    std::unique_ptr<State> state_;
+};
+
+}  // namespace imgmesh

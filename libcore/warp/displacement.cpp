@@ -1,0 +1,150 @@
+#include "libcore/warp/displacement.h"
+
+#include <algorithm>
+
+#include "libcore/base/parallel.h"
+
+namespace imgmesh {
+namespace {
+
+constexpr int kGrainRows = 64;
+
+// The moves of a face's corners: the first's, and how far the others' differ from it.
+struct FaceMove {
+    float x = 0, y = 0, ux = 0, uy = 0, vx = 0, vy = 0;
+};
+
+// What a level adds: faces that move, and for the rest one look at a byte.
+struct LevelMove {
+    std::vector<FaceMove> face;
+    std::vector<std::uint8_t> moves;
+};
+
+LevelMove level_move(const BaseMesh& mesh, const VertexMoves& moves) {
+    LevelMove level{std::vector<FaceMove>(mesh.faces.size()), std::vector<std::uint8_t>(mesh.faces.size())};
+    for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
+        const Vec2f &a = moves[mesh.faces[f][0]], &b = moves[mesh.faces[f][1]], &c = moves[mesh.faces[f][2]];
+        level.face[f] = {a.x(), a.y(), b.x() - a.x(), b.y() - a.y(), c.x() - a.x(), c.y() - a.y()};
+        level.moves[f] = !(a.isZero(0) && b.isZero(0) && c.isZero(0));
+    }
+    return level;
+}
+
+// A weight of exactly 1 for a corner must give exactly its move, and so must equal corners: where a move
+// differs from the first corner's only by rounding, the difference below is a rounding of that difference.
+void add_row(const LevelMove& level, std::span<const PixelCoord> coords, Vec2f* out) {
+    for (std::size_t x = 0; x < coords.size(); ++x) {
+        const PixelCoord& c = coords[x];
+        if (c.face == kNone || !level.moves[c.face]) continue;
+        const FaceMove& m = level.face[c.face];
+        out[x].x() += m.x + c.u * m.ux + c.v * m.vx;
+        out[x].y() += m.y + c.u * m.uy + c.v * m.vy;
+    }
+}
+
+// Calls visit(index of neighbour) for the neighbours of pixel i, in order of index.
+template <typename Visit>
+void for_neighbors(const DisplacementField& field, std::size_t i, const Visit& visit) {
+    const int x = static_cast<int>(i % static_cast<std::size_t>(field.width)),
+              y = static_cast<int>(i / static_cast<std::size_t>(field.width));
+    for (int ny = std::max(y - 1, 0); ny <= std::min(y + 1, field.height - 1); ++ny)
+        for (int nx = std::max(x - 1, 0); nx <= std::min(x + 1, field.width - 1); ++nx)
+            if (nx != x || ny != y) visit(field.index(nx, ny));
+}
+
+// The outside pixels beside any of `sources`, ascending.
+std::vector<std::size_t> outside_beside(const DisplacementField& field,
+                                        const std::vector<std::size_t>& sources) {
+    std::vector<std::size_t> found;
+    for (const std::size_t i : sources)
+        for_neighbors(field, i, [&](std::size_t n) {
+            if (field.role[n] == PixelRole::kOutside) found.push_back(n);
+        });
+    std::sort(found.begin(), found.end());
+    found.erase(std::unique(found.begin(), found.end()), found.end());
+    return found;
+}
+
+double doubled_area(const Vec2d& a, const Vec2d& b, const Vec2d& c) {
+    return (b.x() - a.x()) * (c.y() - a.y()) - (b.y() - a.y()) * (c.x() - a.x());
+}
+
+}  // namespace
+
+DisplacementField displacement_field(const MeshImage& mesh_image, const std::vector<VertexMoves>& moves) {
+    DisplacementField field;
+    field.width = mesh_image.source.width;
+    field.height = mesh_image.source.height;
+    field.has_mask = mesh_image.source.has_mask;
+    const std::size_t size = mesh_image.levels[0].map.coords.size();
+    field.move.assign(size, Vec2f(0, 0));
+    field.role.assign(size, PixelRole::kInside);
+    std::vector<LevelMove> levels;
+    std::vector<const PixelMap*> maps;
+    for (std::size_t k = 0; k < moves.size(); ++k) {
+        if (moves[k].empty()) continue;
+        levels.push_back(level_move(mesh_image.levels[k].mesh, moves[k]));
+        maps.push_back(&mesh_image.levels[k].map);
+    }
+    parallel_blocks(0, field.height, kGrainRows, [&](int first, int last) {
+        for (int y = first; y < last; ++y) {
+            for (std::size_t k = 0; k < levels.size(); ++k)
+                add_row(levels[k], maps[k]->row(y), field.move.data() + field.index(0, y));
+            if (!field.has_mask) continue;
+            PixelRole* role = field.role.data() + field.index(0, y);
+            for (const PixelCoord& c : mesh_image.levels[0].map.row(y))
+                *role++ = c.face == kNone ? PixelRole::kOutside : PixelRole::kInside;
+        }
+    });
+    return field;
+}
+
+void extend_outside(DisplacementField& field, std::vector<float>& alpha) {
+    if (!field.has_mask) return;
+    std::vector<std::size_t> sources;
+    for (std::size_t i = 0; i < field.role.size(); ++i) {
+        if (field.role[i] == PixelRole::kOutside) continue;
+        bool beside = false;
+        for_neighbors(field, i, [&](std::size_t n) { beside |= field.role[n] == PixelRole::kOutside; });
+        if (beside) sources.push_back(i);
+    }
+    while (!sources.empty()) {
+        const std::vector<std::size_t> ring = outside_beside(field, sources);
+        for (const std::size_t i : ring) {
+            Vec2f sum(0, 0);
+            float count = 0;
+            for_neighbors(field, i, [&](std::size_t n) {
+                if (field.role[n] != PixelRole::kInside) return;
+                sum += field.move[n];
+                count += 1;
+            });
+            field.move[i] = sum / count;
+        }
+        sources.clear();
+        for (const std::size_t i : ring) {
+            const bool soft = !alpha.empty() && alpha[i] > 0 && alpha[i] < 1;
+            field.role[i] = soft ? PixelRole::kInside : PixelRole::kGhost;
+            if (soft) sources.push_back(i);
+        }
+    }
+    alpha.resize(field.role.size(), 1.0f);
+    for (std::size_t i = 0; i < alpha.size(); ++i)
+        if (field.role[i] != PixelRole::kInside) alpha[i] = 0;
+}
+
+std::int64_t folded_cells(const DisplacementField& field) {
+    std::int64_t folded = 0;
+    const auto at = [&](int x, int y) {
+        return Vec2d(Vec2d(x, y) + field.move[field.index(x, y)].cast<double>());
+    };
+    const auto inside = [&](int x, int y) { return field.role[field.index(x, y)] == PixelRole::kInside; };
+    for (int y = 0; y + 1 < field.height; ++y)
+        for (int x = 0; x + 1 < field.width; ++x) {
+            if (!inside(x, y) || !inside(x + 1, y) || !inside(x, y + 1) || !inside(x + 1, y + 1)) continue;
+            const Vec2d a = at(x, y), b = at(x + 1, y), c = at(x, y + 1), d = at(x + 1, y + 1);
+            folded += !(doubled_area(a, b, d) > 0 && doubled_area(a, d, c) > 0);
+        }
+    return folded;
+}
+
+}  // namespace imgmesh

@@ -1,0 +1,84 @@
+// Which points of the source, with which weights, a pixel of a drawing is the mean of. Internal to warp/.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "libcore/warp/cell_raster.h"
+#include "libcore/warp/displacement.h"
+
+namespace imgmesh {
+
+// How many source pixels a step of one output pixel goes.
+inline int taps_of(const Vec2f& step) {
+    constexpr float kMostTaps = 64;
+    return static_cast<int>(std::lround(std::clamp(step.norm(), 1.0f, kMostTaps)));
+}
+// Whether a point alone stands for its pixel: both taps are 1.
+inline bool is_plain(const CellPoint& p) {
+    constexpr float kShort = 1.5f * 1.5f;
+    return p.dx.squaredNorm() < kShort && p.dy.squaredNorm() < kShort;
+}
+
+// Places are rounded, so a share this close to the whole is the whole.
+inline constexpr float kWhole = 1 - 1.0f / 1024;
+
+// The share of an output pixel around the point that lies inside the picture's sides: exact for sides along
+// the output's axes.
+inline float side_coverage(const DisplacementField& field, const CellPoint& p) {
+    const auto share = [](float at, int side, float across) {
+        const float inside = std::min(at + 0.5f, static_cast<float>(side) - 0.5f - at);
+        return across > 0 ? std::clamp(0.5f + inside / across, 0.0f, 1.0f) : float(inside >= 0);
+    };
+    const float both = share(static_cast<float>(p.x) + p.fx, field.width, std::hypot(p.dx.x(), p.dy.x())) *
+                       share(static_cast<float>(p.y) + p.fy, field.height, std::hypot(p.dx.y(), p.dy.y()));
+    return both > kWhole ? 1.0f : both;
+}
+
+inline bool on_rim(const DisplacementField& field, const CellPoint& p) {
+    return p.x < 0 || p.y < 0 || p.x + 1 >= field.width || p.y + 1 >= field.height;
+}
+
+// Four source pixels and their weights, for the point (x + fx, y + fy); the rim shows the pixel beside it.
+struct Taps {
+    Taps(const DisplacementField& field, int x, int y, float fx, float fy) {
+        const int x0 = std::clamp(x, 0, field.width - 1), x1 = std::clamp(x + 1, 0, field.width - 1),
+                  y0 = std::clamp(y, 0, field.height - 1), y1 = std::clamp(y + 1, 0, field.height - 1);
+        index[0] = field.index(x0, y0);
+        index[1] = field.index(x1, y0);
+        index[2] = field.index(x0, y1);
+        index[3] = field.index(x1, y1);
+        weight[0] = (1 - fx) * (1 - fy);
+        weight[1] = fx * (1 - fy);
+        weight[2] = (1 - fx) * fy;
+        weight[3] = fx * fy;
+    }
+    std::size_t index[4];
+    float weight[4];
+};
+
+// Calls visit(taps, share) for every point that an output pixel is the mean of.
+template <typename Visit>
+void for_points(const DisplacementField& field, const CellPoint& p, const Visit& visit) {
+    if (is_plain(p)) {
+        visit(Taps(field, p.x, p.y, p.fx, p.fy), 1.0f);
+        return;
+    }
+    const int n = taps_of(p.dx), m = taps_of(p.dy);
+    const float share = 1.0f / static_cast<float>(n * m);
+    const Vec2f high(static_cast<float>(field.width), static_cast<float>(field.height));
+    for (int j = 0; j < m; ++j)
+        for (int i = 0; i < n; ++i) {
+            // From the cell, so that coordinates keep their precision in large pictures.
+            const Vec2f at = Vec2f(p.fx, p.fy) +
+                             ((static_cast<float>(i) + 0.5f) / static_cast<float>(n) - 0.5f) * p.dx +
+                             ((static_cast<float>(j) + 0.5f) / static_cast<float>(m) - 0.5f) * p.dy;
+            const float bx = std::floor(std::clamp(at.x(), -high.x() - 1, high.x() + 1)),
+                        by = std::floor(std::clamp(at.y(), -high.y() - 1, high.y() + 1));
+            visit(Taps(field, p.x + static_cast<int>(bx), p.y + static_cast<int>(by),
+                       std::clamp(at.x() - bx, 0.0f, 1.0f), std::clamp(at.y() - by, 0.0f, 1.0f)),
+                  share);
+        }
+}
+
+}  // namespace imgmesh

@@ -1,0 +1,148 @@
+#include "libcore/warp/solve_edits.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "libcore/base/error.h"
+#include "libcore/warp/arap.h"
+
+namespace imgmesh {
+namespace {
+
+[[noreturn]] void fail(const std::string& where, const std::string& text) {
+    throw Error(ErrorCode::kBadFile, cat(where, ": ", text));
+}
+
+Id nearest_vertex(const BaseMesh& mesh, const Vec2d& point) {
+    Id best = 0;
+    double least = (mesh.position[0].cast<double>() - point).squaredNorm();
+    for (Id v = 1; v < mesh.vertex_count(); ++v) {
+        const double distance = (mesh.position[v].cast<double>() - point).squaredNorm();
+        if (distance >= least) continue;
+        least = distance;
+        best = v;
+    }
+    return best;
+}
+
+template <typename Inside>
+void add_within(const BaseMesh& mesh, const Inside& inside, std::vector<Id>& vertices) {
+    for (Id v = 0; v < mesh.vertex_count(); ++v)
+        if (inside(mesh.position[v].cast<double>())) vertices.push_back(v);
+}
+
+// The ends of edges that belong to one face only.
+std::vector<Id> border_vertices(const BaseMesh& mesh) {
+    std::vector<std::pair<Id, Id>> edges;
+    for (const auto& [a, b, c] : mesh.faces)
+        for (const auto& [p, q] : {std::pair(a, b), std::pair(b, c), std::pair(c, a)})
+            edges.push_back(std::minmax(p, q));
+    std::sort(edges.begin(), edges.end());
+    std::vector<Id> border;
+    for (std::size_t i = 0, end = 0; i < edges.size(); i = end) {
+        while (end < edges.size() && edges[end] == edges[i]) ++end;
+        if (end - i == 1) border.insert(border.end(), {edges[i].first, edges[i].second});
+    }
+    return border;
+}
+
+// The vertices selected, ascending, each once; at least one.
+std::vector<Id> selected(const BaseMesh& mesh, int level, const VertexSelection& s) {
+    std::vector<Id> vertices = s.vertices;
+    for (const Id v : vertices)
+        if (v >= mesh.vertex_count())
+            fail(s.where, cat("vertex ", v, " is not there; level ", level, " has vertices 0 to ",
+                              mesh.vertex_count() - 1));
+    if (s.near) vertices.push_back(nearest_vertex(mesh, *s.near));
+    if (s.circle) {
+        const auto [x, y, radius] = *s.circle;
+        add_within(
+            mesh, [&](const Vec2d& p) { return std::hypot(p.x() - x, p.y() - y) <= radius; }, vertices);
+    }
+    if (s.box) {
+        const auto [left, top, right, bottom] = *s.box;
+        add_within(
+            mesh,
+            [&](const Vec2d& p) {
+                return p.x() >= left && p.x() <= right && p.y() >= top && p.y() <= bottom;
+            },
+            vertices);
+    }
+    if (s.border) {
+        const std::vector<Id> border = border_vertices(mesh);
+        vertices.insert(vertices.end(), border.begin(), border.end());
+    }
+    if (vertices.empty()) fail(s.where, cat("no vertex of level ", level, " lies within"));
+    std::sort(vertices.begin(), vertices.end());
+    vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+    return vertices;
+}
+
+// Adds to `moves` what the handle does to its vertices, and to `fixed` the vertices.
+void apply_handle(const BaseMesh& mesh, int level, const WarpHandle& handle, std::vector<Vec2d>& moves,
+                  std::vector<char>& fixed) {
+    const std::vector<Id> vertices = selected(mesh, level, handle.vertices);
+    Vec2d center(0, 0);
+    for (const Id v : vertices) center += mesh.position[v].cast<double>() / double(vertices.size());
+    center = handle.center.value_or(center);
+    const double angle = handle.rotate_deg * std::numbers::pi / 180;
+    const double cosine = std::cos(angle), sine = std::sin(angle);
+    for (const Id v : vertices) {
+        const Vec2d from = mesh.position[v].cast<double>() - center;
+        const Vec2d scaled = from.cwiseProduct(handle.scale);
+        // y grows down, so counter-clockwise on screen takes x to -y.
+        const Vec2d to(cosine * scaled.x() + sine * scaled.y(), cosine * scaled.y() - sine * scaled.x());
+        // Angle 0 and scale 1 must leave exactly the move.
+        moves[v] += to == from ? handle.move : Vec2d(to - from + handle.move);
+        fixed[v] = 1;
+        if (!moves[v].allFinite())
+            fail(handle.vertices.where, cat("vertex ", v, " moves beyond all numbers"));
+    }
+}
+
+std::vector<Vec2d> solve_edit(const BaseMesh& mesh, const WarpEdit& edit) {
+    std::vector<Vec2d> moves(mesh.vertex_count(), Vec2d(0, 0));
+    std::vector<char> fixed(mesh.vertex_count(), 0);
+    for (const WarpHandle& handle : edit.handles) apply_handle(mesh, edit.level, handle, moves, fixed);
+    std::vector<char> held = fixed;
+    for (const VertexSelection& pin : edit.pins)
+        for (const Id v : selected(mesh, edit.level, pin)) {
+            if (fixed[v]) fail(pin.where, cat("vertex ", v, " is also in a handle of this edit"));
+            held[v] = 1;
+        }
+    if (edit.solver == WarpSolver::kDirect) return moves;
+    std::vector<Id> ids;
+    std::vector<Vec2d> held_moves;
+    for (Id v = 0; v < held.size(); ++v) {
+        if (!held[v]) continue;
+        ids.push_back(v);
+        held_moves.push_back(moves[v]);
+    }
+    return ArapSolver(mesh, ids).solve(held_moves).moves;
+}
+
+}  // namespace
+
+std::vector<VertexMoves> solve_edits(const MeshImage& mesh_image, const WarpEdits& edits) {
+    std::vector<std::vector<Vec2d>> sums(mesh_image.levels.size());
+    for (const WarpEdit& edit : edits) {
+        if (edit.level < 0 || edit.level >= static_cast<int>(sums.size()))
+            fail(edit.where,
+                 cat("level ", edit.level, " is not there; the container has levels 0 to ", sums.size() - 1));
+        const auto level = static_cast<std::size_t>(edit.level);
+        const std::vector<Vec2d> moves = solve_edit(mesh_image.levels[level].mesh, edit);
+        sums[level].resize(moves.size(), Vec2d(0, 0));
+        for (std::size_t v = 0; v < moves.size(); ++v) sums[level][v] += moves[v];
+    }
+    std::vector<VertexMoves> all(sums.size());
+    for (std::size_t level = 0; level < sums.size(); ++level) {
+        const bool still =
+            std::all_of(sums[level].begin(), sums[level].end(), [](const Vec2d& m) { return m.isZero(0); });
+        if (still) continue;
+        for (const Vec2d& m : sums[level]) all[level].push_back(m.cast<float>());
+    }
+    return all;
+}
+
+}  // namespace imgmesh

@@ -1,0 +1,200 @@
+"""imgmesh-warp: pictures, maps and containers out of edits, and what it says to bad ones."""
+import json
+
+import numpy as np
+import OpenImageIO as oiio
+
+import picture_files
+from support import CliCase, main
+
+TOOL = "imgmesh-warp"
+
+
+def part(path, number):
+    """The samples of one part of an EXR, and its channels' names."""
+    source = oiio.ImageInput.open(str(path))
+    source.seek_subimage(number, 0)
+    names = source.spec().channelnames
+    samples = source.read_image(number, 0, 0, len(names), "float")
+    source.close()
+    return samples, names
+
+
+class Warp(CliCase):
+    def setUp(self):
+        super().setUp()
+        self.original = picture_files.read(picture_files.png(self.folder / "in.png", picture_files.ramp(48, 32)))
+        self.build("in.png", "--level-faces", "300,40", output="c.glb")
+
+    def edits(self, *edits):
+        (self.folder / "e.json").write_text(json.dumps({"edits": edits}))
+
+    def warp(self, *args, output="out.png", container="c.glb", image="in.png"):
+        report = self.report(TOOL, container, "--image", image, "-o", output, *args)
+        return report, picture_files.read(self.folder / output)
+
+    def test_without_edits_the_picture_comes_back(self):
+        noise = np.random.default_rng(1).random
+        float_samples = np.float32(noise((9, 13, 3)) * 4 - 1)
+        float_samples[0, 0] = [1e-30, 65504, 3]
+        files = {
+            "grey.png": picture_files.png(self.folder / "grey.png", noise((9, 13, 1))),
+            "grey-alpha.png": picture_files.png(self.folder / "grey-alpha.png", noise((9, 13, 2)), bits=16),
+            "alpha.png": picture_files.png(self.folder / "alpha.png", noise((9, 13, 4))),
+            "deep.png": picture_files.png(self.folder / "deep.png", noise((9, 13, 3)), bits=16),
+            "palette.png": picture_files.png(self.folder / "palette.png", np.arange(117).reshape(9, 13) % 5,
+                                             palette=noise((5, 3))),
+            "float.exr": picture_files.write_float(self.folder / "float.exr", float_samples),
+            "half.exr": picture_files.write_float(self.folder / "half.exr", noise((9, 13, 3)), "half"),
+            "float.tif": picture_files.write_float(self.folder / "float.tif", float_samples),
+            "depth.exr": picture_files.write_float(self.folder / "depth.exr", noise((9, 13, 5)), "float",
+                                                   ["R", "G", "B", "Z", "mask"]),
+        }
+        for shape in ((1, 1), (1, 7), (7, 1), (3, 3)):
+            name = f"{shape[0]}x{shape[1]}.png"
+            files[name] = picture_files.png(self.folder / name, noise((*shape, 3)))
+        for name, path in files.items():
+            with self.subTest(name):
+                # The container's picture is another of the same size: only its map counts.
+                height, width = picture_files.read(path).shape[:2]
+                container = f"{width}x{height}.glb"
+                if not (self.folder / container).exists():
+                    picture_files.png(self.folder / "same-size.png", picture_files.noise(width, height))
+                    self.build("same-size.png", "--density", "30", output=container)
+                _, image = self.warp(image=name, output="out" + path.suffix, container=container)
+                np.testing.assert_array_equal(image, picture_files.read(path))
+                self.assertEqual(picture_files.spec(self.folder / ("out" + path.suffix)).format,
+                                 picture_files.spec(path).format if name != "palette.png" else "uint8")
+
+    def test_everything_moved_shifts_the_picture(self):
+        for solver in ("direct", "arap"):
+            self.edits({"level": 1, "solver": solver,
+                        "handles": [{"box": [-1, -1, 48, 32], "move": [5, -3]}]})
+            report, image = self.warp("--edits", "e.json")
+            self.assertEqual(image.shape, (32, 48, 4))
+            np.testing.assert_array_equal(image[:29, 5:, :3], self.original[3:, :43])
+            self.assertTrue((image[:29, 5:, 3] == 1).all() and (image[29:] == 0).all())
+            self.assertAlmostEqual(report["largest_move"], 34 ** 0.5, places=5)
+            self.assertEqual(report["folded_cells"], 0)
+
+    def test_handle(self):
+        report, image = self.warp("--handle", "24,16:3,2", "--level", "1")
+        self.assertEqual((report["edits"], report["moved_vertices"]), (1, 1))
+        self.assertFalse(np.array_equal(image, self.original))
+        self.edits({"level": 1, "handles": [{"near": [24, 16], "move": [3, 2]}]})
+        np.testing.assert_array_equal(self.warp("--edits", "e.json")[1], image)
+        # Two edits add up, and these are opposite.
+        report, image = self.warp("--edits", "e.json", "--handle", "24,16:-3,-2", "--level", "1")
+        self.assertEqual(report["edits"], 2)
+        np.testing.assert_array_equal(image, self.original)
+
+    def test_size(self):
+        report, image = self.warp("--size", "24x16")
+        self.assertEqual((report["width"], report["height"], image.shape), (24, 16, (16, 24, 3)))
+        mean = self.original.reshape(16, 2, 24, 2, 3).mean(axis=(1, 3))
+        np.testing.assert_allclose(image, mean, atol=0.51 / 255)
+        self.assertEqual(self.warp("--size", "100x7")[1].shape, (7, 100, 3))
+
+    def test_maps(self):
+        """The STMap, read as compositors do, gives the drawing; the displacement is where pixels go."""
+        report, image = self.warp("--handle", "20,14:0.8,0.6", "--level", "1", "--displacement", "d.exr")
+        self.assertEqual(report["displacement"], "d.exr")
+        st, names = part(self.folder / "d.exr", 0)
+        self.assertEqual(list(names), ["R", "G", "A"])
+        x, y = st[..., 0] * 48 - 0.5, (1 - st[..., 1]) * 32 - 0.5
+        x0, y0 = np.clip(np.floor(x).astype(int), 0, 46), np.clip(np.floor(y).astype(int), 0, 30)
+        fx, fy = (x - x0)[..., None], (y - y0)[..., None]
+        o = self.original
+        sampled = ((o[y0, x0] * (1 - fx) + o[y0, x0 + 1] * fx) * (1 - fy) +
+                   (o[y0 + 1, x0] * (1 - fx) + o[y0 + 1, x0 + 1] * fx) * fy)
+        self.assertTrue((st[..., 2] == 1).all())
+        close = np.abs(sampled - image).max(axis=-1) < 0.51 / 255  # not where the drawing means several points
+        self.assertGreater(close.mean(), 0.95)
+        forward, names = part(self.folder / "d.exr", 1)
+        self.assertEqual(list(names), ["displacement.x", "displacement.y"])
+        self.assertGreater(np.hypot(forward[..., 0], forward[..., 1]).max(), 0.8)
+        # Forth and back, where nothing folds: the map at the place that a pixel goes to shows the pixel.
+        self.assertEqual(report["folded_cells"], 0)
+        row, column = np.mgrid[4:28, 4:44]
+        tx, ty = column + forward[row, column, 0], row + forward[row, column, 1]
+        x0, y0 = np.floor(tx).astype(int), np.floor(ty).astype(int)
+        fx, fy = tx - x0, ty - y0
+        for back, origin in ((x, column), (y, row)):
+            there = ((back[y0, x0] * (1 - fx) + back[y0, x0 + 1] * fx) * (1 - fy) +
+                     (back[y0 + 1, x0] * (1 - fx) + back[y0 + 1, x0 + 1] * fx) * fy)
+            self.assertLess(np.abs(there - origin).max(), 0.5)
+            self.assertLess(np.abs(there - origin).mean(), 0.02)
+        # Without a picture to draw, the maps alone.
+        self.assertNotIn("output", self.report(TOOL, "c.glb", "--displacement", "m.exr", "--size", "9x5"))
+        self.assertEqual(part(self.folder / "m.exr", 0)[0].shape, (5, 9, 3))
+        self.assertEqual(part(self.folder / "m.exr", 1)[0].shape, (32, 48, 2))
+
+    def test_container(self):
+        for name in ("w.glb", "w.gltf"):
+            report = self.report(TOOL, "c.glb", "-o", name, "--handle", "24,16:1,-1", "--level", "1")
+            self.assertEqual(report["bytes"], (self.folder / name).stat().st_size)
+            info = self.report("imgmesh-info", name, "--validate")
+            self.assertTrue(info["valid"])
+            # The map is the unwarped picture's; the mesh is another.
+            for container in (name, "c.glb"):
+                self.run_ok("imgmesh-reconstruct", container, "-o", container + ".png", "-q")
+                self.run_ok("imgmesh-reconstruct", container, "-o", container + ".g.png", "--mode", "wire", "-q")
+            read = lambda file: picture_files.read(self.folder / file)
+            np.testing.assert_array_equal(read(name + ".png"), read("c.glb.png"))
+            self.assertFalse(np.array_equal(read(name + ".g.png"), read("c.glb.g.png")))
+        self.assert_error(TOOL, ["c.glb", "-o", "x.glb", "--handle", "24,16:500,0", "--level", "1"], 5, "turn over")
+
+    def test_bad_edit_files(self):
+        handle = {"vertex": 0, "move": [1, 1]}
+        for edits, place in (
+                ([{"level": 2, "handles": []}], "e.json: /edits/0/level: level 2 is not there"),
+                ([{"handles": [handle]}, {"level": 1, "handles": [{"vertex": 99999, "move": [0, 0]}]}],
+                 "e.json: /edits/1/handles/0/vertex: vertex 99999 is not there; level 1 has vertices 0 to"),
+                ([{"handles": [{"vertex": "0", "move": [1, 1]}]}], "e.json: /edits/0/handles/0/vertex: expected"),
+                ([{"handles": [{"circle": [-50, -50, 1], "move": [1, 1]}]}],
+                 "e.json: /edits/0/handles/0/circle: no vertex"),
+                ([{"handles": [handle], "pins": [{"near": [0, 0]}, {"vertex": 0}]}], "is also in a handle"),
+                ([{"hadles": []}], "e.json: /edits/0: unknown member")):
+            self.edits(*edits)
+            self.assert_error(TOOL, ["c.glb", "--image", "in.png", "-o", "x.png", "--edits", "e.json"], 4, place)
+        for text in ("", "[" * 100000, '{"edits": [NaN]}', "\0", "{" * 20):
+            (self.folder / "e.json").write_text(text)
+            self.assert_error(TOOL, ["c.glb", "--image", "in.png", "-o", "x.png", "--edits", "e.json"], 4, "e.json: ")
+        self.assert_error(TOOL, ["c.glb", "--displacement", "x.exr", "--edits", "none.json"], 3, "none.json")
+
+    def test_bad_options(self):
+        picture = ["c.glb", "--image", "in.png", "-o", "x.png"]
+        for args, *words in (
+                (["c.glb"], "nothing to write"), (["c.glb", "-o", "x.png"], "--image"),
+                (["c.glb", "--image", "in.png", "-o", "x.txt"], "x.txt"),
+                (["c.glb", "--displacement", "x.png"], "--displacement", ".exr"),
+                (["c.glb", "-o", "x.glb", "--size", "3x3"], "--size"),
+                ([*picture, "--size", "3"], "--size"), ([*picture, "--size", "0x5"], "--size"),
+                ([*picture, "--size", "65536x5"], "--size"), ([*picture, "--size", "65535x65535"], "size"),
+                ([*picture, "--handle", "1,2"], "--handle"), ([*picture, "--handle", "1,2:3"], "--handle"),
+                ([*picture, "--handle", "1,2:3,nan"], "--handle"), ([*picture, "--handle", "1,2:3,4,5"], "--handle"),
+                ([*picture, "--level", "1"], "--handle"), ([*picture, "--solver", "arap"], "--handle"),
+                ([*picture, "--handle", "1,2:3,4", "--level", "2"], "--level 2"),
+                ([*picture, "--handle", "1,2:3,4", "--solver", "soft"], "--solver"),
+                (["c.glb", "--image", "in.png", "-o", "in.png"], "in.png"),
+                (["c.glb", "--image", "in.png", "-o", "c.glb"], "c.glb")):
+            self.assert_error(TOOL, args, 2, *words)
+        picture_files.png(self.folder / "other.png", picture_files.ramp(32, 48))
+        self.assert_error(TOOL, ["c.glb", "--image", "other.png", "-o", "x.png"], 4, "other.png", "32x48", "48x32")
+        self.assert_error(TOOL, ["c.glb", "--image", "in.png", "-o", "x.jpg", "--handle", "0,0:9,9"], 2, "transparency")
+
+    def test_threads_and_text(self):
+        self.edits({"level": 1, "solver": "arap", "handles": [{"near": [24, 16], "move": [6, 2]}],
+                    "pins": [{"border": True}]})
+        outputs = []
+        for threads in ("1", "7"):
+            self.warp("--edits", "e.json", "--threads", threads, "--displacement", "d.exr", output="out.exr")
+            outputs.append([(self.folder / name).read_bytes() for name in ("out.exr", "d.exr")])
+        self.assertEqual(outputs[0], outputs[1])
+        text = self.run_ok(TOOL, "c.glb", "--image", "in.png", "-o", "out.png", "--edits", "e.json").stdout
+        self.assertTrue(text.startswith("c.glb -> out.png\n"))
+        self.assertIn("48 x 32", text)
+
+
+if __name__ == "__main__":
+    main()

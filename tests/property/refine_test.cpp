@@ -1,0 +1,228 @@
+// What holds for every refinement.
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "libcore/base/parallel.h"
+#include "libcore/build/build.h"
+#include "libcore/collapse/collapse_edges.h"
+#include "libcore/metrics/metrics.h"
+#include "libcore/param/trivial_map.h"
+#include "libcore/refine/refine.h"
+#include "tests/support/meshes.h"
+#include "tests/support/sample_masks.h"
+#include "tests/support/sample_pictures.h"
+
+using namespace imgmesh;
+using namespace imgmesh::test;
+
+namespace {
+
+BaseMesh collapsed(const FeatureImage& feature, std::int64_t vertices, float min_shape = 0) {
+    CollapseParams params;
+    params.min_shape = min_shape;
+    CollapseTarget target;
+    target.vertices = vertices;
+    return collapse_edges(grid_mesh(feature), params, target).mesh;
+}
+
+// Squared error of the mesh as it is drawn, from the rasteriser and in another order than the refinement's.
+double drawn_error(const BaseMesh& mesh, const FeatureImage& feature) {
+    const double rms = map_rms(mesh, trivial_map(mesh, feature.width, feature.height), feature);
+    return rms * rms * static_cast<double>(feature.pixel_count());
+}
+
+void check_sound(const BaseMesh& mesh, std::size_t vertices, int width, int height) {
+    const MeshQuality q = mesh_quality(mesh);
+    CHECK(mesh.vertex_count() == vertices);
+    CHECK(q.euler == 1);
+    CHECK(q.flipped_faces + q.nonmanifold_edges + q.nonmanifold_vertices == 0);
+    CHECK(q.area == double(std::max(1, width - 1)) * std::max(1, height - 1));
+    for (const Vec2f& p : mesh.position) CHECK(p == Vec2f(snapped(p.x()), snapped(p.y())));
+    for (const float f : mesh.feature) CHECK(std::isfinite(f));
+}
+
+}  // namespace
+
+// Every step is taken only if it lowers the error, so this is a law; and the error told is the one drawn.
+TEST_CASE("refine: the error never rises, and the mesh stays sound") {
+    for (const Kind kind : kAllKinds)
+        for (const auto& [w, h] :
+             {std::pair{1, 1}, {1, 30}, {30, 1}, {2, 2}, {3, 3}, {5, 7}, {60, 45}, {130, 20}}) {
+            INFO(name_of(kind) << " " << w << " x " << h);
+            const FeatureImage feature = sample_feature(kind, w, h);
+            BaseMesh mesh = collapsed(feature, std::max(4, w * h / 30));
+            const std::size_t vertices = mesh.vertex_count();
+            RefineParams params;
+            params.rounds = 5;
+            params.relocations = 0.1;
+            const RefineReport report = refine(mesh, feature, params);
+            for (std::size_t k = 1; k < report.error.size(); ++k)
+                CHECK(report.error[k] < report.error[k - 1]);
+            check_sound(mesh, vertices, w, h);
+            CHECK(report.error.back() ==
+                  doctest::Approx(drawn_error(mesh, feature)).epsilon(1e-4).scale(double(w * h)));
+        }
+}
+
+TEST_CASE("refine: without rounds the colours alone are fitted") {
+    const FeatureImage feature = sample_feature(Kind::kGradient, 60, 45);
+    BaseMesh mesh = collapsed(feature, 60);
+    const BaseMesh before = mesh;
+    const RefineReport report = refine(mesh, feature, {});
+    CHECK(mesh.position == before.position);
+    CHECK(mesh.faces == before.faces);
+    CHECK(report.error.size() == 1);
+    CHECK(report.error[0] < drawn_error(before, feature));
+    CHECK(report.error[0] == doctest::Approx(drawn_error(mesh, feature)).epsilon(1e-4));
+}
+
+// A roof: two planes that meet in a ridge at x = 20. A mesh whose middle column stands two pixels beside the
+// ridge can be moved onto it, and then nothing is left.
+TEST_CASE("refine: vertices find a ridge") {
+    FeatureImage roof{41, 41, 3, {}};
+    for (int y = 0; y < 41; ++y)
+        for (int x = 0; x < 41; ++x) {
+            const float height = 80 - 3 * std::abs(static_cast<float>(x) - 20);
+            roof.data.insert(roof.data.end(), {height, 0, 0});
+        }
+    BaseMesh mesh;
+    for (const float y : {0.0f, 20.0f, 40.0f})
+        for (const float x : {0.0f, 22.0f, 40.0f}) {
+            mesh.position.emplace_back(x, y);
+            mesh.feature.insert(mesh.feature.end(), {50, 0, 0});
+        }
+    for (Id j = 0; j < 2; ++j)
+        for (Id i = 0; i < 2; ++i) {
+            const Id a = 3 * j + i, b = a + 1, c = a + 3, d = a + 4;
+            mesh.faces.push_back({a, c, d});
+            mesh.faces.push_back({a, d, b});
+        }
+    RefineParams params;
+    params.rounds = 20;
+    params.relocations = 0;
+    const RefineReport report = refine(mesh, roof, params);
+    CHECK(report.error.front() / (41 * 41) > 1);
+    CHECK(report.error.back() / (41 * 41) < 1e-3);
+    for (const std::size_t v : {1u, 4u, 7u})
+        CHECK(mesh.position[v].x() == doctest::Approx(20).epsilon(0.005));
+}
+
+// A diagonal edge between two flat colours, and a mesh of two triangles whose diagonal is the other one.
+TEST_CASE("refine: edges flip along the picture's edges") {
+    FeatureImage halves{33, 33, 3, {}};
+    for (int y = 0; y < 33; ++y)
+        for (int x = 0; x < 33; ++x) {
+            const float fold = static_cast<float>(std::abs(x - y));
+            halves.data.insert(halves.data.end(), {20 + fold, 0, 0});
+        }
+    BaseMesh mesh;
+    mesh.position = {{0, 0}, {32, 0}, {0, 32}, {32, 32}};
+    mesh.feature.assign(12, 30.0f);
+    mesh.faces = {{0, 2, 1}, {1, 2, 3}};
+    RefineParams params;
+    params.rounds = 2;
+    const RefineReport report = refine(mesh, halves, params);
+    CHECK(report.flips == 1);
+    CHECK(report.error.back() < 1e-3);
+}
+
+// Noise in one corner, nothing elsewhere, and vertices spread evenly: they go where they are needed.
+TEST_CASE("refine: vertices are relocated to where the error is") {
+    FeatureImage feature = sample_feature(Kind::kConstant, 64, 64);
+    const FeatureImage detail = sample_feature(Kind::kDisc, 20, 20);
+    for (int y = 0; y < 20; ++y)
+        for (int x = 0; x < 20; ++x)
+            std::copy_n(detail.pixel(x, y), 3, feature.pixel(static_cast<std::size_t>(y * 64 + x)));
+    BaseMesh mesh = jittered_grid(0, 0, 63, 63, 8, 8, 5);
+    const auto inside = [&] {
+        int n = 0;
+        for (const Vec2f& p : mesh.position) n += p.x() < 21 && p.y() < 21;
+        return n;
+    };
+    const int before = inside();
+    RefineParams params;
+    params.rounds = 10;
+    params.relocations = 0.1;
+    const RefineReport report = refine(mesh, feature, params);
+    CHECK(report.relocations > 10);
+    CHECK(inside() >= before + 10);
+    CHECK(report.error.back() < 0.2 * report.error.front());
+    check_sound(mesh, 81, 64, 64);
+}
+
+TEST_CASE("refine: limits on shape and area hold, and shape weighs against error") {
+    const FeatureImage feature = sample_feature(Kind::kDisc, 80, 60);
+    const BaseMesh start = collapsed(feature, 150, 0.4f);
+    RefineParams params;
+    params.rounds = 6;
+    params.relocations = 0.1;
+    const auto refined = [&] {
+        BaseMesh mesh = start;
+        refine(mesh, feature, params);
+        return mesh;
+    };
+    const BaseMesh free = refined();
+    params.min_quality = 0.4;
+    CHECK(mesh_quality(refined()).min_shape >= 0.4);
+    CHECK(mesh_quality(free).min_shape < 0.4);
+    params.min_quality = 0;
+    params.shape_weight = 1;
+    CHECK(mesh_quality(refined()).mean_shape > mesh_quality(free).mean_shape + 0.05);
+    params.shape_weight = 0;
+    const auto largest = [](const BaseMesh& mesh) {
+        double area = 0;
+        for (const auto& [a, b, c] : mesh.faces)
+            area = std::max(area, signed_area2(mesh.position[a], mesh.position[b], mesh.position[c]) / 2);
+        return area;
+    };
+    params.max_face_area = largest(start);
+    CHECK(largest(free) > params.max_face_area);
+    CHECK(largest(refined()) <= params.max_face_area);
+}
+
+TEST_CASE("refine: the same bytes every time, in the range of colours asked for") {
+    FeatureImage feature = sample_feature(Kind::kNoise, 50, 40);
+    for (float& f : feature.data) f = std::abs(f) / 100;
+    RefineParams params;
+    params.rounds = 4;
+    params.range = ColorRange::kUnit;
+    const BaseMesh start = collapsed(feature, 60);
+    BaseMesh first = start, second = start;
+    refine(first, feature, params);
+    const ThreadLimit one(1);
+    refine(second, feature, params);
+    CHECK(first.position == second.position);
+    CHECK(first.feature == second.feature);
+    CHECK(first.faces == second.faces);
+    for (const float f : first.feature) CHECK((f >= 0 && f <= 1));
+}
+
+// Pixels outside the mask have no say, the outline stays where it is, and the map stays one to one.
+TEST_CASE("refine: cut-outs keep outline and topology") {
+    for (const auto& [name, mask] : sample_masks(40)) {
+        INFO(name);
+        Image image = sample_picture(Kind::kNoise, mask.width, mask.height);
+        BuildParams params;
+        params.stop.density = 10;
+        const BuildResult plain = build_mesh_image(image, params, {}, mask);
+        params.refine = 3;
+        const Level refined = build_mesh_image(image, params, {}, mask).mesh_image.levels[0];
+        const MeshQuality before = mesh_quality(plain.mesh_image.levels[0].mesh),
+                          after = mesh_quality(refined.mesh);
+        CHECK(after.vertices == before.vertices);
+        CHECK(after.euler == before.euler);
+        CHECK(after.components == before.components);
+        CHECK(after.area == before.area);
+        CHECK(after.flipped_faces + after.nonmanifold_edges + after.nonmanifold_vertices == 0);
+        const MapQuality map = map_quality(refined.mesh, refined.map, true);
+        CHECK(map.unmapped + map.outside_simplex + map.flipped_triangles == 0);
+
+        // Whatever the colours outside are, they change nothing.
+        for (std::size_t i = 0; i < image.pixel_count(); ++i)
+            if (!mask.contains(i)) std::fill_n(&image.data[3 * i], 3, 1.0f);
+        const Level other = build_mesh_image(image, params, {}, mask).mesh_image.levels[0];
+        CHECK(other.mesh.position == refined.mesh.position);
+        CHECK(other.mesh.feature == refined.mesh.feature);
+    }
+}

@@ -1,0 +1,50 @@
+// Which pixels a picture's alpha, or a mask's picture, leaves inside.
+#include <doctest/doctest.h>
+
+#include "libcore/base/error.h"
+#include "libcore/image/mask.h"
+
+using namespace imgmesh;
+
+namespace {
+
+using Inside = std::vector<std::uint8_t>;
+
+// Three pixels side by side.
+Image row_of(int channels, const std::vector<float>& samples) {
+    Image image = make_image(3, 1, channels);
+    image.data = samples;
+    return image;
+}
+
+}  // namespace
+
+TEST_CASE("masks: alpha from the threshold on") {
+    const Image image = row_of(2, {0.9f, 0.49f, 0.1f, 0.5f, 0.2f, 1.0f});
+    CHECK(alpha_mask(image, 0.5f).inside == Inside{0, 1, 1});
+    CHECK(alpha_mask(image, 0.75f).inside == Inside{0, 0, 1});
+    CHECK(alpha_mask(image, 0.5f).count() == 2);
+    CHECK(alpha_mask(image, 0.4f).empty());                                   // all are inside
+    CHECK(alpha_mask(row_of(3, {0, 0, 0, 0, 0, 0, 0, 0, 0}), 0.5f).empty());  // no alpha
+}
+
+TEST_CASE("masks: a mask's picture counts by its alpha, else by its light") {
+    CHECK(picture_mask(row_of(1, {0, 0.5f, 1}), 0.5f).inside == Inside{0, 1, 1});
+    CHECK(picture_mask(row_of(3, {0, 0, 0, 0.6f, 0.6f, 0.2f, 1, 0.5f, 0}), 0.5f).inside == Inside{0, 0, 1});
+    // An alpha that shows something, and one that is opaque.
+    CHECK(picture_mask(row_of(2, {1, 0, 0, 1, 1, 1}), 0.5f).inside == Inside{0, 1, 1});
+    CHECK(picture_mask(row_of(2, {1, 1, 0, 1, 1, 1}), 0.5f).inside == Inside{1, 0, 1});
+    Image alpha = row_of(1, {1, 1, 1});
+    alpha.channel_names = {"A"};
+    CHECK(picture_mask(alpha, 0.5f).inside == Inside{1, 1, 1});
+    alpha.channel_names = {"Z"};
+    CHECK_THROWS_AS(picture_mask(alpha, 0.5f), Error);
+}
+
+TEST_CASE("masks: nothing is inside beyond the picture") {
+    const Mask mask{2, 1, {1, 0}};
+    CHECK(mask.at(0, 0));
+    CHECK_FALSE(mask.at(1, 0));
+    for (const auto& [x, y] : {std::pair{-1, 0}, {2, 0}, {0, 1}, {0, -1}}) CHECK_FALSE(mask.at(x, y));
+    CHECK(Mask{}.contains(7));
+}

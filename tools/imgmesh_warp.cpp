@@ -1,0 +1,244 @@
+// imgmesh-warp: a container, its picture and edits in; the edited picture, maps of the edit, or the edited
+// container out.
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <optional>
+#include <ostream>
+
+#include "formats/container.h"
+#include "formats/edit_file.h"
+#include "formats/exr_parts.h"
+#include "formats/image_io.h"
+#include "libcore/warp/solve_edits.h"
+#include "libcore/warp/warp_image.h"
+#include "libcore/warp/warp_maps.h"
+#include "libcore/warp/warp_mesh.h"
+#include "tools/common/names.h"
+#include "tools/common/options.h"
+#include "tools/common/output.h"
+#include "tools/common/text.h"
+#include "tools/common/tool_main.h"
+
+using namespace imgmesh;
+
+namespace {
+
+struct Options {
+    std::string input;
+    std::string image;
+    std::string output;
+    std::string displacement;
+    std::string edits;
+    std::optional<WarpHandle> handle;
+    WarpEdit handle_edit;  ///< level and solver of `handle`
+    OutputSize size;
+};
+
+const std::string kHandle = "--handle", kSize = "--size";
+
+// X,Y:DX,DY
+WarpHandle parse_handle(const std::string& text) {
+    const auto fail = [&] {
+        throw Error(ErrorCode::kUsage, cat(kHandle, " '", text, "': expected X,Y:DX,DY"));
+    };
+    const NumberRange range{-1e6, 1e6};
+    const auto pair = [&](const std::string& part) {
+        const std::size_t comma = part.find(',');
+        if (comma == std::string::npos) fail();
+        return Vec2d(parse_number(kHandle, part.substr(0, comma), range),
+                     parse_number(kHandle, part.substr(comma + 1), range));
+    };
+    const std::size_t colon = text.find(':');
+    if (colon == std::string::npos) fail();
+    WarpHandle handle;
+    handle.vertices.near = pair(text.substr(0, colon));
+    handle.move = pair(text.substr(colon + 1));
+    handle.vertices.where = cat(kHandle, " ", text);
+    return handle;
+}
+
+// WxH
+OutputSize parse_size(const std::string& text) {
+    const std::size_t cross = text.find('x');
+    if (cross == std::string::npos)
+        throw Error(ErrorCode::kUsage, cat(kSize, " '", text, "': expected WIDTHxHEIGHT, as in 640x480"));
+    const CountRange range{1, ImageLimits().max_side};
+    return {static_cast<int>(parse_count(kSize, text.substr(0, cross), range)),
+            static_cast<int>(parse_count(kSize, text.substr(cross + 1), range))};
+}
+
+void add_options(CLI::App& app, Options& o) {
+    const auto take = [](std::string& target) {
+        return [&target](const std::string& text) {
+            if (text.empty()) throw Error(ErrorCode::kUsage, "an empty file name");
+            target = text;
+        };
+    };
+    add_input(app, "CONTAINER", o.input, "Container to read (.glb, .gltf)");
+    add_value(app, "--image", "FILE", take(o.image), "The picture that the container was made from");
+    add_value(app, "-o,--output", "FILE", take(o.output),
+              "Edited picture to write (.png, .exr, .tif, ...), or edited container (.glb, .gltf)");
+    add_value(app, "--displacement", "FILE", take(o.displacement),
+              "Maps of the edit to write (.exr): an STMap, and the displacement of every pixel");
+    add_value(app, "--edits", "FILE", take(o.edits),
+              "Edits to make (.json, schemas/imgmesh-warp.edits.schema.json)");
+    add_value(
+        app, kHandle, "X,Y:DX,DY", [&o](const std::string& text) { o.handle = parse_handle(text); },
+        "One edit more: move the vertex nearest to X,Y by DX,DY pixels");
+    add_count(app, "--level", o.handle_edit.level, {0},
+              "Level of the pyramid for --handle, 0 the finest (default 0)")
+        ->needs(app.get_option(kHandle));
+    add_choice(app, "--solver", o.handle_edit.solver,
+               Choices<WarpSolver>{{"direct", WarpSolver::kDirect}, {"arap", WarpSolver::kArap}},
+               "For --handle: what moves beside the vertex, nothing (default) or all as rigidly as possible")
+        ->needs(app.get_option(kHandle));
+    add_value(
+        app, kSize, "WxH", [&o](const std::string& text) { o.size = parse_size(text); },
+        "Size of the picture and of the STMap (default the picture's)");
+}
+
+bool is_container(const std::string& path) {
+    const std::string extension = lower_extension(path);
+    return extension == ".glb" || extension == ".gltf";
+}
+
+// Throws Error(kUsage) for what can be seen to be wrong before anything is read.
+void check_options(const Options& o) {
+    if (o.output.empty() && o.displacement.empty())
+        throw Error(ErrorCode::kUsage, "nothing to write: expected --output, --displacement or both");
+    const bool container = is_container(o.output);
+    if (!o.output.empty() && !container && !can_write_image(o.output))
+        throw Error(
+            ErrorCode::kUsage,
+            cat("-o ", o.output, ": expected the name of a picture or container, as in .png or .glb"));
+    if (!o.output.empty() && !container && o.image.empty())
+        throw Error(ErrorCode::kUsage, "--image is missing: the picture to draw with");
+    if (!o.displacement.empty() && lower_extension(o.displacement) != ".exr")
+        throw Error(ErrorCode::kUsage,
+                    cat("--displacement ", o.displacement, ": expected the name of an .exr"));
+    if (o.size.width > 0 && container && o.displacement.empty())
+        throw Error(ErrorCode::kUsage, cat(kSize, ": a container keeps its picture's size"));
+}
+
+WarpEdits all_edits(const Options& o) {
+    WarpEdits edits;
+    if (!o.edits.empty()) edits = read_edits(o.edits);
+    if (!o.handle) return edits;
+    WarpEdit edit = o.handle_edit;
+    edit.handles = {*o.handle};
+    edit.where = cat("--level ", edit.level);
+    edits.push_back(edit);
+    return edits;
+}
+
+// solve_edits, where what the command line asks for in vain is a usage error.
+std::vector<VertexMoves> solve(const MeshImage& mesh_image, const WarpEdits& edits, const Options& o) {
+    const auto levels = static_cast<int>(mesh_image.levels.size());
+    if (o.handle && o.handle_edit.level >= levels)
+        throw Error(ErrorCode::kUsage,
+                    cat("--level ", o.handle_edit.level, ": ", o.input, " has levels 0 to ", levels - 1));
+    return solve_edits(mesh_image, edits);
+}
+
+std::int64_t moved_vertices(const std::vector<VertexMoves>& moves) {
+    std::int64_t count = 0;
+    for (const VertexMoves& level : moves)
+        count += std::count_if(level.begin(), level.end(), [](const Vec2f& m) { return !m.isZero(0); });
+    return count;
+}
+
+double largest_move(const DisplacementField& field) {
+    double largest = 0;
+    for (const Vec2f& m : field.move) largest = std::max(largest, std::hypot(double(m.x()), double(m.y())));
+    return largest;
+}
+
+std::vector<std::string> written_files(const Options& o) {
+    std::vector<std::string> files;
+    if (is_container(o.output))
+        files = container_files(o.output);
+    else if (!o.output.empty())
+        files = {o.output};
+    if (!o.displacement.empty()) files.push_back(o.displacement);
+    return files;
+}
+
+Report run(const Options& o, Context& context) {
+    check_options(o);
+    for (const std::string& path : {o.output, o.displacement})
+        if (!path.empty()) check_output(path, context.overwrite);
+
+    context.progress(0, "read");
+    const WarpEdits edits = all_edits(o);
+    const Container container = read_container(o.input);
+    const MeshImage& mesh_image = container.mesh_image;
+    const SourceInfo& source = mesh_image.source;
+    std::vector<std::string> read = container.facts.files;
+    for (const std::string& path : {o.image, o.edits})
+        if (!path.empty()) read.push_back(path);
+    check_distinct(read, written_files(o));
+    std::optional<Image> image;
+    if (!o.image.empty()) {
+        image = read_image(o.image);
+        if (image->width != source.width || image->height != source.height)
+            throw Error(ErrorCode::kBadFile,
+                        cat(o.image, ": has ", image->width, "x", image->height, " pixels, the picture of ",
+                            o.input, " has ", source.width, "x", source.height));
+    }
+
+    context.progress(0.3, "solve");
+    const std::vector<VertexMoves> moves = solve(mesh_image, edits, o);
+    const DisplacementField field = displacement_field(mesh_image, moves);
+    Report report = {{"input", o.input},
+                     {"edits", edits.size()},
+                     {"moved_vertices", moved_vertices(moves)},
+                     {"largest_move", largest_move(field)},
+                     {"folded_cells", folded_cells(field)}};
+    context.progress(0.5, "draw");
+    if (is_container(o.output)) {
+        MeshImage warped = warp_mesh_image(mesh_image, moves);
+        warped.generator = context.generator;
+        write_container(o.output, warped, {container.facts.draco, context.overwrite});
+    } else if (!o.output.empty()) {
+        const Image out = warp_image(*image, field, o.size);
+        context.progress(0.8, "write");
+        write_image(o.output, out, {context.overwrite, {}});
+        report["width"] = out.width;
+        report["height"] = out.height;
+    }
+    if (!o.displacement.empty()) {
+        const InverseMap map = inverse_map(field, image ? alpha_of(*image) : std::vector<float>(), o.size);
+        write_exr_parts(o.displacement,
+                        {{"stmap", st_map_image(map, source.width, source.height)},
+                         {"displacement", forward_map_image(field)}},
+                        context.overwrite);
+        report["displacement"] = o.displacement;
+    }
+    if (!o.output.empty()) {
+        report["output"] = o.output;
+        report["bytes"] = std::filesystem::file_size(o.output);
+    }
+    return report;
+}
+
+void print(const Report& report, std::ostream& out) {
+    const auto name = [&](const char* member) { return report[member].get<std::string>(); };
+    for (const char* member : {"output", "displacement"})
+        if (report.contains(member)) out << printable_line(name("input") + " -> " + name(member)) << '\n';
+    TextTable table;
+    table.add("edits", cat(report["edits"], ", moving ", report["moved_vertices"], " vertices"));
+    table.add("largest move", cat(format_number(report["largest_move"]), " pixels"));
+    if (report["folded_cells"] != 0)
+        table.add("folds", cat(report["folded_cells"], " cells of pixels are turned over"));
+    if (report.contains("width")) table.add("size", cat(report["width"], " x ", report["height"]));
+    if (report.contains("bytes")) table.add("file", format_bytes(report["bytes"].get<std::uint64_t>()));
+    table.print(out, 2);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    return tool_main<Options>("imgmesh-warp", "Edit a picture by moving vertices of its meshes.", argc, argv,
+                              add_options, run, print);
+}
