@@ -85,17 +85,22 @@ Vec2d point(const Node& node) {
     return {coordinate(items[0]), coordinate(items[1])};
 }
 
+std::array<double, 3> circle(const Node& node) {
+    const std::vector<Node> items = node.items(3, 3);
+    return {coordinate(items[0]), coordinate(items[1]), items[2].number(0, kFarthest)};
+}
+
 Id vertex(const Node& node) {
     return static_cast<Id>(node.whole(kNone - 1));
 }
 
-constexpr const char* kSelectors = "vertex, vertices, near, circle, box or border";
+constexpr const char* kSelectors = "vertex, vertices, near, circle, beyond, box or border";
 
 VertexSelection selection(const Node& node) {
     VertexSelection s;
     s.where = node.place();
     int given = 0;
-    for (const char* name : {"vertex", "vertices", "near", "circle", "box", "border"}) {
+    for (const char* name : {"vertex", "vertices", "near", "circle", "beyond", "box", "border"}) {
         if (!node.has(name)) continue;
         if (++given > 1) node.refuse(cat("expected only one of ", kSelectors));
         s.where = node[name].place();
@@ -106,10 +111,8 @@ VertexSelection selection(const Node& node) {
         for (const Node& item : node["vertices"].items(1, std::numeric_limits<std::size_t>::max()))
             s.vertices.push_back(vertex(item));
     if (node.has("near")) s.near = point(node["near"]);
-    if (node.has("circle")) {
-        const std::vector<Node> items = node["circle"].items(3, 3);
-        s.circle = {coordinate(items[0]), coordinate(items[1]), items[2].number(0, kFarthest)};
-    }
+    if (node.has("circle")) s.circle = circle(node["circle"]);
+    if (node.has("beyond")) s.beyond = circle(node["beyond"]);
     if (node.has("box")) {
         const std::vector<Node> items = node["box"].items(4, 4);
         s.box = {coordinate(items[0]), coordinate(items[1]), coordinate(items[2]), coordinate(items[3])};
@@ -122,8 +125,8 @@ VertexSelection selection(const Node& node) {
 }
 
 WarpHandle handle(const Node& node) {
-    node.check_members(
-        {"vertex", "vertices", "near", "circle", "box", "border", "move", "rotate", "scale", "center"});
+    node.check_members({"vertex", "vertices", "near", "circle", "beyond", "box", "border", "move", "rotate",
+                        "scale", "center"});
     WarpHandle h;
     h.vertices = selection(node);
     if (!node.has("move") && !node.has("rotate") && !node.has("scale"))
@@ -162,7 +165,7 @@ WarpEdit edit(const Node& node) {
     for (const Node& item : node["handles"].items()) e.handles.push_back(handle(item));
     if (node.has("pins"))
         for (const Node& item : node["pins"].items()) {
-            item.check_members({"vertex", "vertices", "near", "circle", "box", "border"});
+            item.check_members({"vertex", "vertices", "near", "circle", "beyond", "box", "border"});
             e.pins.push_back(selection(item));
         }
     return e;

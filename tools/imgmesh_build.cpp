@@ -1,5 +1,4 @@
 // imgmesh-build: pictures in, containers out.
-#include <chrono>
 #include <filesystem>
 #include <map>
 #include <mutex>
@@ -9,6 +8,7 @@
 #include "formats/container.h"
 #include "formats/image_io.h"
 #include "libcore/base/parallel.h"
+#include "libcore/base/stopwatch.h"
 #include "libcore/build/build.h"
 #include "libcore/image/color.h"
 #include "libcore/metrics/metrics.h"
@@ -86,10 +86,21 @@ void add_options(CLI::App& app, Options& o) {
     add_choice<Objective, Objective>(
         app, "--objective", o.params.objective, {{"luv", Objective::kLuv}, {"rgb", Objective::kRgb}},
         "Error to lower: L*u*v*, or sRGB with colours for the mesh drawn alone (default luv)");
-    add_number(app, "--geometry-weight", o.params.geometry_weight, {0, kNoLimit, true},
-               cat("Weight of geometry in the quadrics (default ", params.geometry_weight, ")"));
+    add_choice(app, "--metric", o.params.metric, metric_choices(),
+               "Error that collapses are ordered and placed by (default flattened)");
+    add_choice(app, "--solver", o.params.solver, solver_choices(),
+               "How a quadric's least point is found; closed is the fast one (default closed)");
+    CLI::Option* const geometry =
+        add_number(app, "--geometry-weight", o.params.geometry_weight, {0, kNoLimit, true},
+                   cat("Weight of geometry in the quadrics (default ", params.geometry_weight, ")"));
     add_number(app, "--color-weight", o.params.color_weight, {0, kNoLimit, true},
                cat("Weight of colour in the quadrics (default ", params.color_weight, ")"));
+    app.final_callback([&o, geometry] {
+        if (geometry->count() > 0 && o.params.metric == Metric::kHoppe)
+            throw Error(ErrorCode::kUsage, "--geometry-weight: the metric hoppe has no geometry to weigh");
+    });
+    add_count(app, "--smoothing", o.params.smoothing, {0, kMaxSmoothing},
+              "Passes of smoothing before gradients are taken (default by density)");
     add_choice<bool, bool>(
         app, "--quadrics", o.params.rebuild_quadrics, {{"accumulated", false}, {"rebuilt", true}},
         "Summed up from the pixels on, or taken anew from the mesh at every halving (default accumulated)");
@@ -176,18 +187,21 @@ Mask read_mask(const Options& o) {
 }
 
 Report build_one(const Job& job, const Options& o, const Context& context, const Progress& progress) {
-    const auto start = std::chrono::steady_clock::now();
+    Stopwatch whole, stage;
     check_output(job.output, context.overwrite);
     const Image image = read_image(job.input, o.color_space);
     const bool cut = o.cut && o.mask.empty();
     Mask mask = cut ? alpha_mask(image, static_cast<float>(o.alpha_threshold)) : read_mask(o);
+    const double read_seconds = stage.lap();
     BuildResult result = build_named(job.input, image, o.params, progress, std::move(mask));
     result.mesh_image.generator = context.generator;
     if (result.mesh_image.source.has_mask) {
         result.mesh_image.parameters.emplace_back("mask", std::string(cut ? "alpha" : "picture"));
         result.mesh_image.parameters.emplace_back("alpha-threshold", o.alpha_threshold);
     }
+    stage.lap();
     write_container(job.output, result.mesh_image, {o.draco, context.overwrite});
+    const double write_seconds = stage.lap();
 
     // The figures are those of what a reader gets.
     const Container written = read_container(job.output);
@@ -206,7 +220,7 @@ Report build_one(const Job& job, const Options& o, const Context& context, const
             levels.back()["channel_rms"][plain[c]] = result.report.levels[k].plain_rms[c];
     }
     const double bytes = static_cast<double>(written.facts.total_bytes);
-    const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+    const BuildSeconds& seconds = result.report.seconds;
     Report report{{"input", job.input},
                   {"output", job.output},
                   {"width", image.width},
@@ -221,7 +235,13 @@ Report build_one(const Job& job, const Options& o, const Context& context, const
     report.update({{"levels", levels},
                    {"bytes", written.facts.total_bytes},
                    {"bytes_per_pixel", bytes / static_cast<double>(image.pixel_count())},
-                   {"seconds", seconds.count()}});
+                   {"seconds", whole.lap()},
+                   {"stage_seconds",
+                    {{"read", read_seconds},
+                     {"collapse", seconds.collapse},
+                     {"refine", seconds.refine},
+                     {"map", seconds.map},
+                     {"write", write_seconds}}}});
     return report;
 }
 

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "libcore/base/error.h"
+#include "libcore/base/stopwatch.h"
 #include "libcore/build/params.h"
 #include "libcore/build/refine_level.h"
 #include "libcore/collapse/collapse_edges.h"
@@ -67,8 +68,10 @@ std::vector<Level> build_levels(const FeatureImage& feature, const FeatureSpace&
                                 const BuildParams& params, const CollapseParams& collapse,
                                 std::span<const CollapseTarget> targets, BuildReport& report,
                                 const Progress& progress) {
+    Stopwatch watch;
     std::vector<CollapseResult> collapsed =
         collapse_edges(grid_mesh(feature, mask), collapse, targets, part_of(progress, 0, 0.7));
+    report.seconds.collapse += watch.lap();
     FitParams fit;
     fit.color_weight = params.projection_color_weight;
     fit.bary = params.bary;
@@ -89,6 +92,7 @@ std::vector<Level> build_levels(const FeatureImage& feature, const FeatureSpace&
         if (params.refine > 0 || params.objective == Objective::kRgb)
             refine_level(level.mesh, feature, mask, params.objective, refinement,
                          part_of(progress, begin, middle));
+        report.seconds.refine += watch.lap();
         level.map = fit_map(level.mesh, feature, fit, part_of(progress, middle, begin + share), mask);
         const PixelMap trivial = trivial_map(level.mesh, feature.width, feature.height, mask);
         report.levels.push_back(
@@ -98,6 +102,7 @@ std::vector<Level> build_levels(const FeatureImage& feature, const FeatureSpace&
                                                      space.weight(c));
         take_weights_out(level.mesh, space);
         levels.push_back(std::move(level));
+        report.seconds.map += watch.lap();
     }
     return levels;
 }
@@ -112,6 +117,7 @@ BuildResult build_mesh_image(const Image& image, const BuildParams& params, cons
         if (!std::isfinite(sample))
             throw Error(ErrorCode::kUnsupported, "the picture has samples that are not finite");
     mask = checked(std::move(mask), image);
+    Stopwatch watch;
     // What lies outside of the colours that a container holds could only mislead the fit: L*u*v* of negative
     // light has no bound.
     const FeatureSpace space = feature_space(image, params.channels, mask);
@@ -122,6 +128,7 @@ BuildResult build_mesh_image(const Image& image, const BuildParams& params, cons
     const FeatureImage feature = extract_features(image, space, mask);
 
     BuildResult result;
+    result.report.seconds.collapse = watch.lap();
     result.report.pixels = mask.empty() ? static_cast<std::int64_t>(image.pixel_count()) : mask.count();
     const auto pixels = static_cast<double>(result.report.pixels);
     const std::vector<CollapseTarget> targets = collapse_targets(params, pixels);

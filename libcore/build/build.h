@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "libcore/base/progress.h"
+#include "libcore/collapse/metric.h"
 #include "libcore/image/feature_space.h"
 #include "libcore/image/image.h"
 #include "libcore/image/mask.h"
@@ -23,6 +24,7 @@ struct StopParams {
 };
 
 inline constexpr int kMaxLevels = 32;
+inline constexpr int kMaxSmoothing = 64;
 
 /// The pyramid: nested base meshes of one run, each with a pixel map of its own.
 struct PyramidParams {
@@ -45,10 +47,13 @@ struct BuildParams {
     std::vector<ChannelChoice> channels;  ///< the feature space; none: the picture's colour
     StopParams stop;                      ///< of the finest level
     PyramidParams levels;
+    Metric metric = Metric::kFlattened;
+    Solver solver = Solver::kClosed;
     double geometry_weight = 3.0;  ///< lambda: geometry against colour in the quadrics [L*u*v*^2 / px^2]; > 0
     double color_weight = 1.0;     ///< of colour in the quadrics; only the ratio counts, 1e-9 to 1e9
     bool rebuild_quadrics = false;  ///< take quadrics anew from the mesh at every halving ("memoryless")
     bool total_priority = false;    ///< edges go by total error, as in the paper, not by what a merge adds
+    std::optional<int> smoothing;   ///< passes of [1 2 1] / 4 before gradients are taken; none: by density
     double projection_color_weight = 1.0 / 30;  ///< of colour against smoothness in the map; 0: trivial map
     std::optional<WeightPrecision> bary;        ///< none: half where the map stays a bijection, else float
     std::optional<std::int64_t> max_cluster;    ///< no face with more pixels than this; >= 3
@@ -64,7 +69,15 @@ struct LevelReport {
     std::vector<double> plain_rms;  ///< of each channel beside the colour, through the map [its own unit]
 };
 
+/// Wall time of the stages, all levels together [s].
+struct BuildSeconds {
+    double collapse = 0;  ///< with L*u*v* and the dense mesh
+    double refine = 0;
+    double map = 0;  ///< with the fit of colours, and the figures of LevelReport
+};
+
 struct BuildReport {
+    BuildSeconds seconds;
     std::int64_t pixels = 0;  ///< meshed: those inside the mask, or all
     std::int64_t collapses = 0;
     std::vector<LevelReport> levels;

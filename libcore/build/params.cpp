@@ -55,6 +55,8 @@ void check_params(const BuildParams& p) {
     const double lambda = p.geometry_weight / p.color_weight;
     require(lambda >= 1e-9 && lambda <= 1e9,
             cat("geometry weight / color weight is ", lambda, ", expected 1e-9 to 1e9"));
+    require(p.smoothing.value_or(0) >= 0 && p.smoothing.value_or(0) <= kMaxSmoothing,
+            cat("smoothing is ", p.smoothing.value_or(0), ", expected 0 to ", kMaxSmoothing));
     require(std::isfinite(p.projection_color_weight) && p.projection_color_weight >= 0,
             cat("projection color weight is ", p.projection_color_weight,
                 ", expected a finite number, 0 or more"));
@@ -108,18 +110,21 @@ std::vector<CollapseTarget> collapse_targets(const BuildParams& params, double p
 
 CollapseParams collapse_params(const BuildParams& params, const CollapseTarget& finest, double pixels) {
     CollapseParams out;
+    out.metric = params.metric;
+    out.solver = params.solver;
     out.geometry_weight = static_cast<float>(params.geometry_weight / params.color_weight);
     out.rebuild_quadrics = params.rebuild_quadrics;
     out.total_priority = params.total_priority;
     out.min_shape = static_cast<float>(params.min_quality);
     const auto vertices = static_cast<double>(std::max(finest.vertices, finest.faces / 2));
     // With an error alone the density is not known beforehand; the default's serves.
-    out.smoothing = smoothing_passes(vertices > 0 ? pixels / vertices : 100);
+    out.smoothing = params.smoothing.value_or(smoothing_passes(vertices > 0 ? pixels / vertices : 100));
     return out;
 }
 
 std::vector<BuildParameter> listed_params(const BuildParams& p, const CollapseParams& collapse) {
-    std::vector<BuildParameter> out{{"metric", std::string("flattened")}};
+    std::vector<BuildParameter> out{{"metric", std::string(metric_name(p.metric))},
+                                    {"solver", std::string(solver_name(p.solver))}};
     if (!p.channels.empty()) out.emplace_back("channels", joined(p.channels));
     if (stops_by_itself(p)) {
         if (p.stop.faces) out.emplace_back("faces", *p.stop.faces);
@@ -130,7 +135,7 @@ std::vector<BuildParameter> listed_params(const BuildParams& p, const CollapsePa
     }
     if (!p.levels.faces.empty()) out.emplace_back("level-faces", joined(p.levels.faces));
     if (!p.levels.errors.empty()) out.emplace_back("level-errors", joined(p.levels.errors));
-    out.emplace_back("geometry-weight", p.geometry_weight);
+    if (p.metric != Metric::kHoppe) out.emplace_back("geometry-weight", p.geometry_weight);
     out.emplace_back("color-weight", p.color_weight);
     out.emplace_back("quadrics", std::string(p.rebuild_quadrics ? "rebuilt" : "accumulated"));
     out.emplace_back("priority", std::string(p.total_priority ? "total" : "increment"));

@@ -12,6 +12,12 @@
 #include "libcore/image/channel_count.h"
 
 namespace imgmesh {
+
+// Compiled in dense_collapser.cpp.
+extern template class Collapser<DenseQuadric<3>>;
+extern template class Collapser<DenseQuadric<8>>;
+extern template class Collapser<DenseQuadric<16>>;
+
 namespace {
 
 // The first channels of every item, or all and zeros behind them.
@@ -24,17 +30,25 @@ std::vector<float> with_channels(const std::vector<float>& values, int from, int
     return out;
 }
 
-// grid.feature has C channels.
-template <int C>
-std::vector<CollapseResult> collapse(const GridMesh& grid, const CollapseParams& params,
-                                     std::span<const CollapseTarget> targets, const Progress& progress) {
-    Collapser<Quadric<C>> collapser(grid, params);
+template <class Q>
+std::vector<CollapseResult> collapse_by(const GridMesh& grid, const CollapseParams& params,
+                                        std::span<const CollapseTarget> targets, const Progress& progress) {
+    Collapser<Q> collapser(grid, params);
     std::vector<CollapseResult> levels;
     for (const CollapseTarget& target : targets) {
         collapser.run(target, progress);
         levels.push_back(collapser.snapshot());
     }
     return levels;
+}
+
+// grid.feature has C channels.
+template <int C>
+std::vector<CollapseResult> collapse(const GridMesh& grid, const CollapseParams& params,
+                                     std::span<const CollapseTarget> targets, const Progress& progress) {
+    if (params.metric == Metric::kFlattened && params.solver == Solver::kClosed)
+        return collapse_by<Quadric<C>>(grid, params, targets, progress);
+    return collapse_by<DenseQuadric<C>>(grid, params, targets, progress);
 }
 
 }  // namespace

@@ -14,9 +14,9 @@
 #include "libcore/collapse/collapse_edges.h"
 #include "libcore/collapse/edge_batch.h"
 #include "libcore/collapse/mask_outline.h"
+#include "libcore/collapse/quadric_sources.h"
 #include "libcore/collapse/ring_mesh.h"
 #include "libcore/collapse/star_limits.h"
-#include "libcore/collapse/vertex_quadrics.h"
 
 namespace imgmesh {
 
@@ -37,16 +37,9 @@ struct Placement {
     float cost = kNever;  // by which the edge is filed; kNever where the merge is not allowed
 };
 
-template <class Q>
-std::vector<Q> initial_quadrics(const GridMesh& grid, const RingMesh& rings, const CollapseParams& params) {
-    const FeatureImage gradients = smoothed_vertices(grid, params.smoothing);
-    return grid.mask.empty() ? vertex_quadrics<Q::kChannels>(grid, gradients, params.geometry_weight)
-                             : vertex_quadrics<Q::kChannels>(grid, rings, gradients, params.geometry_weight);
-}
-
 /// Source and steps: collapse_edges.cpp. `Q` is the quadric that vertices carry: kChannels features,
 /// merged(a, b), at(x, y), feature(c, x, y), error, the minimiser (px, py) and best_x(y), best_y(x) on a
-/// line.
+/// line where has_minimum(fixed); initial_quadrics and rebuilt_quadrics make vectors of it.
 template <class Q>
 class Collapser {
   public:
@@ -72,7 +65,7 @@ class Collapser {
         while (!done()) {
             if (params_.rebuild_quadrics && vertices_ <= next_rebuild_) rebuild_quadrics();
             const std::int64_t collapses_before = collapses_;
-            postponed_ = false;
+            postponed_ = kNever;
             const int side = far_from_done() ? kTile : std::max(width_, height_);
             for (int y = 0; y < height_ && !done(); y += side)
                 for (int x = 0; x < width_ && !done(); x += side) {
@@ -80,8 +73,11 @@ class Collapser {
                     drain();
                 }
             if (progress) progress(fraction_done(), "collapse");
-            if (done() || (collapses_ == collapses_before && !postponed_)) break;
-            threshold_ *= kWindow;
+            if (done() || (collapses_ == collapses_before && postponed_ == kNever)) break;
+            // Where nothing has changed, windows below the cheapest edge would stay empty: a flat picture's
+            // first window is far below what the rest costs.
+            do threshold_ *= kWindow;
+            while (collapses_ == collapses_before && threshold_ <= postponed_);
         }
         queue_ = {};
     }
@@ -153,6 +149,8 @@ class Collapser {
         if (along_outline(i, j)) return outline_place(i, j, sum, [](const Placement&) { return true; });
         const BorderConstraint border = border_constraint(rings_[i], rings_[j]);
         if (!border.allowed) return {};
+        if (!sum.has_minimum(border.fixed))
+            return cheapest_of_three(i, j, sum, border, [](const Placement&) { return true; });
         Placement place{border.x, border.y};
         // On a side the position is free along one axis only.
         if (border.fixed == 0) {
@@ -204,19 +202,24 @@ class Collapser {
 
     // The cheapest legal one of midpoint and ends, or of the outline's places.
     Placement fallback(Id i, Id j, const MergedRing& ring, const Q& sum) {
-        if (along_outline(i, j))
-            return outline_place(i, j, sum, [&](const Placement& p) { return allowed(i, j, ring, p); });
+        const auto legal = [&](const Placement& p) { return allowed(i, j, ring, p); };
+        if (along_outline(i, j)) return outline_place(i, j, sum, legal);
+        const BorderConstraint border = border_constraint(rings_[i], rings_[j]);
+        return border.allowed ? cheapest_of_three(i, j, sum, border, legal) : Placement{};
+    }
+
+    template <class Allowed>
+    Placement cheapest_of_three(Id i, Id j, const Q& sum, const BorderConstraint& border,
+                                const Allowed& allowed) const {
         const Ring &a = rings_[i], &b = rings_[j];
         Placement best;
-        const BorderConstraint border = border_constraint(a, b);
-        if (!border.allowed) return best;
         const std::pair<float, float> candidates[] = {
             {0.5f * (a.x + b.x), 0.5f * (a.y + b.y)}, {a.x, a.y}, {b.x, b.y}};
         for (const auto& [cx, cy] : candidates) {
             Placement p{border.fixed & kFixedX ? border.x : snapped(cx),
                         border.fixed & kFixedY ? border.y : snapped(cy), 0};
             p.cost = cost_at(i, j, sum, p);
-            if (p.cost < best.cost && limits_.allow(rings_, ring, border.fixed != 0, p.x, p.y)) best = p;
+            if (p.cost < best.cost && allowed(p)) best = p;
         }
         return best;
     }
@@ -235,7 +238,7 @@ class Collapser {
                 if (place.cost < threshold_)
                     queue_.push(place.cost, edge);
                 else
-                    postponed_ = true;
+                    postponed_ = std::min(postponed_, place.cost);
                 return;
             }
         }
@@ -256,16 +259,19 @@ class Collapser {
 
     // Files edge (i, j) if it costs less than the threshold; interior ones wait for file_batch().
     void file(Id i, Id j) {
-        if (!rings_[i].border() && !rings_[j].border()) {
-            batch_edges_[batch_size_] = {i, j};
-            batch_.set(batch_size_, quadrics_[i], quadrics_[j]);
-            if (++batch_size_ == EdgeBatch<Q>::kWidth) file_batch();
-            return;
+        if constexpr (kBatched) {
+            if (!rings_[i].border() && !rings_[j].border()) {
+                batch_edges_[batch_size_] = {i, j};
+                batch_.set(batch_size_, quadrics_[i], quadrics_[j]);
+                if (++batch_size_ == EdgeBatch<Q>::kWidth) file_batch();
+                return;
+            }
         }
         file_at(i, j, minimiser(i, j, merged(quadrics_[i], quadrics_[j])).cost);
     }
 
     void file_batch() {
+        if (batch_size_ == 0) return;
         batch_.evaluate();
         for (int lane = 0; lane < batch_size_; ++lane) {
             const auto [i, j] = batch_edges_[lane];
@@ -277,8 +283,8 @@ class Collapser {
     void file_at(Id i, Id j, float cost) {
         if (cost < threshold_)
             queue_.push(cost, {i, j, rings_[i].version, rings_[j].version});
-        else if (cost < kNever)
-            postponed_ = true;
+        else
+            postponed_ = std::min(postponed_, cost);
     }
 
     // Files the edges of the vertices of a tile, each edge with its end of the lower number.
@@ -318,7 +324,7 @@ class Collapser {
     }
 
     void rebuild_quadrics() {
-        quadrics_ = current_quadrics(rings_, quadrics_, params_.geometry_weight);
+        quadrics_ = rebuilt_quadrics(rings_, quadrics_, params_);
         threshold_ = first_threshold();
         next_rebuild_ = vertices_ / 2;
     }
@@ -342,6 +348,9 @@ class Collapser {
         return far(vertices_, target_.vertices) && far(faces_, target_.faces);
     }
 
+    // Of a quadric that may have no minimiser the edge's midpoint and ends have to be tried.
+    static constexpr bool kBatched = kCanonical<Q>;
+
     CollapseParams params_;
     int width_, height_;
     RingMesh rings_;
@@ -350,8 +359,8 @@ class Collapser {
     EdgeBatch<Q> batch_;
     std::array<std::pair<Id, Id>, EdgeBatch<Q>::kWidth> batch_edges_;
     int batch_size_ = 0;
-    bool postponed_ = false;  // some legal edge costs more than the current threshold
-    float threshold_ = 0;     // of the current window
+    float postponed_ = kNever;  // least cost of the legal edges that are beyond the current threshold
+    float threshold_ = 0;       // of the current window
     StarLimits limits_;
     std::optional<MaskOutline> outline_;  // of a cut-out
     CollapseTarget target_;

@@ -45,6 +45,8 @@ struct Quadric {
     /// The best y beside an imposed x, and the best x beside an imposed y.
     float best_y(float x) const { return py - sxy * (x - px) / syy; }
     float best_x(float y) const { return px - sxy * (y - py) / sxx; }
+    /// Whether one position is best, whatever is fixed: always so with a positive lambda.
+    static constexpr bool has_minimum(unsigned /*fixed*/) { return true; }
     /// The best feature c for position p.
     float feature(int c, float x, float y) const { return s[c] + gx[c] * (x - px) + gy[c] * (y - py); }
 };

@@ -24,14 +24,19 @@ inline bool is_plain(const CellPoint& p) {
 inline constexpr float kWhole = 1 - 1.0f / 1024;
 
 // The share of an output pixel around the point that lies inside the picture's sides: exact for sides along
-// the output's axes.
-inline float side_coverage(const DisplacementField& field, const CellPoint& p) {
-    const auto share = [](float at, int side, float across) {
-        const float inside = std::min(at + 0.5f, static_cast<float>(side) - 0.5f - at);
-        return across > 0 ? std::clamp(0.5f + inside / across, 0.0f, 1.0f) : float(inside >= 0);
+// the output's axes. `scale` is output pixels per source pixel: what the rim, which moves as the pixels
+// beside it do, measures across, however the cells inside of it are distorted.
+inline float side_coverage(const DisplacementField& field, const Vec2f& scale, const CellPoint& p) {
+    const auto share = [](float at, int side, float across, float rim) {
+        const float from_centers = std::min(at, static_cast<float>(side - 1) - at);
+        if (across <= 0) return float(from_centers >= -0.5f);
+        const float inside =
+            from_centers >= 0 ? from_centers / across + 0.5f * rim : (from_centers + 0.5f) / across;
+        return std::clamp(0.5f + inside, 0.0f, 1.0f);
     };
-    const float both = share(static_cast<float>(p.x) + p.fx, field.width, std::hypot(p.dx.x(), p.dy.x())) *
-                       share(static_cast<float>(p.y) + p.fy, field.height, std::hypot(p.dx.y(), p.dy.y()));
+    const float both =
+        share(static_cast<float>(p.x) + p.fx, field.width, std::hypot(p.dx.x(), p.dy.x()), scale.x()) *
+        share(static_cast<float>(p.y) + p.fy, field.height, std::hypot(p.dx.y(), p.dy.y()), scale.y());
     return both > kWhole ? 1.0f : both;
 }
 

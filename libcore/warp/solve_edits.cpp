@@ -55,11 +55,15 @@ std::vector<Id> selected(const BaseMesh& mesh, int level, const VertexSelection&
             fail(s.where, cat("vertex ", v, " is not there; level ", level, " has vertices 0 to ",
                               mesh.vertex_count() - 1));
     if (s.near) vertices.push_back(nearest_vertex(mesh, *s.near));
-    if (s.circle) {
-        const auto [x, y, radius] = *s.circle;
+    const auto within = [](const std::array<double, 3>& circle, const Vec2d& p) {
+        return std::hypot(p.x() - circle[0], p.y() - circle[1]) <= circle[2];
+    };
+    if (s.circle)
         add_within(
-            mesh, [&](const Vec2d& p) { return std::hypot(p.x() - x, p.y() - y) <= radius; }, vertices);
-    }
+            mesh, [&](const Vec2d& p) { return within(*s.circle, p); }, vertices);
+    if (s.beyond)
+        add_within(
+            mesh, [&](const Vec2d& p) { return !within(*s.beyond, p); }, vertices);
     if (s.box) {
         const auto [left, top, right, bottom] = *s.box;
         add_within(
@@ -73,7 +77,7 @@ std::vector<Id> selected(const BaseMesh& mesh, int level, const VertexSelection&
         const std::vector<Id> border = border_vertices(mesh);
         vertices.insert(vertices.end(), border.begin(), border.end());
     }
-    if (vertices.empty()) fail(s.where, cat("no vertex of level ", level, " lies within"));
+    if (vertices.empty()) fail(s.where, cat("no vertex of level ", level, " lies there"));
     std::sort(vertices.begin(), vertices.end());
     vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
     return vertices;

@@ -29,7 +29,13 @@ class ImageSink {
   public:
     ImageSink(const Image& in, const DisplacementField& field, const std::vector<float>& alpha, Image& out,
               std::vector<float>& coverage)
-        : in_(in), field_(field), alpha_(alpha), out_(out), coverage_(coverage) {}
+        : in_(in),
+          field_(field),
+          alpha_(alpha),
+          out_(out),
+          coverage_(coverage),
+          scale_(static_cast<float>(out.width) / static_cast<float>(field.width),
+                 static_cast<float>(out.height) / static_cast<float>(field.height)) {}
 
     void copy(int column, int row, int x, int y) {
         const std::size_t from = field_.index(x, y), to = at(column, row);
@@ -57,7 +63,7 @@ class ImageSink {
     void sample(int column, int row, const CellPoint& p) {
         const std::size_t to = at(column, row);
         float* out = out_.data.data() + to * size();
-        const float sides = is_plain(p) && !on_rim(field_, p) ? 1.0f : side_coverage(field_, p);
+        const float sides = is_plain(p) && !on_rim(field_, p) ? 1.0f : side_coverage(field_, scale_, p);
         std::fill_n(out, size(), 0.0f);
         if (alpha_.empty()) {
             for_points(field_, p, [&](const Taps& taps, float share) { add(taps, share, taps.weight, out); });
@@ -101,12 +107,17 @@ class ImageSink {
     const std::vector<float>& alpha_;
     Image& out_;
     std::vector<float>& coverage_;
+    Vec2f scale_;
 };
 
 class MapSink {
   public:
     MapSink(const DisplacementField& field, const std::vector<float>& alpha, InverseMap& out)
-        : field_(field), alpha_(alpha), out_(out) {}
+        : field_(field),
+          alpha_(alpha),
+          out_(out),
+          scale_(static_cast<float>(out.width) / static_cast<float>(field.width),
+                 static_cast<float>(out.height) / static_cast<float>(field.height)) {}
 
     void copy(int column, int row, int x, int y) {
         const std::size_t from = field_.index(x, y), to = at(column, row);
@@ -126,7 +137,7 @@ class MapSink {
                 total += share * taps.weight[t] * (alpha_.empty() ? 1.0f : alpha_[taps.index[t]]);
         });
         out_.source[to] = Vec2f(static_cast<float>(p.x) + p.fx, static_cast<float>(p.y) + p.fy);
-        const float sides = is_plain(p) && !on_rim(field_, p) ? 1.0f : side_coverage(field_, p);
+        const float sides = is_plain(p) && !on_rim(field_, p) ? 1.0f : side_coverage(field_, scale_, p);
         out_.coverage[to] = (alpha_.empty() ? 1.0f : std::min(total, 1.0f)) * sides;
     }
 
@@ -138,6 +149,7 @@ class MapSink {
     const DisplacementField& field_;
     const std::vector<float>& alpha_;
     InverseMap& out_;
+    Vec2f scale_;
 };
 
 // `image` with `alpha` as its A, which it gets where it has none and something is clear.

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "libcore/base/error.h"
-#include "libcore/warp/displacement.h"
+#include "libcore/param/trivial_map.h"
 
 namespace imgmesh {
 namespace {
@@ -12,7 +12,7 @@ namespace {
 // What docs/format.md allows.
 constexpr float kFarthest = 131072;
 
-// The inside pixel nearest to a point, searched in growing squares; of equal ones the first.
+// The pixel with a face nearest to a point, searched in growing squares; of equal ones the first.
 std::size_t nearest_pixel(const PixelMap& map, const Vec2f& p) {
     const int cx = std::clamp(static_cast<int>(std::lround(p.x())), 0, map.width - 1),
               cy = std::clamp(static_cast<int>(std::lround(p.y())), 0, map.height - 1);
@@ -31,25 +31,24 @@ std::size_t nearest_pixel(const PixelMap& map, const Vec2f& p) {
     return best;
 }
 
-// For every vertex the pixel with the largest weight of it, the first of equal ones.
-std::vector<std::size_t> pixels_at_vertices(const Level& level) {
-    const BaseMesh& mesh = level.mesh;
-    std::vector<std::size_t> pixel(mesh.vertex_count());
-    std::vector<float> largest(mesh.vertex_count(), 0.0f);
-    for (std::size_t i = 0; i < level.map.coords.size(); ++i) {
-        const PixelCoord& c = level.map.coords[i];
+// Adds what moving the vertices of `level` does at the places `at`: linear over each of its faces, in the
+// face that covers the pixel nearest to the place. (Through the pixel map it would be what pixels do, which
+// follow edges of the picture closely and so change too fast for vertices: fine faces would turn over where
+// coarse ones are merely stretched.)
+void add_moves(const Level& level, const VertexMoves& moves, const std::vector<Vec2f>& at,
+               std::vector<Vec2f>& sum) {
+    const PixelMap cover = trivial_map(level.mesh, level.map.width, level.map.height);
+    for (std::size_t i = 0; i < at.size(); ++i) {
+        const PixelCoord& c = cover.coords[nearest_pixel(cover, at[i])];
         if (c.face == kNone) continue;
-        const float weight[3] = {1 - c.u - c.v, c.u, c.v};
-        for (std::size_t k = 0; k < 3; ++k) {
-            const Id v = mesh.faces[c.face][k];
-            if (weight[k] <= largest[v]) continue;
-            largest[v] = weight[k];
-            pixel[v] = i;
-        }
+        const auto [ia, ib, ic] = level.mesh.faces[c.face];
+        const Vec2f &pa = level.mesh.position[ia], &pb = level.mesh.position[ib],
+                    &pc = level.mesh.position[ic];
+        const double area = signed_area2(pa, pb, pc);
+        const auto u = static_cast<float>(signed_area2(at[i], pc, pa) / area),
+                   v = static_cast<float>(signed_area2(at[i], pa, pb) / area);
+        sum[i] += moves[ia] + u * (moves[ib] - moves[ia]) + v * (moves[ic] - moves[ia]);
     }
-    for (Id v = 0; v < pixel.size(); ++v)
-        if (largest[v] == 0) pixel[v] = nearest_pixel(level.map, mesh.position[v]);
-    return pixel;
 }
 
 void check_faces(const BaseMesh& mesh, std::size_t level) {
@@ -72,16 +71,14 @@ void check_faces(const BaseMesh& mesh, std::size_t level) {
 MeshImage warp_mesh_image(MeshImage mesh_image, const std::vector<VertexMoves>& moves) {
     std::vector<std::vector<Vec2f>> places(mesh_image.levels.size());
     for (std::size_t k = 0; k < places.size(); ++k) {
-        const Level& level = mesh_image.levels[k];
-        std::vector<VertexMoves> others = moves;
-        others[k].clear();
-        places[k] = level.mesh.position;
-        if (!moves[k].empty())
-            for (Id v = 0; v < places[k].size(); ++v) places[k][v] += moves[k][v];
-        if (std::any_of(others.begin(), others.end(), [](const VertexMoves& m) { return !m.empty(); })) {
-            const DisplacementField field = displacement_field(mesh_image, others);
-            const std::vector<std::size_t> pixel = pixels_at_vertices(level);
-            for (Id v = 0; v < places[k].size(); ++v) places[k][v] += field.move[pixel[v]];
+        const std::vector<Vec2f>& rest = mesh_image.levels[k].mesh.position;
+        places[k] = rest;
+        for (std::size_t j = 0; j < moves.size(); ++j) {
+            if (moves[j].empty()) continue;
+            if (j != k)
+                add_moves(mesh_image.levels[j], moves[j], rest, places[k]);
+            else
+                for (Id v = 0; v < rest.size(); ++v) places[k][v] += moves[k][v];
         }
     }
     for (std::size_t k = 0; k < places.size(); ++k) {

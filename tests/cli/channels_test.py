@@ -36,6 +36,7 @@ class Channels(CliCase):
         self.assertEqual(sorted(files.spec(self.folder / "again.exr").channelnames), sorted(NAMES))
         depth = channel(self.folder / "again.exr", "depth.Z") - channel(scene, "depth.Z")
         self.assertAlmostEqual(np.sqrt(np.mean(depth ** 2)), built["channel_rms"]["depth.Z"], places=4)
+        self.run_ok("imgmesh-segment", "out.glb", "-o", "labels.png")
         # A colour format gets the colour.
         self.run_ok("imgmesh-reconstruct", "out.glb", "-o", "again.png")
         self.assertEqual(list(files.spec(self.folder / "again.png").channelnames), ["R", "G", "B"])
@@ -63,6 +64,7 @@ class Channels(CliCase):
             self.assert_error("imgmesh-reconstruct", ["out.gltf", "-o", output, "--mode", mode], 5, "out.gltf",
                               "depth.Z")
         self.assert_error("imgmesh-compare", [scene, "out.gltf"], 5, "no colour")
+        self.assert_error("imgmesh-segment", ["out.gltf", "-o", "x.png"], 5, "out.gltf", "no colour")
         self.run_ok("imgmesh-compare", "out.gltf")
         self.run_ok("imgmesh-info", "out.gltf", "--validate")
 

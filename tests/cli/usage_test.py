@@ -48,6 +48,7 @@ class Usage(CliCase):
             "--error": ["-1"],
             "--geometry-weight": ["0"],
             "--color-weight": ["0"],
+            "--smoothing": ["-1", "65", "1.5"],
             "--projection-color-weight": ["-1e-9"],
             "--refine": ["-1", "1001", "1.5", "all"],
             "--threads": ["0", "1025", "all"],
@@ -65,6 +66,8 @@ class Usage(CliCase):
         for option, value, listed in (("--bary", "double", "half, float"),
                                       ("--objective", "lab", "luv, rgb"),
                                       ("--draco", "zip", "edgebreaker, sequential, none"),
+                                      ("--metric", "qem", "flattened, hoppe, garland"),
+                                      ("--solver", "qr", "svd, lu, closed"),
                                       ("--color-space", "CMYK", "sRGB, linear"), ("--alpha", "keep", "cut, ignore")):
             self.assert_error("imgmesh-build", ["in.png", "-o", "out.glb", option, value], 2, option, value, listed)
         self.assert_error("imgmesh-reconstruct", ["in.glb", "-o", "o.png", "--mode", "visits"], 2, "--mode", "wire")
@@ -78,6 +81,10 @@ class Usage(CliCase):
         for option in ("--faces", "--vertices", "--error"):
             self.assert_error("imgmesh-build", ["in.png", "-o", "out.glb", "--density", "5", option, "10"], 2,
                               "--density", option)
+
+    def test_hoppes_metric_has_no_geometry(self):
+        self.assert_error("imgmesh-build", ["in.png", "-o", "out.glb", "--metric", "hoppe", "--geometry-weight", "2"],
+                          2, "--geometry-weight", "hoppe")
 
     def test_output_names(self):
         self.assert_error("imgmesh-build", ["in.png", "-o", "out.png"], 2, "out.png", ".glb")

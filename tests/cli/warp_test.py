@@ -144,6 +144,32 @@ class Warp(CliCase):
             self.assertFalse(np.array_equal(read(name + ".g.png"), read("c.glb.g.png")))
         self.assert_error(TOOL, ["c.glb", "-o", "x.glb", "--handle", "24,16:500,0", "--level", "1"], 5, "turn over")
 
+    def test_cut_out(self):
+        """A ring with a soft outline, meshed as a cut-out on two levels."""
+        y, x = np.mgrid[0:60, 0:80]
+        radius = np.hypot(x - 39.5, y - 29.5)
+        alpha = np.clip(26.5 - radius, 0, 1) * np.clip(radius - 13.5, 0, 1)
+        ring = np.dstack([picture_files.ramp(80, 60), alpha])
+        original = picture_files.read(picture_files.png(self.folder / "ring.png", ring))
+        self.build("ring.png", "--level-faces", "300,60", output="ring.glb")
+        warp = lambda *args: self.warp(*args, container="ring.glb", image="ring.png")[1]
+        np.testing.assert_array_equal(warp(), original)
+        # All moved: what can be seen moves along to the bit, the faint outside of the outline too.
+        self.edits({"level": 1, "handles": [{"box": [-9, -9, 90, 90], "move": [4, 2]}]})
+        moved = warp("--edits", "e.json")
+        seen = original[:58, :76, 3] > 0
+        np.testing.assert_array_equal(moved[2:, 4:, 3], original[:58, :76, 3])
+        np.testing.assert_array_equal(moved[2:, 4:][seen], original[:58, :76][seen])
+        self.assertEqual((moved[:2] != 0).sum() + (moved[:, :4] != 0).sum(), 0)
+        # The right side pulled: the left half stays as it was, where anything is to be seen.
+        pulled = warp("--handle", "66,30:9,0", "--level", "1")
+        left = (original[..., 3] > 0) & (x < 36)
+        np.testing.assert_array_equal(pulled[left], original[left])
+        self.assertGreater(pulled[:, 67:, 3].sum(), original[:, 67:, 3].sum() + 20)
+        report = self.report(TOOL, "ring.glb", "-o", "w.glb", "--handle", "66,30:3,0", "--level", "1")
+        self.assertEqual(report["moved_vertices"], 1)
+        self.assertTrue(self.report("imgmesh-info", "w.glb", "--validate")["valid"])
+
     def test_bad_edit_files(self):
         handle = {"vertex": 0, "move": [1, 1]}
         for edits, place in (

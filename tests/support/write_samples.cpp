@@ -1,5 +1,5 @@
 // write-samples FOLDER: a container of every flavour for the tests that use other software, and for each .glb
-// the picture (.ppm) that a reader must draw of its level 0.
+// the picture (.ppm) that a reader must draw of its level 0. FOLDER/regions: base meshes in pieces.
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -7,6 +7,7 @@
 #include <iostream>
 
 #include "formats/container.h"
+#include "formats/region_gltf.h"
 #include "tests/support/random_mesh_image.h"
 
 using namespace imgmesh;
@@ -72,6 +73,15 @@ void write_with_channels(const std::filesystem::path& folder, const std::string&
     write_container((folder / ("light " + name + ".glb")).string(), light, {mode, true});
 }
 
+// Faces of any regions, one region of a single face, and some faces left out.
+void write_regions(const std::filesystem::path& folder, const std::string& name, const MeshImage& image) {
+    const BaseMesh& mesh = image.levels[0].mesh;
+    std::vector<Id> region(mesh.faces.size());
+    for (Id f = 0; f < region.size(); ++f) region[f] = f == 0 ? 100 : f % 7 == 3 ? kNone : f * f % 5;
+    write_region_mesh((folder / (name + ".glb")).string(), mesh, region, image.source, "imgmesh-test 1",
+                      true);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -81,7 +91,7 @@ int main(int argc, char** argv) {
     }
     const std::filesystem::path folder = argv[1];
     std::filesystem::remove_all(folder);
-    std::filesystem::create_directories(folder);
+    std::filesystem::create_directories(folder / "regions");
     const std::pair<const char*, DracoMode> modes[] = {{"edgebreaker", DracoMode::kEdgebreaker},
                                                        {"sequential", DracoMode::kSequential},
                                                        {"none", DracoMode::kOff}};
@@ -102,6 +112,7 @@ int main(int argc, char** argv) {
                     write_container((folder / (name + extension)).string(), image, {mode, true});
                 write_picture((folder / (name + ".ppm")).string(), image);
                 write_with_channels(folder, name, image, mode);
+                if (mode == DracoMode::kOff) write_regions(folder / "regions", name, image);
             }
     return 0;
 }

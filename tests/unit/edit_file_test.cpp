@@ -52,7 +52,7 @@ TEST_CASE("edits_from_json: every member arrives") {
         {"name": "n", "level": 3, "solver": "arap",
          "handles": [{"vertices": [5, 2.0], "move": [1.5, -2], "rotate": 30, "scale": [2, 0.5], "center": [7, 8]},
                      {"near": [1, 2], "scale": 3}],
-         "pins": [{"circle": [1, 2, 3]}, {"box": [4, 5, 6, 7]}, {"border": true}, {"vertex": 9}]}]})",
+         "pins": [{"circle": [1, 2, 3]}, {"box": [4, 5, 6, 7]}, {"border": true}, {"vertex": 9}, {"beyond": [9, 8, 7]}]}]})",
                                             "e.json");
     REQUIRE(edits.size() == 2);
     CHECK(edits[0].level == 0);
@@ -71,11 +71,12 @@ TEST_CASE("edits_from_json: every member arrives") {
     CHECK(*e.handles[1].vertices.near == Vec2d(1, 2));
     CHECK(e.handles[1].scale == Vec2d(3, 3));
     CHECK_FALSE(e.handles[1].center);
-    REQUIRE(e.pins.size() == 4);
+    REQUIRE(e.pins.size() == 5);
     CHECK(*e.pins[0].circle == std::array<double, 3>{1, 2, 3});
     CHECK(*e.pins[1].box == std::array<double, 4>{4, 5, 6, 7});
     CHECK(e.pins[2].border);
     CHECK(e.pins[3].vertices == std::vector<Id>{9});
+    CHECK(*e.pins[4].beyond == std::array<double, 3>{9, 8, 7});
 }
 
 TEST_CASE("edits_from_json: one line names the place") {

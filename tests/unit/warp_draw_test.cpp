@@ -258,6 +258,19 @@ TEST_CASE("warp_image: sides that move cover shares of pixels") {
     CHECK(out.pixel(0, 3)[1] == doctest::Approx(0.5f));
 }
 
+// The footprint of what is pressed against a side that rests reaches beyond it; the side is where it is all
+// the same.
+TEST_CASE("warp_image: a side that rests is opaque") {
+    const auto pressed = [](int at, int side) {
+        const int from = std::min(at, side - 1 - at);
+        return (at < side / 2 ? -0.8f : 0.8f) * static_cast<float>(std::min(from, 3));
+    };
+    const DisplacementField field =
+        field_of(30, 24, [&](int x, int y) { return Vec2f(pressed(x, 30), pressed(y, 24)); });
+    for (const OutputSize size : {OutputSize{0, 0}, {15, 12}, {75, 60}})
+        CHECK(warp_image(noise_image(30, 24, 3), field, size).channels == 3);
+}
+
 TEST_CASE("warp_image: cut-outs keep their alpha, soft outlines included") {
     MeshImage m = grid_pyramid(24, 20, {5});
     const auto distance = [](int x, int y) { return std::hypot(x - 11.5, y - 9.5); };

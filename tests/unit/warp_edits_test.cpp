@@ -67,6 +67,12 @@ TEST_CASE("solve_edits: a handle scales, turns, then moves its vertices") {
     const auto one = solve_edits(m, {{0, WarpSolver::kDirect, {handle}, {}, ""}});
     CHECK((one[0][1] - Vec2f(10 - 14 + 1, -8)).norm() < 1e-5f);
     CHECK(one[0][0] == Vec2f(0, 0));
+    handle.vertices = {};
+    handle.vertices.beyond = {14, 9, 1.5};
+    const auto others = solve_edits(m, {{0, WarpSolver::kDirect, {handle}, {}, ""}});
+    CHECK(others[0][0] == Vec2f(1, 0));
+    CHECK((others[0][2] - Vec2f(10 - 6 - 12 + 1, 10 - 4 - 4)).norm() < 1e-5f);
+    CHECK(others[0][1] == Vec2f(0, 0));
 }
 
 TEST_CASE("solve_edits: what is not there is refused, by its place") {
@@ -89,7 +95,7 @@ TEST_CASE("solve_edits: what is not there is refused, by its place") {
     edit.pins[0] = {};
     edit.pins[0].box = {2, 2, 3, 3};
     edit.pins[0].where = "e.json: /edits/0/pins/0/box";
-    CHECK(refusal(m, {edit}) == "e.json: /edits/0/pins/0/box: no vertex of level 1 lies within");
+    CHECK(refusal(m, {edit}) == "e.json: /edits/0/pins/0/box: no vertex of level 1 lies there");
 }
 
 // The paper's claim: motions are smooth and local.

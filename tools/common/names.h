@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "formats/container.h"
+#include "libcore/collapse/metric.h"
 #include "libcore/image/image.h"
 #include "libcore/param/pixel_map.h"
 
@@ -19,6 +20,8 @@ Choices<ColorSpace> color_space_choices();
 Choices<WeightPrecision> bary_choices();
 Choices<DracoMode> draco_choices();
 Choices<SampleType> sample_type_choices();
+Choices<Metric> metric_choices();
+Choices<Solver> solver_choices();
 
 /// The word of a value that is among the choices.
 template <typename Value>

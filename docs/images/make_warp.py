@@ -1,0 +1,120 @@
+#!/usr/bin/python3
+"""Draws the pictures of docs/warp.md: make_warp.py BIN, with BIN the folder of the tools.
+
+A steering wheel (made up here) edited on three levels, and tests/data/kodim23.png edited.
+"""
+import json
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+import numpy as np
+from PIL import Image
+
+HERE = pathlib.Path(__file__).resolve().parent
+PHOTO = HERE.parents[1] / "tests" / "data" / "kodim23.png"
+
+
+def wheel(width=640, height=480):
+    """A steering wheel: a grained rim, three spokes, a hub with a badge; antialiased alpha."""
+    n = 3  # samples a side of a pixel
+    y, x = (np.mgrid[0 : height * n, 0 : width * n] + 0.5) / n
+    x, y = x - width / 2, y - height / 2
+    r, angle = np.hypot(x, y), np.arctan2(y, x)
+    rim = (r > 175) & (r < 215)
+    hub = r < 62
+    spokes = np.zeros_like(rim)
+    for turn in (0.35, np.pi - 0.35, np.pi / 2):
+        along = x * np.cos(turn) + y * np.sin(turn)
+        across = -x * np.sin(turn) + y * np.cos(turn)
+        spokes |= (along > 0) & (r < 190) & (np.abs(across) < 17 - along / 30)
+    grain = 0.06 * np.sin(40 * angle + 6 * np.sin(r / 9)) + 0.05 * np.sin(angle * 90 + r)
+    light = 0.55 + 0.3 * np.cos(angle + 2.2)
+    wood = np.array([0.62, 0.36, 0.18])
+    color = np.zeros((*r.shape, 3)) + 0.1
+    shade = light + grain + 0.25 * np.cos((r - 195) / 20 * np.pi / 2)
+    color[rim] = (wood * shade[..., None])[rim]
+    metal = spokes & ~rim
+    color[metal] = (np.array([0.75, 0.78, 0.82]) * (0.75 + 0.2 * np.sin(r / 3)[..., None] ** 8))[metal]
+    color[hub] = (np.array([0.16, 0.18, 0.22]) * (0.8 + 0.5 * light[..., None]))[hub]
+    badge = (np.abs(x) + np.abs(y) < 34) & (r < 40)
+    color[badge] = (np.array([0.9, 0.2, 0.15]) * (0.8 + 0.3 * np.sign(x * y)[..., None]))[badge]
+    alpha = (rim | spokes | hub).astype(float)
+    total = alpha.reshape(height, n, width, n).mean(axis=(1, 3))
+    mean = (color * alpha[..., None]).reshape(height, n, width, n, 3).mean(axis=(1, 3)) / np.maximum(total, 1e-9)[..., None]
+    return np.round(np.dstack([np.clip(mean, 0, 1), total]) * 255).astype(np.uint8)
+
+
+def run(*args):
+    subprocess.run([str(a) for a in args], check=True)
+
+
+def shown(path, box=None, background=(255, 255, 255)):
+    """A picture over a background, cut to `box`."""
+    picture = Image.open(path).convert("RGBA")
+    under = Image.new("RGBA", picture.size, background)
+    under.alpha_composite(picture)
+    return (under.crop(box) if box else under).convert("RGB")
+
+
+def sheet(rows, path, scale=1.0, gap=8):
+    rows = [[p.resize((round(p.width * scale), round(p.height * scale)), Image.LANCZOS) for p in row] for row in rows]
+    width = max(sum(p.width + gap for p in row) for row in rows) - gap
+    height = sum(max(p.height for p in row) + gap for row in rows) - gap
+    out = Image.new("RGB", (width, height), (255, 255, 255))
+    top = 0
+    for row in rows:
+        left = 0
+        for p in row:
+            out.paste(p, (left, top))
+            left += p.width + gap
+        top += max(p.height for p in row) + gap
+    out.save(path, quality=88, optimize=True)
+
+
+def main():
+    tools = pathlib.Path(sys.argv[1]).resolve()
+    with tempfile.TemporaryDirectory(prefix="imgmesh-warp-") as name:
+        draw_wheel(tools, pathlib.Path(name))
+        draw_photo(tools, pathlib.Path(name))
+
+
+def edited(tools, folder, container, picture, edits, level):
+    """The picture after the edits, and the warped mesh of `level`."""
+    (folder / "edits.json").write_text(json.dumps({"edits": edits}))
+    warp = [tools / "imgmesh-warp", container, "--edits", folder / "edits.json", "-q"]
+    run(*warp, "--image", picture, "-o", folder / "edited.png")
+    run(*warp, "-o", folder / "edited.glb")
+    run(tools / "imgmesh-reconstruct", "-q", folder / "edited.glb", "-o", folder / "wire.png", "--mode", "wire",
+        "--level", level)
+    return shown(folder / "edited.png"), shown(folder / "wire.png")
+
+
+def draw_wheel(tools, folder):
+    picture, container = folder / "wheel.png", folder / "wheel.glb"
+    Image.fromarray(wheel(), "RGBA").save(picture)
+    run(tools / "imgmesh-build", picture, "-o", container, "--level-faces", "3000,700,160", "-q")
+    rim = {"level": 2, "solver": "arap", "handles": [{"box": [500, 100, 640, 380], "move": [70, 0]}],
+           "pins": [{"box": [0, 0, 330, 480]}]}
+    spoke = {"level": 1, "solver": "arap", "handles": [{"circle": [320, 350, 24], "move": [-34, 0]}],
+             "pins": [{"box": [0, 0, 640, 300]}, {"box": [0, 412, 640, 480]}]}
+    hub = {"level": 0, "solver": "arap", "handles": [{"circle": [320, 240, 36], "scale": 1.35}],
+           "pins": [{"beyond": [320, 240, 80]}]}
+    columns = [edited(tools, folder, container, picture, edits, level)
+               for edits, level in (([], 2), ([rim], 2), ([rim, spoke], 1), ([rim, spoke, hub], 0))]
+    sheet(list(zip(*columns)), HERE / "warp-wheel.jpg", 0.5)
+
+
+def draw_photo(tools, folder):
+    container = folder / "photo.glb"
+    run(tools / "imgmesh-build", PHOTO, "-o", container, "--level-faces", "4000,600,80", "-q")
+    lift = {"level": 2, "solver": "arap", "handles": [{"near": [190, 230], "move": [0, -40]}], "pins": [{"border": True}]}
+    eye = {"level": 0, "solver": "arap", "handles": [{"circle": [512, 163, 20], "scale": 1.5}],
+           "pins": [{"beyond": [512, 163, 60]}]}
+    columns = [edited(tools, folder, container, PHOTO, edits, 1) for edits in ([], [lift, eye])]
+    sheet(list(zip(*columns)), HERE / "warp-photo.jpg", 0.75)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,81 @@
+#include "libcore/segment/contour_map.h"
+
+#include <algorithm>
+#include <limits>
+#include <numeric>
+
+namespace imgmesh {
+namespace {
+
+constexpr float kNever = std::numeric_limits<float>::infinity();
+
+// When cells become one: a forest in which each merge hangs the smaller tree below the larger one, so that
+// paths are short, and every link knows its merge.
+class Joins {
+  public:
+    explicit Joins(const Hierarchy& hierarchy)
+        : merges_(hierarchy.merges),
+          parent_(hierarchy.cells),
+          merge_(hierarchy.cells, hierarchy.merges.size()) {
+        std::iota(parent_.begin(), parent_.end(), Id{0});
+        std::vector<std::size_t> size(hierarchy.cells, 1);
+        for (std::size_t k = 0; k < merges_.size(); ++k) {
+            Id a = root(merges_[k].a), b = root(merges_[k].b);
+            if (size[a] < size[b]) std::swap(a, b);
+            size[a] += size[b];
+            parent_[b] = a;
+            merge_[b] = k;
+        }
+    }
+
+    float height(Id a, Id b) const {
+        // Links on the way up are ever later. The last one on the path from a to b is their merge.
+        std::size_t last = merges_.size();
+        while (a != b) {
+            if (merge_[a] > merge_[b]) std::swap(a, b);
+            last = merge_[a];
+            if (last == merges_.size()) return kNever;  // two roots
+            a = parent_[a];
+        }
+        return merges_[last].height;
+    }
+
+  private:
+    Id root(Id cell) const {
+        while (parent_[cell] != cell) cell = parent_[cell];
+        return cell;
+    }
+
+    const std::vector<Merge>& merges_;
+    std::vector<Id> parent_;
+    std::vector<std::size_t> merge_;  // of the link to the parent; of roots the number of merges
+};
+
+}  // namespace
+
+ContourMap contour_map(const Cells& cells, const Hierarchy& hierarchy) {
+    const Joins joins(hierarchy);
+    const auto width = static_cast<std::size_t>(cells.width), height = static_cast<std::size_t>(cells.height);
+    ContourMap map{2 * cells.width + 1, 2 * cells.height + 1, {}};
+    const std::size_t stride = 2 * width + 1;
+    map.values.assign(stride * (2 * height + 1), 0.0f);
+    const auto between = [&](std::size_t i, std::size_t j) {
+        const Id a = cells.of_pixel[i], b = cells.of_pixel[j];
+        if (a == b) return 0.0f;
+        return a == kNone || b == kNone ? kNever : joins.height(a, b);
+    };
+    for (std::size_t y = 0; y < height; ++y)
+        for (std::size_t x = 0; x < width; ++x) {
+            const std::size_t i = y * width + x, at = (2 * y + 1) * stride + 2 * x + 1;
+            if (x + 1 < width) map.values[at + 1] = between(i, i + 1);
+            if (y + 1 < height) map.values[at + stride] = between(i, i + width);
+        }
+    for (std::size_t y = 2; y + 1 < 2 * height + 1; y += 2)
+        for (std::size_t x = 2; x + 1 < stride; x += 2) {
+            float* v = map.values.data() + y * stride + x;
+            *v = std::max({v[-1], v[1], *(v - stride), v[stride]});
+        }
+    return map;
+}
+
+}  // namespace imgmesh

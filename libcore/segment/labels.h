@@ -1,0 +1,38 @@
+// A picture cut into regions, and what is to be said about each of them.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "libcore/image/image.h"
+#include "libcore/segment/merge_regions.h"
+
+namespace imgmesh {
+
+/// The region of every pixel. Regions are 4-connected and numbered from 0 by their first pixel, row by row.
+struct LabelImage {
+    int width = 0;
+    int height = 0;
+    std::size_t count = 0;
+    std::vector<Id> labels;  ///< size width * height; kNone outside the mask
+
+    Id at(int x, int y) const {
+        return labels[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
+                      static_cast<std::size_t>(x)];
+    }
+};
+
+/// The regions after the first `merges` merges of the cells' hierarchy.
+LabelImage labels_after(const Cells& cells, const Hierarchy& hierarchy, std::size_t merges);
+
+struct RegionFacts {
+    std::int64_t pixels = 0;
+    Vec3f color = Vec3f::Zero();                         ///< mean, L*u*v*
+    std::array<int, 4> box = {0, 0, 0, 0};               ///< least x, least y, largest x, largest y
+    std::vector<std::pair<Id, std::int64_t>> neighbors;  ///< region, pairs of pixels across; by region
+};
+
+/// Of every region. picture: L*u*v*, of the labels' size.
+std::vector<RegionFacts> region_facts(const LabelImage& labels, const FeatureImage& picture);
+
+}  // namespace imgmesh

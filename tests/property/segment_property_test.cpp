@@ -1,0 +1,220 @@
+// Segmentation: laws that hold for every picture.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <numeric>
+#include <random>
+
+#include "libcore/base/parallel.h"
+#include "libcore/segment/contour_map.h"
+#include "libcore/segment/pair_contrasts.h"
+#include "libcore/segment/region_distance.h"
+#include "libcore/segment/segment.h"
+#include "tests/support/segment_maps.h"
+
+using namespace imgmesh;
+using namespace imgmesh::test;
+
+namespace {
+
+struct Sample {
+    Level level;
+    FeatureImage picture;
+};
+
+// Patches as blobs around random seeds, some torn, colours of a few kinds with noise; with a mask about a
+// fifth of the pixels are outside.
+Sample sample(int width, int height, int patches, bool mask, std::uint32_t seed) {
+    std::mt19937 random(seed);
+    const auto below = [&](int n) { return static_cast<int>(random() % static_cast<unsigned>(n)); };
+    std::vector<Vec2f> centers;
+    std::vector<Vec3f> colors;
+    for (int i = 0; i < patches; ++i) {
+        centers.emplace_back(float(below(width)), float(below(height)));
+        colors.emplace_back(float(20 * below(5)), float(10 * below(3)), float(10 * below(3)));
+    }
+    std::vector<Id> faces;
+    FeatureImage picture{width, height, 3, {}};
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x) {
+            const Vec2f at(static_cast<float>(x), static_cast<float>(y));
+            std::size_t best = 0;
+            for (std::size_t i = 0; i < centers.size(); ++i)
+                if ((centers[i] - at).squaredNorm() < (centers[best] - at).squaredNorm()) best = i;
+            // Two blobs share a face every now and then: a patch in several parts.
+            faces.push_back(mask && below(5) == 0 ? kNone
+                                                  : static_cast<Id>(best / 2 * 2 % 7 == 0 ? best / 2 : best));
+            for (int c = 0; c < 3; ++c) picture.data.push_back(colors[best][c] + float(below(1000)) / 250);
+        }
+    PixelMap map = map_of_faces(width, height, faces);
+    for (PixelCoord& coord : map.coords) {
+        if (coord.face == kNone) continue;
+        coord.u = float(below(512)) / 1024;
+        coord.v = float(below(512)) / 1024;
+    }
+    return {level_of(std::move(map)), std::move(picture)};
+}
+
+// Connected parts of a graph over the pixels, numbered by their first pixel; kNone stays.
+std::vector<Id> parts(std::size_t count, const std::vector<std::pair<std::size_t, std::size_t>>& joined,
+                      const std::vector<Id>& inside) {
+    std::vector<std::size_t> parent(count);
+    std::iota(parent.begin(), parent.end(), std::size_t{0});
+    const auto root = [&](std::size_t i) {
+        while (parent[i] != i) i = parent[i];
+        return i;
+    };
+    for (const auto& [i, j] : joined) {
+        const std::size_t a = root(i), b = root(j);
+        parent[std::max(a, b)] = std::min(a, b);
+    }
+    std::vector<Id> label(count, kNone);
+    Id next = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+        if (inside[i] == kNone) continue;
+        const std::size_t r = root(i);
+        label[i] = r == i ? next++ : label[r];
+    }
+    return label;
+}
+
+std::vector<Id> regions_of_map(const ContourMap& map, double threshold, const std::vector<Id>& inside) {
+    const int width = (map.width - 1) / 2, height = (map.height - 1) / 2;
+    const auto value = [&](int x, int y) {
+        return double(map.values[static_cast<std::size_t>(y * map.width + x)]);
+    };
+    std::vector<std::pair<std::size_t, std::size_t>> joined;
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x) {
+            const auto i = static_cast<std::size_t>(y * width + x);
+            if (x + 1 < width && value(2 * x + 2, 2 * y + 1) < threshold) joined.emplace_back(i, i + 1);
+            if (y + 1 < height && value(2 * x + 1, 2 * y + 2) < threshold)
+                joined.emplace_back(i, i + static_cast<std::size_t>(width));
+        }
+    return parts(inside.size(), joined, inside);
+}
+
+// Regions made anew, pixel by pixel, before every choice.
+std::vector<std::vector<Id>> slow_merges(const Sample& s, const RegionDistance& distance,
+                                         const PairContrasts& contrasts, std::int64_t min_size) {
+    Cells cells = cut_cells(s.level.map);
+    std::vector<std::vector<Id>> steps = {cells.of_pixel};
+    for (;;) {
+        const RegionGraph graph = region_graph(cells, s.level.map, s.picture, contrasts);
+        const Border* best = nullptr;
+        std::pair<bool, double> least;
+        for (const Border& border : graph.borders) {
+            const RegionSums &a = graph.regions[border.a], &b = graph.regions[border.b];
+            const std::pair<bool, double> key = {std::min(a.pixels, b.pixels) >= double(min_size),
+                                                 distance(a, b, border)};
+            if (best && least <= key) continue;
+            best = &border;
+            least = key;
+        }
+        if (!best) return steps;
+        for (Id& cell : cells.of_pixel) {
+            if (cell == kNone || cell < best->b) continue;
+            cell = cell == best->b ? best->a : cell - 1;
+        }
+        cells.face.pop_back();
+        steps.push_back(cells.of_pixel);
+    }
+}
+
+}  // namespace
+
+TEST_CASE("merging agrees with regions made anew at every step") {
+    for (std::uint32_t seed = 1; seed <= 12; ++seed) {
+        const Sample s = sample(17, 13, 24, seed % 2 == 0, seed);
+        INFO("seed " << seed);
+        const Cells cells = cut_cells(s.level.map);
+        const PairContrasts contrasts = pair_contrasts(s.picture, cells);
+        const std::int64_t min_size = seed % 3 == 0 ? 9 : 1;
+        for (const RegionDistance& distance :
+             {paper_distance(), contour_distance(17 * 13), superpixel_distance(10, 4)}) {
+            const auto steps = slow_merges(s, distance, contrasts, min_size);
+            const Hierarchy fast =
+                merge_regions(region_graph(cells, s.level.map, s.picture, contrasts), distance, min_size);
+            REQUIRE(fast.merges.size() + 1 == steps.size());
+            for (std::size_t k = 0; k < steps.size(); ++k)
+                CHECK(labels_after(cells, fast, k).labels == steps[k]);
+        }
+    }
+}
+
+// The promise of the map: one file instead of a run for every threshold. Thresholds at, just above and
+// between the heights that there are.
+TEST_CASE("contour map: any threshold gives the regions of the tool") {
+    for (std::uint32_t seed = 1; seed <= 8; ++seed) {
+        const Sample s = sample(23, 19, 30, seed % 2 == 0, seed);
+        INFO("seed " << seed);
+        for (const DistanceRule rule : {DistanceRule::kContour, DistanceRule::kPaper})
+            for (const std::int64_t min_size : {1, 12}) {
+                SegmentParams params;
+                params.distance = rule;
+                params.min_size = min_size;
+                const Segmentation whole = segment(s.level, s.picture, params);
+                const ContourMap map = contour_map(whole.cells, whole.hierarchy);
+                REQUIRE(map.values.size() == 47u * 39u);
+                std::vector<double> thresholds = {1e-30, 1e30};
+                for (const Merge& merge : whole.hierarchy.merges) {
+                    if (merge.height == 0) continue;
+                    thresholds.push_back(double(merge.height));
+                    thresholds.push_back(std::nextafter(double(merge.height), 1e30));
+                    thresholds.push_back(double(merge.height) * 1.01);
+                }
+                for (const double threshold : thresholds) {
+                    params.threshold = threshold;
+                    const LabelImage labels = segment(s.level, s.picture, params).labels;
+                    CHECK(labels.labels == regions_of_map(map, threshold, labels.labels));
+                }
+            }
+    }
+}
+
+TEST_CASE("regions are connected, numbered by their first pixel, as many as asked for, and large enough") {
+    for (std::uint32_t seed = 1; seed <= 10; ++seed) {
+        const Sample s = sample(31, 29, 60, seed % 2 == 0, seed);
+        INFO("seed " << seed);
+        SegmentParams params;
+        const std::size_t islands = [&] {
+            params.threshold = 1e30;
+            return segment(s.level, s.picture, params).labels.count;
+        }();
+        for (const std::size_t extra : {0u, 1u, 7u}) {
+            params.segments = static_cast<std::int64_t>(islands + extra);
+            const LabelImage labels = segment(s.level, s.picture, params).labels;
+            CHECK(labels.count == islands + extra);
+            std::vector<std::pair<std::size_t, std::size_t>> joined;
+            for (std::size_t i = 0; i < labels.labels.size(); ++i) {
+                if (i % 31 != 30 && labels.labels[i] == labels.labels[i + 1]) joined.emplace_back(i, i + 1);
+                if (i + 31 < labels.labels.size() && labels.labels[i] == labels.labels[i + 31])
+                    joined.emplace_back(i, i + 31);
+            }
+            CHECK(parts(labels.labels.size(), joined, labels.labels) == labels.labels);
+        }
+        if (seed % 2 == 0) continue;  // islands may be of any size
+        params.segments.reset();
+        params.min_size = 40;
+        for (const double threshold : {1e-3, 1.0, 4.0, 20.0}) {
+            params.threshold = threshold;
+            for (const RegionFacts& f : region_facts(segment(s.level, s.picture, params).labels, s.picture))
+                CHECK(f.pixels >= 40);
+        }
+    }
+}
+
+TEST_CASE("segmentation is the same for any number of threads") {
+    const Sample s = sample(150, 120, 300, true, 5);
+    for (const bool superpixels : {false, true}) {
+        SegmentParams params;
+        if (superpixels) params.superpixels = 100;
+        std::vector<ContourMap> maps;
+        for (const int threads : {1, 4}) {
+            const ThreadLimit limit(threads);
+            const Segmentation result = segment(s.level, s.picture, params);
+            maps.push_back(contour_map(result.cells, result.hierarchy));
+        }
+        CHECK(maps[0].values == maps[1].values);
+    }
+}

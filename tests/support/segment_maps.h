@@ -1,0 +1,25 @@
+// Pixel maps for tests of segmentation, which looks at which pixels share a face and not at the mesh.
+#pragma once
+
+#include <utility>
+#include <vector>
+
+#include "libcore/param/mesh_image.h"
+
+namespace imgmesh::test {
+
+/// All weights a third, but for pixels outside.
+inline PixelMap map_of_faces(int width, int height, const std::vector<Id>& faces) {
+    PixelMap map{width, height, {}, WeightPrecision::kFloat};
+    for (const Id face : faces)
+        map.coords.push_back(face == kNone ? PixelCoord{} : PixelCoord{face, 1.0f / 3, 1.0f / 3});
+    return map;
+}
+
+inline Level level_of(PixelMap map) {
+    Level level;
+    level.map = std::move(map);
+    return level;
+}
+
+}  // namespace imgmesh::test

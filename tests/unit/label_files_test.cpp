@@ -1,0 +1,80 @@
+#include "formats/label_files.h"
+
+#include <OpenEXR/ImfChannelList.h>
+#include <OpenEXR/ImfFrameBuffer.h>
+#include <OpenEXR/ImfHeader.h>
+#include <OpenEXR/ImfInputFile.h>
+#include <OpenImageIO/imageio.h>
+#include <doctest/doctest.h>
+
+#include <limits>
+
+#include "tests/support/picture_files.h"
+#include "tests/support/temporary_folder.h"
+
+using namespace imgmesh;
+
+namespace {
+
+template <typename Value>
+std::vector<Value> read_exr_layer(const std::string& path, const char* channel, Imf::PixelType type) {
+    Imf::InputFile file(path.c_str());
+    const Imath::Box2i window = file.header().dataWindow();
+    const int width = window.max.x + 1, height = window.max.y + 1;
+    REQUIRE(file.header().channels().findChannel(channel));
+    REQUIRE(file.header().channels().findChannel(channel)->type == type);
+    std::vector<Value> values(static_cast<std::size_t>(width * height));
+    Imf::FrameBuffer buffer;
+    buffer.insert(channel, Imf::Slice::Make(type, values.data(), {0, 0}, width, height));
+    file.setFrameBuffer(buffer);
+    file.readPixels(0, height - 1);
+    return values;
+}
+
+std::vector<std::uint16_t> read_png(const std::string& path) {
+    const auto in = OIIO::ImageInput::open(path);
+    REQUIRE(in);
+    CHECK(in->spec().format == OIIO::TypeUInt16);
+    REQUIRE(in->spec().nchannels == 1);
+    std::vector<std::uint16_t> values(in->spec().image_pixels());
+    REQUIRE(in->read_image(0, 0, 0, 1, OIIO::TypeUInt16, values.data()));
+    return values;
+}
+
+}  // namespace
+
+TEST_CASE("labels: every number comes back, and none is the largest number of the file") {
+    const TemporaryFolder folder;
+    const std::vector<Id> labels = {0, 1, 65534, kNone, 40000, 255};
+    write_labels(folder / "a.exr", 3, 2, labels, true);
+    CHECK(read_exr_layer<Id>(folder / "a.exr", "id", Imf::UINT) == labels);
+    write_labels(folder / "a.PNG", 3, 2, labels, true);
+    CHECK(read_png(folder / "a.PNG") == std::vector<std::uint16_t>{0, 1, 65534, 65535, 40000, 255});
+    std::vector<Id> all(65535);
+    for (Id i = 0; i < all.size(); ++i) all[i] = i;
+    write_labels(folder / "all.png", 257, 255, all, true);
+    const std::vector<std::uint16_t> back = read_png(folder / "all.png");
+    CHECK(std::equal(all.begin(), all.end(), back.begin(), back.end()));
+}
+
+TEST_CASE("labels: what a PNG cannot hold is refused, and nothing is left behind") {
+    const TemporaryFolder folder;
+    const std::vector<Id> labels = {0, 65535, kNone};
+    std::string text;
+    CHECK(error_of([&] { write_labels(folder / "a.png", 3, 1, labels, true); }, &text) == ErrorCode::kUsage);
+    CHECK(text.find("65535") != std::string::npos);
+    CHECK(error_of([&] { write_labels(folder / "a.tif", 3, 1, labels, true); }) == ErrorCode::kUsage);
+    CHECK(folder.count() == 0);
+    write_labels(folder / "a.exr", 3, 1, labels, true);
+    CHECK(read_exr_layer<Id>(folder / "a.exr", "id", Imf::UINT) == labels);
+    CHECK(error_of([&] { write_labels(folder / "a.exr", 3, 1, labels, false); }) == ErrorCode::kIo);
+    CHECK(error_of([&] { write_labels(folder / "no/a.exr", 3, 1, labels, true); }) == ErrorCode::kIo);
+}
+
+TEST_CASE("float layers keep every bit, infinity too") {
+    const TemporaryFolder folder;
+    const std::vector<float> values = {0, 1.0f / 3, 1e-30f, std::numeric_limits<float>::infinity()};
+    write_float_layer(folder / "a.exr", "height", 1, 4, values, true);
+    CHECK(read_exr_layer<float>(folder / "a.exr", "height", Imf::FLOAT) == values);
+    CHECK(folder.count() == 1);
+}

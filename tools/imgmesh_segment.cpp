@@ -1,0 +1,196 @@
+// imgmesh-segment: a container in, labelled regions out.
+#include <filesystem>
+#include <ostream>
+
+#include "formats/atomic_file.h"
+#include "formats/container.h"
+#include "formats/image_io.h"
+#include "formats/label_files.h"
+#include "formats/region_gltf.h"
+#include "libcore/image/color.h"
+#include "libcore/image/feature_space.h"
+#include "libcore/segment/contour_map.h"
+#include "libcore/segment/draw_regions.h"
+#include "libcore/segment/region_faces.h"
+#include "libcore/segment/segment.h"
+#include "tools/common/names.h"
+#include "tools/common/options.h"
+#include "tools/common/output.h"
+#include "tools/common/text.h"
+#include "tools/common/tool_main.h"
+#include "tools/segment_report.h"
+
+using namespace imgmesh;
+
+namespace {
+
+struct Options {
+    std::string input, output;
+    SegmentParams params;
+    std::optional<double> threshold, compactness;
+    std::optional<DistanceRule> distance;
+    int level = 0;
+    std::string image, outlines, flat, ucm, report, mesh;
+};
+
+Choices<DistanceRule> distance_choices() {
+    return {{"contour", DistanceRule::kContour}, {"paper", DistanceRule::kPaper}};
+}
+
+void add_options(CLI::App& app, Options& o) {
+    const auto add_file = [&app](const std::string& name, std::string& target, const std::string& help) {
+        add_value(
+            app, name, "FILE", [&target](const std::string& text) { target = text; }, help);
+    };
+    add_input(app, "CONTAINER", o.input, "Container to read (.glb, .gltf)");
+    add_output(app, o.output, "Labels to write: .exr (UINT id) or .png (16 bit)");
+    add_number(app, "--threshold", o.threshold, {0, kNoLimit, true},
+               cat("Merge regions closer than this, L*u*v* (default ", o.params.threshold, ")"));
+    add_count(app, "--segments", o.params.segments, {1}, "Merge until this many regions are left");
+    add_count(app, "--superpixels", o.params.superpixels, {1},
+              "This many regions of similar size that follow edges");
+    add_number(app, "--compactness", o.compactness, {0},
+               cat("Of superpixels: higher is rounder (default ", o.params.compactness, ")"));
+    add_count(app, "--min-size", o.params.min_size, {1}, "No region of fewer pixels (default 1)");
+    add_choice(app, "--distance", o.distance, distance_choices(),
+               "Between regions: by contours, or the paper's mean colours (default contour)");
+    add_count(app, "--level", o.level, {0}, "Level of the pyramid, 0 the finest (default 0)");
+    add_file("--image", o.image, "The picture itself, to measure and draw on instead of the reconstruction");
+    add_file("--outlines", o.outlines, "Draw the regions' borders over the picture");
+    add_file("--flat", o.flat, "Draw each region in its mean colour");
+    add_file("--ucm", o.ucm, "Write the ultrametric contour map (.exr)");
+    add_file("--report", o.report, "Write each region's colour, pixels, box and neighbours (.json)");
+    add_file("--mesh", o.mesh, "Write the base mesh with one primitive a region (.glb)");
+}
+
+std::vector<std::string> outputs_of(const Options& o) {
+    std::vector<std::string> outputs = {o.output};
+    for (const std::string* path : {&o.outlines, &o.flat, &o.ucm, &o.report, &o.mesh})
+        if (!path->empty()) outputs.push_back(*path);
+    return outputs;
+}
+
+void expect_extension(const std::string& option, const std::string& path, const std::string& extension) {
+    if (!path.empty() && lower_extension(path) != extension)
+        throw Error(ErrorCode::kUsage,
+                    cat(option, " ", path, ": expected a name that ends with ", extension));
+}
+
+// Throws Error(kUsage) for what can be seen to be wrong before the container is read.
+void check_options(const Options& o) {
+    if (o.threshold && o.params.segments)
+        throw Error(ErrorCode::kUsage, "--threshold and --segments: expected one of them");
+    if (o.params.superpixels && (o.threshold || o.params.segments || o.distance))
+        throw Error(ErrorCode::kUsage, cat("--superpixels and ",
+                                           o.threshold         ? "--threshold"
+                                           : o.params.segments ? "--segments"
+                                                               : "--distance",
+                                           ": expected one of them"));
+    if (o.compactness && !o.params.superpixels)
+        throw Error(ErrorCode::kUsage, "--compactness: means something with --superpixels only");
+    if (!can_write_labels(o.output))
+        throw Error(ErrorCode::kUsage, cat("-o ", o.output, ": expected a name that ends with .exr or .png"));
+    expect_extension("--ucm", o.ucm, ".exr");
+    expect_extension("--report", o.report, ".json");
+    expect_extension("--mesh", o.mesh, ".glb");
+    for (const auto& [option, path] : {std::pair("--outlines", &o.outlines), std::pair("--flat", &o.flat)})
+        if (!path->empty() && !can_write_image(*path))
+            throw Error(ErrorCode::kUsage,
+                        cat(option, " ", *path, ": expected the name of a picture, as in .png"));
+    const std::vector<std::string> outputs = outputs_of(o);
+    for (std::size_t i = 0; i < outputs.size(); ++i)
+        for (std::size_t j = 0; j < i; ++j)
+            if (std::filesystem::path(outputs[i]).lexically_normal() ==
+                std::filesystem::path(outputs[j]).lexically_normal())
+                throw Error(ErrorCode::kUsage, cat(outputs[i], ": is named for two outputs"));
+}
+
+FeatureImage picture_of(const Options& o, const Level& level) {
+    if (o.image.empty()) return reconstruct_luv(level);
+    const Image image = read_image(o.image);
+    if (image.width != level.map.width || image.height != level.map.height)
+        throw Error(ErrorCode::kUsage, cat("--image ", o.image, ": is ", image.width, "x", image.height, ", ",
+                                           o.input, " was made of ", level.map.width, "x", level.map.height));
+    return luv_image(image, Range::kClipped);
+}
+
+Report run(const Options& o, Context& context) {
+    check_options(o);
+    for (const std::string& output : outputs_of(o)) check_output(output, context.overwrite);
+
+    context.progress(0, "read");
+    const Container container = read_container(o.input);
+    std::vector<std::string> inputs = container.facts.files;
+    if (!o.image.empty()) inputs.push_back(o.image);
+    check_distinct(inputs, outputs_of(o));
+    const MeshImage& mesh_image = container.mesh_image;
+    if (split_names(mesh_image.source.channel_names).color.empty())
+        throw Error(ErrorCode::kUnsupported, cat(o.input, ": the container has no colour"));
+    if (o.level >= static_cast<int>(mesh_image.levels.size()))
+        throw Error(ErrorCode::kUsage, cat("--level ", o.level, ": ", o.input, " has levels 0 to ",
+                                           mesh_image.levels.size() - 1));
+    const Level& level = mesh_image.levels[static_cast<std::size_t>(o.level)];
+
+    SegmentParams params = o.params;
+    params.threshold = o.threshold.value_or(params.threshold);
+    params.compactness = o.compactness.value_or(params.compactness);
+    params.distance = o.distance.value_or(params.distance);
+    const FeatureImage picture = picture_of(o, level);
+    const Segmentation result = segment(level, picture, params, [&](double f, std::string_view stage) {
+        context.progress(0.3 + 0.4 * f, stage);
+    });
+    const LabelImage& labels = result.labels;
+    const std::vector<RegionFacts> facts = region_facts(labels, picture);
+
+    context.progress(0.8, "write");
+    write_labels(o.output, labels.width, labels.height, labels.labels, context.overwrite);
+    if (!o.outlines.empty())
+        write_image(o.outlines, draw_outlines(labels, picture, mesh_image.source), {context.overwrite, {}});
+    if (!o.flat.empty())
+        write_image(o.flat, draw_flat(labels, mean_colors(facts), mesh_image.source),
+                    {context.overwrite, {}});
+    if (!o.ucm.empty()) {
+        const ContourMap map = contour_map(result.cells, result.hierarchy);
+        write_float_layer(o.ucm, "height", map.width, map.height, map.values, context.overwrite);
+    }
+    if (!o.report.empty()) {
+        const std::string text = regions_text(labels, facts, context.generator, o.input);
+        AtomicFile file(o.report, context.overwrite);
+        file.write({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
+        file.commit();
+    }
+    if (!o.mesh.empty())
+        write_region_mesh(o.mesh, level.mesh, region_of_faces(level.mesh, level.map, labels),
+                          mesh_image.source, context.generator, context.overwrite);
+
+    Report report = {
+        {"input", o.input},
+        {"output", o.output},
+        {"level", o.level},
+        {"distance", params.superpixels ? "superpixels" : name_of(distance_choices(), params.distance)}};
+    report.update(segmentation_report(result, facts));
+    const std::pair<const char*, const std::string*> others[] = {
+        {"image", &o.image}, {"outlines", &o.outlines}, {"flat", &o.flat},
+        {"ucm", &o.ucm},     {"report", &o.report},     {"mesh", &o.mesh}};
+    for (const auto& [name, path] : others)
+        if (!path->empty()) report[name] = *path;
+    return report;
+}
+
+void print(const Report& report, std::ostream& out) {
+    out << printable_line(report["input"].get<std::string>() + " -> " + report["output"].get<std::string>())
+        << '\n';
+    TextTable table;
+    table.add("regions", cat(report["regions"], " of ", report["cells"], " connected patches"));
+    table.add("sizes", cat(report["min_pixels"], " to ", report["max_pixels"], " pixels"));
+    table.add("distance", cat(report["distance"].get<std::string>(), ", merged up to ",
+                              format_number(report["merged_up_to"].get<double>())));
+    table.print(out, 2);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    return tool_main<Options>("imgmesh-segment", "Cut the picture of a container into regions.", argc, argv,
+                              add_options, run, print);
+}
