@@ -36,7 +36,7 @@ class Channels(CliCase):
         self.assertEqual(sorted(files.spec(self.folder / "again.exr").channelnames), sorted(NAMES))
         depth = channel(self.folder / "again.exr", "depth.Z") - channel(scene, "depth.Z")
         self.assertAlmostEqual(np.sqrt(np.mean(depth ** 2)), built["channel_rms"]["depth.Z"], places=4)
-        self.run_ok("imgmesh-segment", "out.glb", "-o", "labels.png")
+        self.run_ok("imgmesh-segment", "out.glb", "-o", "labels.png", "--mesh", "regions.glb")
         # A colour format gets the colour.
         self.run_ok("imgmesh-reconstruct", "out.glb", "-o", "again.png")
         self.assertEqual(list(files.spec(self.folder / "again.png").channelnames), ["R", "G", "B"])
