@@ -2,6 +2,7 @@
 #include <cctype>
 #include <filesystem>
 #include <memory>
+#include <optional>
 
 #include "formats/atomic_file.h"
 #include "formats/companion_file.h"
@@ -87,7 +88,7 @@ Spelling spelling_of(const std::string& path) {
 void write_glb(const std::string& path, Asset& asset, std::vector<std::uint8_t> buffer,
                const std::vector<std::uint8_t>& layers, bool overwrite) {
     AtomicFile file(path, overwrite);
-    asset.layers = append(buffer, layers);
+    if (asset.has_layers) asset.layers = append(buffer, layers);
     asset.buffer_length = buffer.size();
     file.write(pack_glb(json_from_asset(asset), buffer));
     file.commit();
@@ -99,21 +100,23 @@ void write_gltf(const std::string& path, Asset& asset, const std::vector<std::ui
                 const std::vector<std::uint8_t>& layers, bool overwrite) {
     const std::vector<std::string> old_files = companions_of(path);
     AtomicFile gltf(path, overwrite);
-    CompanionFile bin(path, ".bin", buffer), exr(path, ".exr", layers);
+    CompanionFile bin(path, ".bin", buffer);
+    std::optional<CompanionFile> exr;
+    if (asset.has_layers) exr.emplace(path, ".exr", layers);
     asset.buffer_name = bin.name();
-    asset.layers_name = exr.name();
+    if (exr) asset.layers_name = exr->name();
     asset.buffer_length = buffer.size();
     const std::string json = json_from_asset(asset);
     gltf.write({reinterpret_cast<const std::uint8_t*>(json.data()), json.size()});
     bin.place(gltf);
-    exr.place(gltf);
+    if (exr) exr->place(gltf);
     gltf.commit();
     bin.keep();
-    exr.keep();
+    if (exr) exr->keep();
     for (const std::string& file : old_files) {
         const std::string name = std::filesystem::path(file).filename().string();
         std::error_code error;  // a file that stays behind is in nobody's way
-        if (name != bin.name() && name != exr.name()) std::filesystem::remove(file, error);
+        if (name != asset.buffer_name && name != asset.layers_name) std::filesystem::remove(file, error);
     }
 }
 
@@ -142,7 +145,9 @@ void write_container(const std::string& path, const MeshImage& mesh_image, const
         parts.back().topology = asset.levels.back().topology;
     }
     parts.front().visits = mesh_image.visits;
-    const std::vector<std::uint8_t> layers = encode_exr_layers(parts);
+    asset.has_layers = options.layers;
+    const std::vector<std::uint8_t> layers =
+        options.layers ? encode_exr_layers(parts) : std::vector<std::uint8_t>();
     if (spelling == Spelling::kGlb)
         write_glb(path, asset, std::move(buffer), layers, options.overwrite);
     else

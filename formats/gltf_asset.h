@@ -58,7 +58,8 @@ struct Asset {
     std::string layers_name;  ///< or its file beside
 
     std::vector<LevelPlace> places;  ///< of the levels, as read
-    // What a validator may go on with; always true for a reader.
+    // What a validator may go on with; always true for a reader. A writer leaves IMGMESH_pixel_map out where
+    // has_layers is false.
     bool has_size = true;    ///< of the picture
     bool has_levels = true;  ///< it is known how many there are
     bool has_layers = true;  ///< it is known where the EXR is

@@ -113,7 +113,8 @@ tinygltf::Model gltf_model(const Asset& asset) {
     model.asset.version = "2.0";
     model.asset.generator = asset.generator;
     model.materials.push_back(unlit_material());
-    model.extensionsUsed = {kUnlit, kPixelMap};
+    model.extensionsUsed = {kUnlit};
+    if (asset.has_layers) model.extensionsUsed.emplace_back(kPixelMap);
     const bool any_draco = std::any_of(asset.levels.begin(), asset.levels.end(),
                                        [](const AssetLevel& level) { return level.is_draco; });
     if (any_draco) {
@@ -182,7 +183,8 @@ std::string json_from_asset(const Asset& asset) {
             cat("the asset's buffer would have ", asset.buffer_length, " bytes, at most ", kMaxBufferBytes,
                 asset.layers_name.empty() ? "; a .gltf keeps the pixel map apart" : ""));
     tinygltf::Model model = gltf_model(asset);
-    const int layers_view = asset.layers_name.empty() ? add_view(model, asset.layers, 0) : -1;
+    const int layers_view =
+        asset.has_layers && asset.layers_name.empty() ? add_view(model, asset.layers, 0) : -1;
     std::ostringstream text;
     tinygltf::TinyGLTF().WriteGltfSceneToStream(&model, text, /*prettyPrint=*/false, /*writeBinary=*/false);
 
@@ -190,8 +192,8 @@ std::string json_from_asset(const Asset& asset) {
     json buffer = {{"byteLength", asset.buffer_length}};
     if (!asset.buffer_name.empty()) buffer["uri"] = uri_from_name(asset.buffer_name);
     document["buffers"] = json::array({std::move(buffer)});
-    document["extensions"][kPixelMap] = root_extension(asset, layers_view);
-    for (std::size_t k = 0; k < asset.levels.size(); ++k) {
+    if (asset.has_layers) document["extensions"][kPixelMap] = root_extension(asset, layers_view);
+    for (std::size_t k = 0; k < asset.levels.size() && asset.has_layers; ++k) {
         const AssetLevel& level = asset.levels[k];
         if (!std::isfinite(level.error)) throw Error(ErrorCode::kInternal, "a level's error is not finite");
         document["nodes"][k]["extensions"][kPixelMap] = {{"part", level_name(k)},

@@ -33,6 +33,7 @@ struct Options {
     bool cut = true;  // along alpha
     std::string mask;
     double alpha_threshold = 0.5;
+    ImageLimits limits;
 };
 
 struct Job {
@@ -115,6 +116,8 @@ void add_options(CLI::App& app, Options& o) {
     add_choice(app, "--draco", o.draco, draco_choices(), "Mesh compression (default edgebreaker)");
     add_choice(app, "--color-space", o.color_space, color_space_choices(),
                "Of the pictures' numbers, whatever their files say");
+    add_count(app, "--max-pixels", o.limits.max_pixels, {1},
+              cat("Refuse a larger picture (default ", o.limits.max_pixels, ")"));
     add_choice<bool, bool>(app, "--alpha", o.cut, {{"cut", true}, {"ignore", false}},
                            "What becomes of an alpha channel: only pixels that it shows are meshed, or all "
                            "(default cut)");
@@ -178,7 +181,7 @@ BuildResult build_named(const std::string& input, const Image& image, const Buil
 // What --mask says; empty() without it.
 Mask read_mask(const Options& o) {
     if (o.mask.empty()) return {};
-    const Image picture = read_image(o.mask);
+    const Image picture = read_image(o.mask, {}, o.limits);
     try {
         return picture_mask(picture, static_cast<float>(o.alpha_threshold));
     } catch (const Error& e) {
@@ -189,7 +192,7 @@ Mask read_mask(const Options& o) {
 Report build_one(const Job& job, const Options& o, const Context& context, const Progress& progress) {
     Stopwatch whole, stage;
     check_output(job.output, context.overwrite);
-    const Image image = read_image(job.input, o.color_space);
+    const Image image = read_image(job.input, o.color_space, o.limits);
     const bool cut = o.cut && o.mask.empty();
     Mask mask = cut ? alpha_mask(image, static_cast<float>(o.alpha_threshold)) : read_mask(o);
     const double read_seconds = stage.lap();

@@ -10,6 +10,7 @@
 #include "libcore/image/feature_space.h"
 #include "libcore/recon/draw.h"
 #include "libcore/recon/draw_channels.h"
+#include "tools/common/limits.h"
 #include "tools/common/names.h"
 #include "tools/common/options.h"
 #include "tools/common/output.h"
@@ -26,6 +27,7 @@ struct Options {
     DrawParams draw;
     int level = 0;
     std::optional<SampleType> depth;
+    ContainerLimits limits;
 };
 
 Choices<DrawMode> mode_choices() {
@@ -51,6 +53,7 @@ void add_options(CLI::App& app, Options& o) {
     add_number(app, "--scale", o.draw.scale, {0, kNoLimit, true},
                "Size against the source's, for gouraud, wire and flat (default 1)");
     add_choice(app, "--depth", o.depth, depth_choices(), "Samples to write (default those of the source)");
+    add_container_limits(app, o.limits);
 }
 
 // Throws Error(kUsage) for what can be seen to be wrong before the container is read.
@@ -100,7 +103,7 @@ Report run(const Options& o, Context& context) {
     check_output(o.output, context.overwrite);
 
     context.progress(0, "read");
-    const Container container = read_container(o.input);
+    const Container container = read_container(o.input, o.limits);
     check_distinct(container.facts.files, {o.output});
     const MeshImage& mesh_image = container.mesh_image;
     const SourceInfo& source = mesh_image.source;

@@ -37,4 +37,8 @@ double checked_scale(const SourceInfo& source, const DrawParams& params);
 /// Throws as draw() does, Error(kUsage) for another mode.
 std::string draw_svg(const MeshImage& mesh_image, int level_index, DrawMode mode);
 
+/// As draw_svg, each face with a linear gradient: of all that SVG can say the nearest to colours interpolated
+/// between the corners, exact where the three colours lie on a line. Throws as draw_svg does.
+std::string draw_svg_gradient(const MeshImage& mesh_image, int level_index);
+
 }  // namespace imgmesh

@@ -1,60 +1,12 @@
-#include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "libcore/base/error.h"
 #include "libcore/recon/draw.h"
 #include "libcore/recon/level_colors.h"
-#include "libcore/recon/luv_encoder.h"
+#include "libcore/recon/svg_text.h"
 
 namespace imgmesh {
 namespace {
-
-// A number with at most two decimals, as short as SVG allows: "12", "-.5", "3.25". Hundredths of a pixel are
-// far finer than what one sees, and coarser than the 1/32 that positions are multiples of.
-void append_number(std::string& out, double value) {
-    long hundredths = std::lround(value * 100);
-    if (hundredths < 0) out += '-';
-    hundredths = std::abs(hundredths);
-    if (hundredths >= 100 || hundredths == 0) out += std::to_string(hundredths / 100);
-    if (hundredths % 100 == 0) return;
-    out += '.';
-    out += static_cast<char>('0' + hundredths / 10 % 10);
-    if (hundredths % 10 != 0) out += static_cast<char>('0' + hundredths % 10);
-}
-
-void append_point(std::string& out, char command, const Vec2d& p) {
-    out += command;
-    append_number(out, p.x());
-    out += ' ';
-    append_number(out, p.y());
-}
-
-// Vertices on the picture's sides move out by half a pixel, to where the outermost pixels end. Not so those
-// of cut-outs, whose outlines run through pixel centres everywhere.
-std::vector<Vec2d> outward(const BaseMesh& mesh, const SourceInfo& source) {
-    const auto moved = [&](float x, int side) {
-        if (side == 1 || source.has_mask) return double(x);  // already -0.5 .. 0.5
-        if (x <= 0) return x - 0.5;
-        return x >= static_cast<float>(side - 1) ? x + 0.5 : double(x);
-    };
-    std::vector<Vec2d> points;
-    points.reserve(mesh.vertex_count());
-    for (const Vec2f& p : mesh.position)
-        points.emplace_back(moved(p.x(), source.width), moved(p.y(), source.height));
-    return points;
-}
-
-void append_hex(std::string& out, const Vec3f& luv) {
-    constexpr char kDigits[] = "0123456789abcdef";
-    const Vec3f rgb = encoded_from_luv(ColorSpace::kSrgb, luv);
-    out += '#';
-    for (int c = 0; c < 3; ++c) {
-        const auto byte = static_cast<unsigned>(std::lround(rgb[c] * 255));
-        out += kDigits[byte >> 4];
-        out += kDigits[byte & 15];
-    }
-}
 
 // Each face is stroked in its own colour: without, renderers leave hairline gaps between neighbours.
 void append_faces(std::string& out, const BaseMesh& mesh, const std::vector<Vec2d>& points) {

@@ -37,6 +37,9 @@ class Channels(CliCase):
         depth = channel(self.folder / "again.exr", "depth.Z") - channel(scene, "depth.Z")
         self.assertAlmostEqual(np.sqrt(np.mean(depth ** 2)), built["channel_rms"]["depth.Z"], places=4)
         self.run_ok("imgmesh-segment", "out.glb", "-o", "labels.png", "--mesh", "regions.glb")
+        self.run_ok("imgmesh-convert", "out.glb", "-o", "plain.gltf", "--draco", "none")
+        self.run_ok("imgmesh-reconstruct", "plain.gltf", "-o", "plain.exr")
+        self.assertEqual((self.folder / "plain.exr").read_bytes(), (self.folder / "again.exr").read_bytes())
         # A colour format gets the colour.
         self.run_ok("imgmesh-reconstruct", "out.glb", "-o", "again.png")
         self.assertEqual(list(files.spec(self.folder / "again.png").channelnames), ["R", "G", "B"])
@@ -64,6 +67,7 @@ class Channels(CliCase):
             self.assert_error("imgmesh-reconstruct", ["out.gltf", "-o", output, "--mode", mode], 5, "out.gltf",
                               "depth.Z")
         self.assert_error("imgmesh-compare", [scene, "out.gltf"], 5, "no colour")
+        self.assert_error("imgmesh-convert", ["out.gltf", "-o", "x.ply"], 5, "out.gltf", "no colour")
         self.assert_error("imgmesh-segment", ["out.gltf", "-o", "x.png"], 5, "out.gltf", "no colour")
         self.run_ok("imgmesh-compare", "out.gltf")
         self.run_ok("imgmesh-info", "out.gltf", "--validate")

@@ -61,6 +61,13 @@ class Unreadable(CliCase):
             self.assert_error_lines("imgmesh-build", result, 4, 1)
             self.assertIn(name, result.stderr)
 
+    def test_limits_as_options(self):
+        self.run_ok("imgmesh-build", "good.png", "-o", "c.glb", "-q", "--max-pixels", "1200")
+        self.assert_error("imgmesh-build", ["good.png", "-o", "d.glb", "--max-pixels", "1199"], 4, "good.png")
+        self.assert_error("imgmesh-build", ["good.png", "-o", "d.glb", "--max-pixels", "0"], 2, "--max-pixels")
+        self.run_ok("imgmesh-reconstruct", "c.glb", "-o", "x.png", "-q", "--max-pixels", "1200")
+        self.assert_error("imgmesh-reconstruct", ["c.glb", "-o", "y.png", "--max-pixels", "1199"], 4, "limits.pixels")
+
     def test_values_that_are_not_finite(self):
         samples = picture_files.noise(8, 8)
         for value in (float("nan"), float("inf")):

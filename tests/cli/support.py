@@ -10,7 +10,8 @@ import jsonschema
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 BIN = pathlib.Path(os.environ["IMGMESH_BIN"])
-TOOLS = ("imgmesh-build", "imgmesh-reconstruct", "imgmesh-info", "imgmesh-compare", "imgmesh-warp", "imgmesh-segment")
+TOOLS = ("imgmesh-build", "imgmesh-reconstruct", "imgmesh-info", "imgmesh-compare", "imgmesh-convert", "imgmesh-warp",
+         "imgmesh-segment")
 
 
 def schema_of(tool):

@@ -1,0 +1,105 @@
+// SVG knows no colours at the corners of a triangle. What it does know, a linear gradient, is a colour that
+// changes along one direction; here the one that is nearest, in the sense of least squares over the triangle,
+// to the three corners' affine interpolation.
+#include <Eigen/LU>
+#include <Eigen/SVD>
+#include <algorithm>
+#include <cmath>
+
+#include "libcore/base/error.h"
+#include "libcore/recon/draw.h"
+#include "libcore/recon/level_colors.h"
+#include "libcore/recon/luv_encoder.h"
+#include "libcore/recon/svg_text.h"
+
+namespace imgmesh {
+namespace {
+
+struct Gradient {
+    Vec2d from, to;          // where the gradient's ends lie
+    Vec3d from_rgb, to_rgb;  // encoded sRGB, as SVG blends
+};
+
+// The colour c(p) = mean + J (p - centre) has a 3 x 2 matrix J. Its best approximation of rank one is s a b^T
+// with the largest singular value s: along b the colour changes by s a, across it not at all.
+Gradient fit_gradient(const std::array<Vec2d, 3>& p, const std::array<Vec3d, 3>& rgb) {
+    const Vec2d centre = (p[0] + p[1] + p[2]) / 3;
+    const Vec3d mean = (rgb[0] + rgb[1] + rgb[2]) / 3;
+    Eigen::Matrix2d edges;
+    edges << p[1] - p[0], p[2] - p[0];
+    Eigen::Matrix<double, 3, 2> changes;
+    changes << rgb[1] - rgb[0], rgb[2] - rgb[0];
+    const Eigen::Matrix<double, 3, 2> jacobian = changes * edges.inverse();  // faces have area
+    const Eigen::JacobiSVD<Eigen::MatrixXd> svd(jacobian, Eigen::ComputeThinU | Eigen::ComputeThinV);
+    const Vec2d direction = svd.matrixV().col(0);
+    const Vec3d change = svd.singularValues()[0] * svd.matrixU().col(0);
+    double least = 0, most = 0;
+    for (const Vec2d& corner : p) {
+        const double t = direction.dot(corner - centre);
+        least = std::min(least, t);
+        most = std::max(most, t);
+    }
+    return {centre + least * direction, centre + most * direction, mean + least * change,
+            mean + most * change};
+}
+
+void append_rgb(std::string& out, const Vec3d& rgb) {
+    constexpr char kDigits[] = "0123456789abcdef";
+    out += '#';
+    for (int c = 0; c < 3; ++c) {
+        const auto byte = static_cast<unsigned>(std::lround(std::clamp(rgb[c], 0.0, 1.0) * 255));
+        out += kDigits[byte >> 4];
+        out += kDigits[byte & 15];
+    }
+}
+
+void append_attribute(std::string& out, const char* name, double value) {
+    out += name;
+    append_number(out, value);
+    out += '"';
+}
+
+void append_gradient(std::string& out, std::size_t id, const Gradient& g) {
+    out += "<linearGradient id=\"g" + std::to_string(id) + "\" gradientUnits=\"userSpaceOnUse\"";
+    append_attribute(out, " x1=\"", g.from.x());
+    append_attribute(out, " y1=\"", g.from.y());
+    append_attribute(out, " x2=\"", g.to.x());
+    append_attribute(out, " y2=\"", g.to.y());
+    out += "><stop stop-color=\"";
+    append_rgb(out, g.from_rgb);
+    out += "\"/><stop offset=\"1\" stop-color=\"";
+    append_rgb(out, g.to_rgb);
+    out += "\"/></linearGradient>\n";
+}
+
+}  // namespace
+
+std::string draw_svg_gradient(const MeshImage& mesh_image, int level_index) {
+    const BaseMesh& mesh = level_to_draw(mesh_image, level_index).mesh;
+    const SourceInfo& source = mesh_image.source;
+    const std::vector<Vec2d> points = outward(mesh, source);
+    std::vector<Vec3d> colors(mesh.vertex_count());
+    for (Id v = 0; v < mesh.vertex_count(); ++v) {
+        const float* f = mesh.feature_of(v);
+        colors[v] = encoded_from_luv(ColorSpace::kSrgb, Vec3f(f[0], f[1], f[2])).cast<double>();
+    }
+    std::string defs, paths;
+    for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
+        const auto [a, b, c] = mesh.faces[f];
+        const Gradient gradient =
+            fit_gradient({points[a], points[b], points[c]}, {colors[a], colors[b], colors[c]});
+        append_gradient(defs, f, gradient);
+        const std::string paint = "url(#g" + std::to_string(f) + ")";
+        // Stroked in its own colours: without, renderers leave hairline gaps between neighbours.
+        paths += "<path fill=\"" + paint + "\" stroke=\"" + paint + "\" d=\"";
+        append_point(paths, 'M', points[a]);
+        append_point(paths, 'L', points[b]);
+        append_point(paths, 'L', points[c]);
+        paths += "z\"/>\n";
+    }
+    return cat("<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"", source.width, "\" height=\"",
+               source.height, "\" viewBox=\"-.5 -.5 ", source.width, ' ', source.height, "\">\n<defs>\n",
+               defs, "</defs>\n<g stroke-width=\".7\" stroke-linejoin=\"round\">\n", paths, "</g>\n</svg>\n");
+}
+
+}  // namespace imgmesh

@@ -1,0 +1,50 @@
+# cmake --install: the tools, the libraries as a package for find_package(imgmesh), schemas, manuals; cpack: a .deb.
+include(GNUInstallDirs)
+include(CMakePackageConfigHelpers)
+
+set(_tools imgmesh-build imgmesh-reconstruct imgmesh-info imgmesh-compare imgmesh-convert imgmesh-warp imgmesh-segment)
+set(_libraries imgmesh_core imgmesh_files imgmesh_formats imgmesh_pictures imgmesh_compiler)
+install(TARGETS ${_tools} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+foreach(_library IN LISTS _libraries)
+  string(REPLACE "imgmesh_" "" _name ${_library})
+  set_target_properties(${_library} PROPERTIES EXPORT_NAME ${_name})
+endforeach()
+install(TARGETS ${_libraries} EXPORT imgmesh-targets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+set(_package ${CMAKE_INSTALL_LIBDIR}/cmake/imgmesh)
+install(EXPORT imgmesh-targets NAMESPACE imgmesh:: DESTINATION ${_package})
+configure_file(packaging/imgmesh-config.cmake.in packaging/imgmesh-config.cmake @ONLY)
+write_basic_package_version_file(packaging/imgmesh-config-version.cmake COMPATIBILITY SameMinorVersion)
+install(FILES
+  ${CMAKE_CURRENT_BINARY_DIR}/packaging/imgmesh-config.cmake
+  ${CMAKE_CURRENT_BINARY_DIR}/packaging/imgmesh-config-version.cmake
+  cmake/dependencies.cmake
+  DESTINATION ${_package})
+install(DIRECTORY libcore formats DESTINATION include/imgmesh FILES_MATCHING PATTERN "*.h")
+install(DIRECTORY schemas/ DESTINATION ${CMAKE_INSTALL_DATADIR}/imgmesh/schemas FILES_MATCHING PATTERN "*.schema.json"
+  PATTERN examples EXCLUDE)
+install(FILES README.md CHANGELOG.md LICENSE docs/format.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
+
+# Man pages and completions say what --help says.
+find_program(IMGMESH_PYTHON3 python3 PATHS /usr/bin NO_DEFAULT_PATH REQUIRED)
+set(_manuals ${CMAKE_CURRENT_BINARY_DIR}/manuals)
+set(_programs "")
+foreach(_tool IN LISTS _tools)
+  list(APPEND _programs $<TARGET_FILE:${_tool}>)
+endforeach()
+add_custom_command(OUTPUT ${_manuals}/stamp
+  COMMAND ${IMGMESH_PYTHON3} ${PROJECT_SOURCE_DIR}/packaging/make_manuals.py ${_manuals} ${_programs}
+  COMMAND ${CMAKE_COMMAND} -E touch ${_manuals}/stamp
+  DEPENDS ${_tools} packaging/make_manuals.py)
+add_custom_target(manuals ALL DEPENDS ${_manuals}/stamp)
+install(DIRECTORY ${_manuals}/man1 DESTINATION ${CMAKE_INSTALL_MANDIR})
+install(DIRECTORY ${_manuals}/completions DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion)
+
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_NAME imgmesh)
+set(CPACK_PACKAGE_CONTACT "the imgmesh maintainers <imgmesh@localhost>")
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PACKAGE_SECTION graphics)
+set(CPACK_STRIP_FILES ON)
+include(CPack)

@@ -1,0 +1,167 @@
+"""imgmesh-convert: the same picture in every spelling, and exports that other programs read."""
+import json
+import xml.etree.ElementTree
+
+import numpy as np
+
+import picture_files
+from support import CliCase, main
+
+
+class Convert(CliCase):
+    def setUp(self):
+        super().setUp()
+        picture_files.png(self.folder / "in.png", picture_files.ramp(48, 32))
+        self.build("in.png", "--level-faces", "200,60", output="c.glb")
+        self.facts = self.report("imgmesh-info", "c.glb")
+
+    def picture(self, name, level=0):
+        self.run_ok("imgmesh-reconstruct", name, "-o", "drawn.ppm", "--level", level, "-q")
+        return (self.folder / "drawn.ppm").read_bytes()
+
+    def map_as_set(self, name):
+        """What the pixel map says of each pixel, whatever the order of vertices, faces and corners: the picture's own
+        colours, and where in the mesh it lies."""
+        return self.levels(name), self.picture(name), self.picture(name, 1)
+
+    def levels(self, name):
+        """The figures of all levels. Sums over faces differ in their last digits with the faces' order."""
+        def rounded(value):
+            if isinstance(value, dict):
+                return {k: rounded(v) for k, v in value.items()}
+            return float(f"{value:.9g}") if isinstance(value, float) else value
+        return [rounded(level) for level in self.report("imgmesh-info", name)["levels"]]
+
+    def test_round_trips_keep_the_map_exactly(self):
+        before = self.map_as_set("c.glb")
+        source = "c.glb"
+        for i, (extension, draco) in enumerate([("gltf", "none"), ("gltf", "sequential"), ("glb", "none"),
+                                                ("glb", "edgebreaker"), ("gltf", "edgebreaker")]):
+            output = f"r{i}.{extension}"
+            report = self.report("imgmesh-convert", source, "-o", output, "--draco", draco)
+            self.assertEqual((report["levels"], report["layers"]), (2, True))
+            self.assertEqual(self.map_as_set(output), before)
+            facts = self.report("imgmesh-info", output)
+            self.assertEqual((facts["draco"], facts["build"]), (draco, self.facts["build"]))
+            self.assertEqual(self.report("imgmesh-info", output, "--validate")["findings"], [])
+            source = output
+
+    def test_the_spelling_alone_keeps_everything(self):
+        """Without options the compression stays what it is; edgebreaker's order comes back to itself after one round."""
+        self.run_ok("imgmesh-convert", "c.glb", "-o", "a.gltf", "-q")
+        self.assertEqual(self.report("imgmesh-info", "a.gltf")["draco"], "edgebreaker")
+        self.run_ok("imgmesh-convert", "a.gltf", "-o", "b.glb", "-q")
+        self.assertEqual(self.map_as_set("b.glb"), self.map_as_set("c.glb"))
+
+    def test_levels(self):
+        for levels, kept in (("0", [0]), ("1", [1]), ("0,1", [0, 1])):
+            self.run_ok("imgmesh-convert", "c.glb", "-o", "k.glb", "--levels", levels, "-q")
+            all_levels = self.levels("c.glb")
+            self.assertEqual(self.levels("k.glb"), [all_levels[k] for k in kept])
+            self.assertEqual(self.picture("k.glb"), self.picture("c.glb", kept[0]))
+
+    def test_without_layers(self):
+        for extension in ("glb", "gltf"):
+            report = self.report("imgmesh-convert", "c.glb", "-o", f"m.{extension}", "--no-layers", "--draco", "none")
+            self.assertFalse(report["layers"])
+            self.assert_error("imgmesh-info", [f"m.{extension}"], 4, "ext.missing")
+            self.assertNotIn(b"IMGMESH", (self.folder / f"m.{extension}").read_bytes())
+        self.assertEqual(sorted(f for f in self.files() if f.startswith("m.")), ["m.bin", "m.glb", "m.gltf"])
+        mesh = json.loads((self.folder / "m.gltf").read_text())
+        self.assertEqual(mesh["accessors"][0]["count"], 3 * self.facts["levels"][0]["faces"])
+
+    def test_svg(self):
+        size = {}
+        for shading in ("flat", "gradient"):
+            self.run_ok("imgmesh-convert", "c.glb", "-o", "d.svg", "--shading", shading, "--level", "1", "-q")
+            text = (self.folder / "d.svg").read_text()
+            root = xml.etree.ElementTree.fromstring(text)
+            paths = root.findall(".//{http://www.w3.org/2000/svg}path")
+            self.assertEqual(len(paths), self.facts["levels"][1]["faces"])
+            self.assertEqual(root.get("viewBox"), "-.5 -.5 48 32")
+            if shading == "gradient":
+                gradients = {g.get("id"): g for g in root.iter("{http://www.w3.org/2000/svg}linearGradient")}
+                self.assertEqual({p.get("fill") for p in paths}, {f"url(#{name})" for name in gradients})
+                self.assertNotIn("nan", text)
+            size[shading] = len(text)
+        self.assertGreater(size["gradient"], size["flat"])
+
+    def test_ply_and_obj(self):
+        self.run_ok("imgmesh-convert", "c.glb", "-o", "d.ply", "-q")
+        self.run_ok("imgmesh-convert", "c.glb", "-o", "d.obj", "-q")
+        level = self.facts["levels"][0]
+        lines = (self.folder / "d.ply").read_text().splitlines()
+        start = lines.index("end_header") + 1
+        self.assertIn(f"element vertex {level['vertices']}", lines)
+        vertices = [line.split() for line in lines[start:start + level["vertices"]]]
+        faces = [tuple(int(i) for i in line.split()[1:]) for line in lines[start + level["vertices"]:]]
+        self.assertEqual(len(faces), level["faces"])
+        x = np.array([[float(v[0]), float(v[1])] for v in vertices])
+        edges = x[[f[1] for f in faces]] - x[[f[0] for f in faces]], x[[f[2] for f in faces]] - x[[f[0] for f in faces]]
+        area = edges[0][:, 0] * edges[1][:, 1] - edges[0][:, 1] * edges[1][:, 0]
+        self.assertTrue((area > 0).all(), "a face is turned over")
+        self.assertAlmostEqual(area.sum() / 2, level["mesh"]["area"], places=3)
+        text = (self.folder / "d.obj").read_text().splitlines()
+        positions = [line.split()[1:3] for line in text if line.startswith("v ")]
+        self.assertEqual(positions, [v[:2] for v in vertices])
+        self.assertEqual([tuple(int(i.split("/")[0]) - 1 for i in line.split()[1:]) for line in text if line.startswith("f ")],
+                         faces)
+        for line in (line for line in text if line.startswith("vt ")):
+            self.assertTrue(all(0 <= float(i) <= 1 for i in line.split()[1:]))
+
+    def test_sprite(self):
+        self.run_ok("imgmesh-convert", "c.glb", "-o", "d.json", "-q")
+        sheet = json.loads((self.folder / "d.json").read_text())
+        frame = sheet["frames"]["d.png"]
+        self.assertEqual(sheet["meta"]["image"], "d.png")
+        self.assertEqual(sheet["meta"]["size"], {"w": 48, "h": 32})
+        points = np.array(frame["vertices"])
+        self.assertEqual((points.min(axis=0).tolist(), points.max(axis=0).tolist()), ([0, 0], [48, 32]))
+        self.assertEqual(frame["vertices"], frame["verticesUV"])
+        self.assertEqual(len(frame["triangles"]), self.facts["levels"][0]["faces"])
+        self.assertLess(max(max(t) for t in frame["triangles"]), len(points))
+        self.run_ok("imgmesh-convert", "c.glb", "-o", "d.json", "--image", "hero.png", "-q")
+        self.assertIn("hero.png", json.loads((self.folder / "d.json").read_text())["frames"])
+
+    def test_face_ids(self):
+        """The ids drawn are those of the layers."""
+        self.run_ok("imgmesh-convert", "c.glb", "-o", "d.png", "-q")
+        drawn = np.round(picture_files.read(self.folder / "d.png") * 255).astype(int)
+        ids = drawn[..., 0] + 256 * drawn[..., 1] + 65536 * drawn[..., 2]
+        self.assertLess(ids.max(), self.facts["levels"][0]["faces"])
+        self.assertGreater(len(np.unique(ids)), 50)
+        import OpenImageIO as oiio
+        self.run_ok("imgmesh-convert", "c.glb", "-o", "d.gltf", "-q")
+        # Edgebreaker's order is settled after one round, so the ids are comparable.
+        self.run_ok("imgmesh-convert", "d.gltf", "-o", "e.png", "-q")
+        drawn = np.round(picture_files.read(self.folder / "e.png") * 255).astype(int)
+        layers = oiio.ImageInput.open(str(self.folder / "d.exr"))
+        index = layers.spec().channelnames.index("face.id")
+        stored = layers.read_image(0, 0, index, index + 1, "uint")[..., 0]
+        self.assertTrue((drawn[..., 0] + 256 * drawn[..., 1] + 65536 * drawn[..., 2] == stored).all())
+
+    def test_odd_sizes(self):
+        for width, height in ((1, 1), (1, 7), (3, 3)):
+            picture_files.png(self.folder / "odd.png", picture_files.noise(width, height))
+            self.build("odd.png", "--density", "100", output="odd.glb")
+            for extension in ("svg", "ply", "obj", "json", "png", "gltf"):
+                self.run_ok("imgmesh-convert", "odd.glb", "-o", f"odd-out.{extension}", "-q")
+            self.run_ok("imgmesh-convert", "odd.glb", "-o", "odd-out.svg", "--shading", "gradient", "-q")
+
+    def test_wrong_use(self):
+        wrong = [(["-o", "x.docx"], "x.docx"), (["-o", "x"], "expected"), (["-o", "x.glb", "--levels", "2"], "--levels"),
+                 (["-o", "x.glb", "--levels", "1,0"], "--levels"), (["-o", "x.glb", "--levels", "0,0"], "--levels"),
+                 (["-o", "x.glb", "--levels", ""], "--levels"), (["-o", "x.glb", "--level", "0"], "--level"),
+                 (["-o", "x.svg", "--level", "2"], "--level"), (["-o", "x.svg", "--level", "-1"], "--level"),
+                 (["-o", "x.svg", "--draco", "none"], "--draco"), (["-o", "x.ply", "--no-layers"], "--no-layers"),
+                 (["-o", "x.ply", "--levels", "0"], "--levels"), (["-o", "x.png", "--shading", "flat"], "--shading"),
+                 (["-o", "x.svg", "--shading", "smooth"], "gradient"), (["-o", "x.png", "--image", "y"], "--image"),
+                 (["-o", "c.glb"], "input"), (["-o", "x.glb", "--draco", "zip"], "edgebreaker")]
+        for args, word in wrong:
+            self.assert_error("imgmesh-convert", ["c.glb", *args], 2, word)
+        self.assert_error("imgmesh-convert", ["c.glb", "-o", "x.glb", "--max-pixels", "10"], 4, "limits.pixels")
+        self.assert_error("imgmesh-convert", ["in.png", "-o", "x.glb"], 4, "in.png")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,22 @@
+// A program of somebody else: a picture made on the spot, its container written, read and drawn.
+#include <iostream>
+
+#include "formats/container.h"
+#include "libcore/build/build.h"
+#include "libcore/recon/draw.h"
+
+int main(int argc, char** argv) {
+    if (argc != 2) return 2;
+    imgmesh::Image image = imgmesh::make_image(32, 24, 3);
+    for (int y = 0; y < image.height; ++y)
+        for (int x = 0; x < image.width; ++x)
+            for (int c = 0; c < 3; ++c) image.pixel(x, y)[c] = (x < 16) == (c == 0) ? 0.8f : 0.2f;
+    imgmesh::BuildParams params;
+    params.stop.faces = 60;
+    imgmesh::write_container(argv[1], imgmesh::build_mesh_image(image, params, {}).mesh_image);
+    const imgmesh::Container read = imgmesh::read_container(argv[1]);
+    const imgmesh::Image drawn = imgmesh::draw(read.mesh_image, 0, {});
+    std::cout << read.mesh_image.levels[0].mesh.faces.size() << " faces, " << drawn.width << "x"
+              << drawn.height << '\n';
+    return drawn.width == 32 && drawn.height == 24 ? 0 : 1;
+}

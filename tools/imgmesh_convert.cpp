@@ -1,0 +1,207 @@
+// imgmesh-convert: a container in another spelling or compression, with fewer levels, or in another format.
+#include <filesystem>
+#include <optional>
+#include <ostream>
+
+#include "formats/atomic_file.h"
+#include "formats/container.h"
+#include "formats/image_io.h"
+#include "formats/mesh_export.h"
+#include "libcore/image/feature_space.h"
+#include "libcore/recon/draw.h"
+#include "tools/common/limits.h"
+#include "tools/common/names.h"
+#include "tools/common/options.h"
+#include "tools/common/output.h"
+#include "tools/common/text.h"
+#include "tools/common/tool_main.h"
+
+namespace fs = std::filesystem;
+using namespace imgmesh;
+
+namespace {
+
+enum class Shading { kFlat, kGradient };
+
+struct Options {
+    std::string input;
+    std::string output;
+    std::optional<DracoMode> draco;
+    std::vector<int> levels;
+    bool no_layers = false;
+    std::optional<int> level;
+    std::optional<Shading> shading;
+    std::string image;
+    ContainerLimits limits;
+};
+
+void add_options(CLI::App& app, Options& o) {
+    add_input(app, "CONTAINER", o.input, "Container to read (.glb, .gltf)");
+    add_output(
+        app, o.output,
+        "Container to write (.glb, .gltf), or a level of it as .svg, .ply, .obj, .json (a sprite's mesh, as "
+        "TexturePacker writes it) or .png (24-bit face ids, red the low byte)");
+    add_choice(app, "--draco", o.draco, draco_choices(), "Mesh compression (default that of the input)");
+    add_list<int>(
+        app, "--levels", o.levels,
+        [](const std::string& item) {
+            return static_cast<int>(parse_count("--levels", item, {0, 1000}));
+        },
+        "Levels to keep, finest first, as 0,2 (default all); they are numbered anew");
+    app.add_flag("--no-layers", o.no_layers,
+                 "Write the meshes alone: a plain glTF asset that imgmesh cannot read");
+    add_value(
+        app, "--level", "N",
+        [&o](const std::string& text) {
+            o.level = static_cast<int>(parse_count("--level", text, {0, 1000}));
+        },
+        "Level to export, 0 the finest (default 0)");
+    add_choice(app, "--shading", o.shading,
+               Choices<Shading>{{"flat", Shading::kFlat}, {"gradient", Shading::kGradient}},
+               "Of an .svg's triangles (default flat)");
+    add_value(
+        app, "--image", "NAME", [&o](const std::string& text) { o.image = text; },
+        "The picture that a sprite's .json names (default the output's name in .png)");
+    add_container_limits(app, o.limits);
+}
+
+bool is_container(const Options& o) {
+    const std::string extension = lower_extension(o.output);
+    return extension == ".glb" || extension == ".gltf";
+}
+
+// Throws Error(kUsage) for what can be seen to be wrong before the container is read.
+void check_options(const Options& o) {
+    const std::string extension = lower_extension(o.output);
+    const auto only_for = [&](bool given, const char* option, bool fits, const char* what) {
+        if (given && !fits) throw Error(ErrorCode::kUsage, cat(option, ": -o ", o.output, " is no ", what));
+    };
+    const bool container = is_container(o);
+    bool known = container;
+    for (const char* name : {".svg", ".ply", ".obj", ".json", ".png"}) known = known || extension == name;
+    if (!known)
+        throw Error(
+            ErrorCode::kUsage,
+            cat("-o ", o.output, ": expected a name in .glb, .gltf, .svg, .ply, .obj, .json or .png"));
+    only_for(o.draco.has_value(), "--draco", container, "container");
+    only_for(!o.levels.empty(), "--levels", container, "container");
+    only_for(o.no_layers, "--no-layers", container, "container");
+    if (container && o.level)
+        throw Error(ErrorCode::kUsage, cat("--level: ", o.output, " keeps all levels; see --levels"));
+    only_for(o.shading.has_value(), "--shading", extension == ".svg", "SVG");
+    only_for(!o.image.empty(), "--image", extension == ".json", "sprite's JSON");
+    for (std::size_t i = 1; i < o.levels.size(); ++i)
+        if (o.levels[i] <= o.levels[i - 1])
+            throw Error(ErrorCode::kUsage, cat("--levels: ", o.levels[i], " after ", o.levels[i - 1],
+                                               ", expected the finest first and each once"));
+}
+
+void check_level(const std::string& option, int level, const std::string& input, const MeshImage& m) {
+    if (level >= static_cast<int>(m.levels.size()))
+        throw Error(ErrorCode::kUsage,
+                    cat(option, " ", level, ": ", input, " has levels 0 to ", m.levels.size() - 1));
+}
+
+void keep_levels(const Options& o, MeshImage& m) {
+    if (o.levels.empty()) return;
+    std::vector<Level> kept;
+    for (const int k : o.levels) {
+        check_level("--levels", k, o.input, m);
+        kept.push_back(std::move(m.levels[static_cast<std::size_t>(k)]));
+    }
+    // The visit map tells of the finest level's pixels, and goes with it.
+    if (o.levels.front() != 0) m.visits.clear();
+    m.levels = std::move(kept);
+}
+
+// Face ids as colours; no face is transparent.
+Image id_image(const Level& level, bool has_mask) {
+    if (level.mesh.faces.size() > (1u << 24))
+        throw Error(ErrorCode::kUnsupported,
+                    cat("24 bits hold no ids of ", level.mesh.faces.size(), " faces"));
+    Image image = make_image(level.map.width, level.map.height, has_mask ? 4 : 3);
+    for (std::size_t i = 0; i < level.map.coords.size(); ++i) {
+        const Id face = level.map.coords[i].face;
+        float* pixel = image.data.data() + i * static_cast<std::size_t>(image.channels);
+        for (int c = 0; c < 3; ++c)
+            pixel[c] = face == kNone ? 0 : static_cast<float>(face >> 8 * c & 255) / 255.0f;
+        if (has_mask) pixel[3] = face == kNone ? 0 : 1;
+    }
+    return image;
+}
+
+void export_level(const Options& o, const MeshImage& m, int index, Context& context) {
+    const Level& level = m.levels[static_cast<std::size_t>(index)];
+    const std::string extension = lower_extension(o.output);
+    if (extension == ".png") {
+        write_image(o.output, id_image(level, m.source.has_mask), {context.overwrite, SampleType::kUint8});
+        return;
+    }
+    if ((extension == ".ply" || extension == ".obj") && split_names(m.source.channel_names).color.empty())
+        throw Error(ErrorCode::kUnsupported, cat(o.input, ": the container has no colour to export"));
+    std::string text;
+    if (extension == ".svg")
+        text = o.shading == Shading::kGradient ? draw_svg_gradient(m, index)
+                                               : draw_svg(m, index, DrawMode::kFlat);
+    else if (extension == ".ply")
+        text = ply_from_mesh(level.mesh);
+    else if (extension == ".obj")
+        text = obj_from_mesh(level.mesh, m.source);
+    else
+        text = sprite_json_from_mesh(
+            level.mesh, m.source,
+            o.image.empty() ? fs::path(o.output).filename().replace_extension(".png").string() : o.image,
+            context.generator);
+    AtomicFile file(o.output, context.overwrite);
+    file.write({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
+    file.commit();
+}
+
+Report run(const Options& o, Context& context) {
+    check_options(o);
+    check_output(o.output, context.overwrite);
+    context.progress(0, "read");
+    Container container = read_container(o.input, o.limits);
+    MeshImage& m = container.mesh_image;
+    check_distinct(container.facts.files, {o.output});
+    const int level = o.level.value_or(0);
+    check_level("--level", level, o.input, m);
+    context.progress(0.5, "write");
+    if (is_container(o)) {
+        keep_levels(o, m);
+        ContainerOptions options;
+        options.draco = o.draco.value_or(container.facts.draco);
+        options.overwrite = context.overwrite;
+        options.layers = !o.no_layers;
+        write_container(o.output, m, options);
+    } else {
+        export_level(o, m, level, context);
+    }
+    const Level& first = m.levels[static_cast<std::size_t>(level)];
+    return {{"input", o.input},
+            {"output", o.output},
+            {"levels", is_container(o) ? m.levels.size() : 1},
+            {"level", is_container(o) ? 0 : level},
+            {"vertices", first.mesh.vertex_count()},
+            {"faces", first.mesh.faces.size()},
+            {"layers", is_container(o) && !o.no_layers},
+            {"bytes", fs::file_size(o.output)}};
+}
+
+void print(const Report& report, std::ostream& out) {
+    out << printable_line(report["input"].get<std::string>() + " -> " + report["output"].get<std::string>())
+        << '\n';
+    TextTable table;
+    table.add("levels", cat(report["levels"], report["layers"] ? "" : ", without pixel maps"));
+    table.add("mesh", cat(report["vertices"], " vertices, ", report["faces"], " faces"));
+    table.add("file", format_bytes(report["bytes"].get<std::uint64_t>()));
+    table.print(out, 2);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    return tool_main<Options>("imgmesh-convert",
+                              "Turn a container into another spelling or compression, or another format.",
+                              argc, argv, add_options, run, print);
+}
