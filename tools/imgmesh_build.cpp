@@ -10,6 +10,7 @@
 #include "libcore/base/parallel.h"
 #include "libcore/base/stopwatch.h"
 #include "libcore/build/build.h"
+#include "libcore/build/presets.h"
 #include "libcore/image/color.h"
 #include "libcore/metrics/metrics.h"
 #include "tools/common/channel_list.h"
@@ -45,6 +46,15 @@ void add_options(CLI::App& app, Options& o) {
     add_inputs(app, "IMAGE", o.inputs, "Pictures to read");
     add_output(app, o.output,
                "Container to write (.glb, .gltf), or a folder, ended by /, for NAME.glb of each");
+    // Before all that it sets, so that other options, wherever they stand, count after it.
+    add_choice<BuildParams, BuildParams>(app, "--preset", o.params,
+                                         {{"fast", preset_params(Preset::kFast)},
+                                          {"default", preset_params(Preset::kDefault)},
+                                          {"best", preset_params(Preset::kBest)},
+                                          {"fem", preset_params(Preset::kFem)}},
+                                         "Values of the options below, for speed, as usual, for the lowest "
+                                         "error of the mesh drawn alone, or for "
+                                         "triangles of good shape");
     add_channels(app, o.params.channels);
     const StopParams stop;
     CLI::Option* const faces = add_count(app, "--faces", o.params.stop.faces, {2}, "Stop at this many faces");
@@ -83,7 +93,14 @@ void add_options(CLI::App& app, Options& o) {
     add_count(
         app, "--refine", o.params.refine, {0, kMaxRefine},
         cat("Rounds that move vertices, flip edges and put vertices elsewhere to lower the error (default ",
-            params.refine, ")"));
+            kUsualRefine, ")"));
+    add_number(app, "--shape-weight", o.params.shape_weight, {0},
+               cat("Weight of the triangles' shape against error in refinement (default ",
+                   params.shape_weight, ")"));
+    add_number(app, "--exchange", o.params.exchange, {0, 1},
+               cat("Share of the vertices that each round of refinement adds and takes away elsewhere; slow "
+                   "(default ",
+                   params.exchange, ")"));
     add_choice<Objective, Objective>(
         app, "--objective", o.params.objective, {{"luv", Objective::kLuv}, {"rgb", Objective::kRgb}},
         "Error to lower: L*u*v*, or sRGB with colours for the mesh drawn alone (default luv)");
@@ -108,9 +125,18 @@ void add_options(CLI::App& app, Options& o) {
     add_choice<bool, bool>(
         app, "--priority", o.params.total_priority, {{"increment", false}, {"total", true}},
         "Edges go by the error that a collapse adds, or by its total, as in the paper (default increment)");
-    add_number(app, "--projection-color-weight", o.params.projection_color_weight, {0},
-               cat("Weight of colour in the pixel map, 0 for the trivial map (default ",
-                   format_number(params.projection_color_weight), ")"));
+    CLI::Option* const projection =
+        add_number(app, "--projection-color-weight", o.params.projection_color_weight, {0},
+                   cat("Weight of colour in the pixel map, 0 for the trivial map (default ",
+                       format_number(params.projection_color_weight), ")"));
+    add_value(
+        app, "--map-smoothness", "X",
+        [&o](const std::string& text) {
+            o.params.projection_color_weight = 1 / parse_number("--map-smoothness", text, {1e-9, 1e12});
+        },
+        cat("Smoothness of the pixel map against colour: 1 / projection color weight (default ",
+            format_number(1 / params.projection_color_weight), ")"))
+        ->excludes(projection);
     add_choice(app, "--bary", o.params.bary, bary_choices(),
                "Precision of the pixel map (default half where the map stays one to one, else float)");
     add_choice(app, "--draco", o.draco, draco_choices(), "Mesh compression (default edgebreaker)");

@@ -78,7 +78,9 @@ std::vector<Level> build_levels(const FeatureImage& feature, const FeatureSpace&
     fit.space = space;
     fit.keep_colors = params.objective == Objective::kRgb;
     RefineParams refinement;
-    refinement.rounds = params.refine;
+    refinement.rounds = static_cast<int>(params.refine.value_or(kUsualRefine));
+    refinement.shape_weight = params.shape_weight;
+    refinement.exchange = params.exchange;
     refinement.min_quality = params.min_quality;
     refinement.max_face_area = collapse.max_face_area;
     report.collapses = collapsed.back().collapses;
@@ -88,8 +90,8 @@ std::vector<Level> build_levels(const FeatureImage& feature, const FeatureSpace&
         Level level{std::move(collapsed[k].mesh), {}, collapsed[k].error * params.color_weight};
         const double share = 0.3 / static_cast<double>(collapsed.size()),
                      begin = 0.7 + share * static_cast<double>(k);
-        const double middle = params.refine > 0 ? begin + 0.7 * share : begin;
-        if (params.refine > 0 || params.objective == Objective::kRgb)
+        const double middle = refinement.rounds > 0 ? begin + 0.7 * share : begin;
+        if (refinement.rounds > 0 || params.objective == Objective::kRgb)
             refine_level(level.mesh, feature, mask, params.objective, refinement,
                          part_of(progress, begin, middle));
         report.seconds.refine += watch.lap();
@@ -109,9 +111,9 @@ std::vector<Level> build_levels(const FeatureImage& feature, const FeatureSpace&
 
 }  // namespace
 
-BuildResult build_mesh_image(const Image& image, const BuildParams& params, const Progress& progress,
+BuildResult build_mesh_image(const Image& image, const BuildParams& asked, const Progress& progress,
                              Mask mask) {
-    check_params(params);
+    check_params(asked);
     if (image.width < 1 || image.height < 1) throw Error(ErrorCode::kUsage, "the picture is empty");
     for (const float sample : image.data)
         if (!std::isfinite(sample))
@@ -121,9 +123,11 @@ BuildResult build_mesh_image(const Image& image, const BuildParams& params, cons
     // What lies outside of the colours that a container holds could only mislead the fit: L*u*v* of negative
     // light has no bound.
     const FeatureSpace space = feature_space(image, params.channels, mask);
-    const bool color_alone = space.color && space.features() == 3 && space.color_weight == 1;
-    if ((params.refine > 0 || params.objective == Objective::kRgb) &&
-        !(color_alone && space.gamut == Gamut::kDisplay))
+    const bool refinable =
+        space.color && space.features() == 3 && space.color_weight == 1 && space.gamut == Gamut::kDisplay;
+    BuildParams params = asked;
+    if (!params.refine) params.refine = refinable ? kUsualRefine : 0;
+    if ((*params.refine > 0 || params.objective == Objective::kRgb) && !refinable)
         throw Error(ErrorCode::kUnsupported, "refinement is for colour alone, without light above 1");
     const FeatureImage feature = extract_features(image, space, mask);
 

@@ -82,8 +82,11 @@ void check_params(const BuildParams& p) {
     // The dense mesh has triangles of three pixels, and of q = 0.87.
     require(p.max_cluster.value_or(3) >= 3,
             cat("max cluster is ", p.max_cluster.value_or(3), ", expected 3 or more"));
-    require(p.refine >= 0 && p.refine <= kMaxRefine,
-            cat("refine is ", p.refine, ", expected 0 to ", kMaxRefine));
+    require(p.refine.value_or(0) >= 0 && p.refine.value_or(0) <= kMaxRefine,
+            cat("refine is ", p.refine.value_or(0), ", expected 0 to ", kMaxRefine));
+    require(p.exchange >= 0 && p.exchange <= 1, cat("exchange is ", p.exchange, ", expected 0 to 1"));
+    require(std::isfinite(p.shape_weight) && p.shape_weight >= 0,
+            cat("shape weight is ", p.shape_weight, ", expected a finite number, 0 or more"));
     require(p.min_quality >= 0 && p.min_quality <= 0.8,
             cat("min quality is ", p.min_quality, ", expected 0 to 0.8"));
 }
@@ -141,7 +144,11 @@ std::vector<BuildParameter> listed_params(const BuildParams& p, const CollapsePa
     out.emplace_back("priority", std::string(p.total_priority ? "total" : "increment"));
     out.emplace_back("projection-color-weight", p.projection_color_weight);
     out.emplace_back("smoothing", std::int64_t{collapse.smoothing});
-    out.emplace_back("refine", std::int64_t{p.refine});
+    out.emplace_back("refine", p.refine.value_or(kUsualRefine));
+    if (p.refine.value_or(kUsualRefine) > 0) {
+        out.emplace_back("shape-weight", p.shape_weight);
+        out.emplace_back("exchange", p.exchange);
+    }
     out.emplace_back("objective", std::string(p.objective == Objective::kRgb ? "rgb" : "luv"));
     if (p.max_cluster) out.emplace_back("max-cluster", *p.max_cluster);
     if (p.min_quality > 0) out.emplace_back("min-quality", p.min_quality);

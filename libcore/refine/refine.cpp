@@ -9,6 +9,9 @@
 
 namespace imgmesh {
 
+// Rounds end where one gains less than this share of the error.
+constexpr double kLeastGain = 1e-4;
+
 RefineReport refine(BaseMesh& mesh, const FeatureImage& picture, const RefineParams& params,
                     const Progress& progress, const Mask& mask) {
     const PicturePlanes planes(picture, mask);
@@ -22,11 +25,14 @@ RefineReport refine(BaseMesh& mesh, const FeatureImage& picture, const RefinePar
         report.flips += refiner.flip_edges();
         report.moves += refiner.move_vertices();
         refiner.fit_colors();
+        if (params.exchange > 0) refiner.exchange(params.exchange);
         // Every step lowers the error, so where nothing is left to gain only rounding moves it.
         const double error = refiner.total_error();
         if (!(error < report.error.back())) break;
         report.error.push_back(error);
         mesh = refiner.result();
+        const double before = report.error[report.error.size() - 2];
+        if (before - error < kLeastGain * before) break;
     }
     return report;
 }

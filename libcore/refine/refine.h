@@ -20,7 +20,8 @@ struct RefineParams {
     double min_quality = 0;  ///< no new triangle of a lesser q = 4 sqrt(3) area / sum of squared edges
     double max_face_area = std::numeric_limits<double>::infinity();  ///< no new triangle larger [px^2]
     double shape_weight = 0;    ///< of sum (1/q - 1) over faces, in mean squared errors of a face; >= 0
-    double relocations = 0.02;  ///< share of the vertices that may be put elsewhere in a round; 0 to 1
+    double relocations = 0.05;  ///< share of the vertices that may be put elsewhere in a round; 0 to 1
+    double exchange = 0;        ///< share of the vertices that a round adds, then removes elsewhere; 0 to 1
     ColorRange range = ColorRange::kLuv;
 };
 
@@ -34,7 +35,7 @@ struct RefineReport {
 /// Lowers the squared error of the mesh drawn with colours interpolated linearly over its faces. Each round
 /// fits all colours by least squares, moves vertices by Gauss-Newton steps, flips edges, and takes vertices
 /// from where their loss costs least to where they gain most; every single step lowers the error, so it never
-/// rises. The number of vertices stays.
+/// rises. The numbers of vertices and of faces stay.
 ///
 /// mesh     any outline, three channels, positions on kPositionStep; corners and outlines other than straight
 ///          sides of the bounding box stay, vertices of such sides slide

@@ -21,6 +21,9 @@ class Refiner {
     std::int64_t move_vertices();
     std::int64_t flip_edges();
     std::int64_t relocate();
+    /// More vertices where they gain most, all steps, then as many fewer where they cost least, and all steps
+    /// again: taken back as a whole unless the error has fallen.
+    bool exchange(double share);
 
   private:
     // What a star or a pair of faces costs: squared error, and the worst and the summed shape.
@@ -54,6 +57,7 @@ class Refiner {
     struct Removal {
         Id v, into;
         double cost;
+        bool border;  // v is one of a side
     };
     struct Insertion {
         Id face;
@@ -61,7 +65,15 @@ class Refiner {
         Vec2f position;
         Vec3f color;
         double gain;
+        bool border;  // on an edge of one face
     };
+    Id across(const Insertion& insertion) const;  // the other face that it divides, or kNone
+    void relocate(const std::vector<Removal>& removals, const std::vector<Insertion>& insertions, bool border,
+                  std::vector<bool>& touched, std::vector<Id>& fresh);
+    std::vector<Removal> removals() const;
+    std::vector<Insertion> insertions() const;
+    std::int64_t insert_best(std::int64_t most);
+    std::int64_t remove_cheapest(std::int64_t most);
     Removal best_removal(Id v) const;
     Insertion best_insertion(Id f) const;
     void try_insertion(Id f, int edge, const Vec2f& position, Insertion& best) const;

@@ -1,20 +1,14 @@
 // Relocation: vertices go from where their loss costs least to where one more gains most.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "libcore/refine/refiner.h"
 
 namespace imgmesh {
-namespace {
-
-// A relocation moves and flips nothing yet, so what it gains is a lower bound, what it costs an upper one.
-constexpr double kMargin = 1.0;
-
-}  // namespace
-
 // Half-edge collapse of v into the neighbour where the error grows least.
 Refiner::Removal Refiner::best_removal(Id v) const {
-    Removal best{v, kNone, std::numeric_limits<double>::infinity()};
+    Removal best{v, kNone, std::numeric_limits<double>::infinity(), false};
     Star star;
     if (!mesh_.live_vertex(v) || mesh_.fixed[v] == RefineMesh::kFixed || !mesh_.star(v, star)) return best;
     const Cost before = cost_of(star);
@@ -38,7 +32,7 @@ Refiner::Removal Refiner::best_removal(Id v) const {
                 after.error += face_error({u, other(k, 1), other(k, 2)});
         const double cost = after.error - before.error + shape_unit_ * (after.shape - before.shape);
         if (after.error - before.error < best.cost && cost < best.cost)
-            best = {v, u, std::max(cost, after.error - before.error)};
+            best = {v, u, std::max(cost, after.error - before.error), !star.closed};
     }
     return best;
 }
@@ -95,11 +89,11 @@ void Refiner::try_insertion(Id f, int edge, const Vec2f& position, Insertion& be
     after.error += 2 * change.dot(we) + (ww - 1e-3) * change.squaredNorm();
     const double gain =
         before.error - after.error + std::min(0.0, shape_unit_ * (before.shape - after.shape));
-    if (gain > best.gain) best = {f, edge, position, chosen, gain};
+    if (gain > best.gain) best = {f, edge, position, chosen, gain, edge >= 0 && count == 2};
 }
 
 Refiner::Insertion Refiner::best_insertion(Id f) const {
-    Insertion best{f, -1, {}, {}, 0};
+    Insertion best{f, -1, {}, {}, 0, false};
     if (!mesh_.live_face(f)) return best;
     const auto [a, b, c] = mesh_.faces[f];
     const Vec2f center = (mesh_.position[a] + mesh_.position[b] + mesh_.position[c]) / 3;
@@ -142,39 +136,124 @@ Id Refiner::insert(const Insertion& insertion) {
     return v;
 }
 
-std::int64_t Refiner::relocate() {
-    std::vector<Removal> removals;
-    std::vector<Insertion> insertions;
+Id Refiner::across(const Insertion& insertion) const {
+    return insertion.edge < 0 ? kNone
+                              : mesh_.across[insertion.face][static_cast<std::size_t>(insertion.edge)];
+}
+
+std::vector<Refiner::Removal> Refiner::removals() const {
+    std::vector<Removal> all;
     for (Id v = 0; v < mesh_.position.size(); ++v)
-        if (const Removal removal = best_removal(v); removal.into != kNone) removals.push_back(removal);
-    for (Id f = 0; f < mesh_.faces.size(); ++f)
-        if (const Insertion insertion = best_insertion(f); insertion.gain > 0)
-            insertions.push_back(insertion);
-    std::sort(removals.begin(), removals.end(), [](const Removal& a, const Removal& b) {
+        if (const Removal removal = best_removal(v); removal.into != kNone) all.push_back(removal);
+    std::sort(all.begin(), all.end(), [](const Removal& a, const Removal& b) {
         return a.cost != b.cost ? a.cost < b.cost : a.v < b.v;
     });
-    std::sort(insertions.begin(), insertions.end(), [](const Insertion& a, const Insertion& b) {
+    return all;
+}
+
+std::vector<Refiner::Insertion> Refiner::insertions() const {
+    std::vector<Insertion> all;
+    for (Id f = 0; f < mesh_.faces.size(); ++f)
+        if (const Insertion insertion = best_insertion(f); insertion.gain > 0) all.push_back(insertion);
+    std::sort(all.begin(), all.end(), [](const Insertion& a, const Insertion& b) {
         return a.gain != b.gain ? a.gain > b.gain : a.face < b.face;
     });
-    // What is known of a face or a vertex holds only until something near it changes.
+    return all;
+}
+
+// As many as `most` of the best inside the mesh, none next to another. What is known of a face or a vertex
+// holds only until something near it changes.
+std::int64_t Refiner::insert_best(std::int64_t most) {
     std::vector<bool> touched(mesh_.faces.size(), false);
-    const auto most =
-        static_cast<std::int64_t>(std::ceil(params_.relocations * static_cast<double>(mesh_.vertex_count())));
+    std::int64_t done = 0;
+    for (const Insertion& insertion : insertions()) {
+        if (done == most) break;
+        const Id g = across(insertion);
+        if (insertion.border || touched[insertion.face] || (g != kNone && touched[g])) continue;
+        touched[insertion.face] = true;
+        if (g != kNone) touched[g] = true;
+        move_vertex(insert(insertion));
+        touched.resize(mesh_.faces.size(), true);
+        ++done;
+    }
+    return done;
+}
+
+std::int64_t Refiner::remove_cheapest(std::int64_t most) {
+    std::vector<bool> touched(mesh_.faces.size(), false);
     std::int64_t done = 0;
     Star star;
-    std::size_t next_removal = 0;
+    for (const Removal& removal : removals()) {
+        if (done == most) break;
+        if (removal.border) continue;
+        mesh_.star(removal.v, star);
+        bool free = true;
+        for (std::size_t k = 0; k < static_cast<std::size_t>(star.size); ++k)
+            free = free && !touched[star.face[k]];
+        if (!free) continue;
+        for (std::size_t k = 0; k < static_cast<std::size_t>(star.size); ++k) touched[star.face[k]] = true;
+        remove(removal);
+        ++done;
+    }
+    return done;
+}
+
+bool Refiner::exchange(double share) {
+    const RefineMesh mesh = mesh_;
+    const std::vector<double> error = error_;
+    const double before = total_error();
+    const auto settle = [&] {
+        flip_edges();
+        move_vertices();
+        fit_colors();
+    };
+    const std::int64_t extra =
+        insert_best(static_cast<std::int64_t>(std::ceil(share * static_cast<double>(mesh_.vertex_count()))));
+    settle();
+    settle();
+    std::int64_t left = extra;
+    // In parts, as each removal changes what the next ones cost.
+    while (left > 0) {
+        const std::int64_t done = remove_cheapest(std::max<std::int64_t>(1, (left + 1) / 2));
+        if (done == 0) break;
+        left -= done;
+        flip_edges();
+    }
+    settle();
+    if (left == 0 && total_error() < before) return true;
+    mesh_ = mesh;
+    error_ = error;
+    return false;
+}
+
+std::int64_t Refiner::relocate() {
+    const std::vector<Removal> removals = this->removals();
+    const std::vector<Insertion> insertions = this->insertions();
+    // What is known of a face or a vertex holds only until something near it changes.
+    std::vector<bool> touched(mesh_.faces.size(), false);
     std::vector<Id> fresh;
+    // Inner vertices are exchanged for inner ones: the number of faces stays.
+    for (const bool border : {false, true}) relocate(removals, insertions, border, touched, fresh);
+    for (const Id v : fresh) move_vertex(v);
+    return static_cast<std::int64_t>(fresh.size());
+}
+
+void Refiner::relocate(const std::vector<Removal>& removals, const std::vector<Insertion>& insertions,
+                       bool border, std::vector<bool>& touched, std::vector<Id>& fresh) {
+    const auto most =
+        static_cast<std::size_t>(std::ceil(params_.relocations * static_cast<double>(mesh_.vertex_count())));
+    Star star;
+    std::size_t next_removal = 0;
     for (const Insertion& insertion : insertions) {
-        if (done >= most) break;
-        const Id g = insertion.edge < 0
-                         ? kNone
-                         : mesh_.across[insertion.face][static_cast<std::size_t>(insertion.edge)];
-        if (touched[insertion.face] || (g != kNone && touched[g])) continue;
+        if (fresh.size() >= most) return;
+        const Id g = across(insertion);
+        if (insertion.border != border || touched[insertion.face] || (g != kNone && touched[g])) continue;
         // The cheapest removal whose star neither was touched nor holds the insertion.
         bool found = false;
         while (next_removal < removals.size() && !found) {
             const Removal& removal = removals[next_removal++];
-            if (!(insertion.gain > kMargin * removal.cost)) return done;
+            if (!(insertion.gain > removal.cost)) return;
+            if (removal.border != border) continue;
             mesh_.star(removal.v, star);
             found = true;
             for (std::size_t k = 0; k < static_cast<std::size_t>(star.size); ++k)
@@ -188,12 +267,8 @@ std::int64_t Refiner::relocate() {
             remove(removal);
             fresh.push_back(insert(insertion));
             touched.resize(mesh_.faces.size(), true);
-            ++done;
         }
-        if (next_removal == removals.size()) break;
     }
-    for (const Id v : fresh) move_vertex(v);
-    return done;
 }
 
 }  // namespace imgmesh

@@ -15,7 +15,7 @@ class Refine(CliCase):
         return image
 
     def test_rounds_lower_the_error(self):
-        plain, refined = self.built("--refine", "0"), self.built("--refine", "4")
+        plain, refined = self.built("--refine", "0"), self.built("--refine", "4", "--shape-weight", "0")
         self.assertEqual(plain["vertices"], refined["vertices"])
         self.assertLess(refined["gouraud_rms"], 0.97 * plain["gouraud_rms"])
         self.assertEqual(self.report("imgmesh-info", "p.glb")["build"]["refine"], 4)
@@ -43,6 +43,34 @@ class Refine(CliCase):
         self.built("--refine", "4", "--max-cluster", "60", "--min-quality", "0.4")
         quality = self.report("imgmesh-compare", "p.glb")
         self.assertGreaterEqual(quality["inputs"][0]["mesh"]["shape"]["min"], 0.4)
+
+    def test_presets(self):
+        errors, shapes = {}, {}
+        for preset in ("fast", "default", "best", "fem"):
+            errors[preset] = self.built("--preset", preset)["gouraud_rms"]
+            mesh = self.report("imgmesh-compare", "p.glb")["inputs"][0]["mesh"]["shape"]
+            shapes[preset] = (mesh["min"], mesh["mean"])
+        self.assertEqual(self.built()["gouraud_rms"], errors["default"])
+        self.assertLess(errors["best"], errors["default"])
+        self.assertLess(errors["default"], errors["fast"])
+        self.assertGreaterEqual(shapes["fem"][0], 0.3)
+        self.assertGreater(shapes["fem"][1], shapes["best"][1] + 0.05)
+
+    def test_other_options_count_more_than_a_preset_wherever_they_stand(self):
+        for args in (["--preset", "best", "--refine", "1"], ["--refine", "1", "--preset", "best"]):
+            self.built(*args)
+            build = self.report("imgmesh-info", "p.glb")["build"]
+            self.assertEqual((build["refine"], build["quadrics"]), (1, "rebuilt"))
+
+    def test_map_smoothness(self):
+        def built(*args):
+            self.built("--refine", "0", *args)
+            return (self.folder / "p.glb").read_bytes()
+
+        self.assertEqual(built("--map-smoothness", "4"), built("--projection-color-weight", "0.25"))
+        self.assertNotEqual(built("--map-smoothness", "4"), built())
+        self.assert_error("imgmesh-build", ["noise.png", "-o", "q.glb", "--map-smoothness", "4",
+                                            "--projection-color-weight", "0.25"], 2, "--map-smoothness")
 
     def test_any_number_of_threads(self):
         picture = self.built("--refine", "2", "--threads", "1")

@@ -51,6 +51,9 @@ class Usage(CliCase):
             "--smoothing": ["-1", "65", "1.5"],
             "--projection-color-weight": ["-1e-9"],
             "--refine": ["-1", "1001", "1.5", "all"],
+            "--shape-weight": ["-1", "nan"],
+            "--exchange": ["1.5", "-0.1"],
+            "--map-smoothness": ["0", "-1", "1e13", "inf"],
             "--threads": ["0", "1025", "all"],
         }
         for option, values in wrong.items():
@@ -65,6 +68,7 @@ class Usage(CliCase):
     def test_names_are_those_listed(self):
         for option, value, listed in (("--bary", "double", "half, float"),
                                       ("--objective", "lab", "luv, rgb"),
+                                      ("--preset", "good", "fast, default, best, fem"),
                                       ("--draco", "zip", "edgebreaker, sequential, none"),
                                       ("--metric", "qem", "flattened, hoppe, garland"),
                                       ("--solver", "qr", "svd, lu, closed"),

@@ -52,14 +52,16 @@ TEST_CASE("refine: the error never rises, and the mesh stays sound") {
             INFO(name_of(kind) << " " << w << " x " << h);
             const FeatureImage feature = sample_feature(kind, w, h);
             BaseMesh mesh = collapsed(feature, std::max(4, w * h / 30));
-            const std::size_t vertices = mesh.vertex_count();
+            const std::size_t vertices = mesh.vertex_count(), faces = mesh.faces.size();
             RefineParams params;
             params.rounds = 5;
             params.relocations = 0.1;
+            params.exchange = 0.2;
             const RefineReport report = refine(mesh, feature, params);
             for (std::size_t k = 1; k < report.error.size(); ++k)
                 CHECK(report.error[k] < report.error[k - 1]);
             check_sound(mesh, vertices, w, h);
+            CHECK(mesh.faces.size() == faces);
             CHECK(report.error.back() ==
                   doctest::Approx(drawn_error(mesh, feature)).epsilon(1e-4).scale(double(w * h)));
         }
