@@ -122,7 +122,7 @@ BuildResult build_mesh_image(const Image& image, const BuildParams& asked, const
     Stopwatch watch;
     // What lies outside of the colours that a container holds could only mislead the fit: L*u*v* of negative
     // light has no bound.
-    const FeatureSpace space = feature_space(image, params.channels, mask);
+    const FeatureSpace space = feature_space(image, asked.channels, mask);
     const bool refinable =
         space.color && space.features() == 3 && space.color_weight == 1 && space.gamut == Gamut::kDisplay;
     BuildParams params = asked;
