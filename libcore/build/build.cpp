@@ -76,9 +76,9 @@ std::vector<Level> build_levels(const FeatureImage& feature, const FeatureSpace&
     fit.color_weight = params.projection_color_weight;
     fit.bary = params.bary;
     fit.space = space;
-    fit.keep_colors = params.objective == Objective::kRgb;
+    fit.keep_colors = params.quadric_colors || params.objective == Objective::kRgb;
     RefineParams refinement;
-    refinement.rounds = static_cast<int>(params.refine.value_or(kUsualRefine));
+    refinement.rounds = static_cast<int>(refine_rounds(params));
     refinement.shape_weight = params.shape_weight;
     refinement.exchange = params.exchange;
     refinement.min_quality = params.min_quality;
@@ -126,7 +126,7 @@ BuildResult build_mesh_image(const Image& image, const BuildParams& asked, const
     const bool refinable =
         space.color && space.features() == 3 && space.color_weight == 1 && space.gamut == Gamut::kDisplay;
     BuildParams params = asked;
-    if (!params.refine) params.refine = refinable ? kUsualRefine : 0;
+    if (!params.refine) params.refine = refinable ? refine_rounds(asked) : 0;
     if ((*params.refine > 0 || params.objective == Objective::kRgb) && !refinable)
         throw Error(ErrorCode::kUnsupported, "refinement is for colour alone, without light above 1");
     const FeatureImage feature = extract_features(image, space, mask);
