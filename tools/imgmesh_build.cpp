@@ -37,6 +37,10 @@ struct Options {
     ImageLimits limits;
 };
 
+Choices<MapKind> map_choices() {
+    return {{"relaxed", MapKind::kRelaxed}, {"tracked", MapKind::kTracked}, {"trivial", MapKind::kTrivial}};
+}
+
 struct Job {
     std::string input;
     std::string output;
@@ -126,18 +130,26 @@ void add_options(CLI::App& app, Options& o) {
         app, "--priority", o.params.total_priority, {{"increment", false}, {"total", true}},
         "Edges go by the error that a collapse adds, or by its total (default increment "
         "for flattened, else total)");
+    add_choice(
+        app, "--map", o.params.map, map_choices(),
+        "How pixels find their places: fitted without a fold, carried through every collapse as in the "
+        "paper, or none moved (default relaxed)");
+    BuildParams tracked;
+    tracked.map = MapKind::kTracked;
     CLI::Option* const projection =
         add_number(app, "--projection-color-weight", o.params.projection_color_weight, {0},
                    cat("Weight of colour in the pixel map, 0 for the trivial map (default ",
-                       format_number(params.projection_color_weight), ")"));
+                       format_number(map_color_weight(params)), ", tracked ",
+                       format_number(map_color_weight(tracked)), ")"));
     add_value(
         app, "--map-smoothness", "X",
         [&o](const std::string& text) {
             o.params.projection_color_weight = 1 / parse_number("--map-smoothness", text, {1e-9, 1e12});
         },
         cat("Smoothness of the pixel map against colour: 1 / projection color weight (default ",
-            format_number(1 / params.projection_color_weight), ")"))
+            format_number(1 / map_color_weight(params)), ")"))
         ->excludes(projection);
+    app.add_flag("--visits", o.params.visits, "Store how often the collapse touched each pixel");
     add_choice<bool, bool>(
         app, "--colors", o.params.quadric_colors, {{"fitted", false}, {"quadric", true}},
         "Vertex colours: of least squares, or of the quadrics, as in the paper (default fitted)");

@@ -31,11 +31,8 @@ struct Options {
 };
 
 Choices<DrawMode> mode_choices() {
-    return {{"map", DrawMode::kMap},
-            {"gouraud", DrawMode::kGouraud},
-            {"wire", DrawMode::kWire},
-            {"patches", DrawMode::kPatches},
-            {"flat", DrawMode::kFlat}};
+    return {{"map", DrawMode::kMap},         {"gouraud", DrawMode::kGouraud}, {"wire", DrawMode::kWire},
+            {"patches", DrawMode::kPatches}, {"flat", DrawMode::kFlat},       {"visits", DrawMode::kVisits}};
 }
 
 Choices<SampleType> depth_choices() {
@@ -58,7 +55,8 @@ void add_options(CLI::App& app, Options& o) {
 
 // Throws Error(kUsage) for what can be seen to be wrong before the container is read.
 void check_options(const Options& o, bool svg) {
-    const bool plane = o.draw.mode == DrawMode::kMap || o.draw.mode == DrawMode::kPatches;
+    const bool plane = o.draw.mode == DrawMode::kMap || o.draw.mode == DrawMode::kPatches ||
+                       o.draw.mode == DrawMode::kVisits;
     const std::string mode = name_of(mode_choices(), o.draw.mode);
     if (plane && o.draw.scale != 1)
         throw Error(ErrorCode::kUsage, cat("--scale ", o.draw.scale, ": mode ", mode,
@@ -110,6 +108,9 @@ Report run(const Options& o, Context& context) {
     if (o.level >= static_cast<int>(mesh_image.levels.size()))
         throw Error(ErrorCode::kUsage, cat("--level ", o.level, ": ", o.input, " has levels 0 to ",
                                            mesh_image.levels.size() - 1));
+    if (o.draw.mode == DrawMode::kVisits && mesh_image.visits.empty())
+        throw Error(ErrorCode::kUnsupported,
+                    cat(o.input, ": there is no visit map; imgmesh-build --visits stores one"));
     const bool all_channels = writes_channels(o, source);
     int width = source.width, height = source.height;
     context.progress(0.4, "draw");

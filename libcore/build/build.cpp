@@ -8,6 +8,7 @@
 #include "libcore/base/stopwatch.h"
 #include "libcore/build/params.h"
 #include "libcore/build/refine_level.h"
+#include "libcore/build/tracking.h"
 #include "libcore/collapse/collapse_edges.h"
 #include "libcore/image/color.h"
 #include "libcore/mesh/grid_mesh.h"
@@ -64,16 +65,17 @@ Mask checked(Mask mask, const Image& image) {
 }
 
 // Collapse and maps with the collapse's limits as they stand.
-std::vector<Level> build_levels(const FeatureImage& feature, const FeatureSpace& space, const Mask& mask,
-                                const BuildParams& params, const CollapseParams& collapse,
-                                std::span<const CollapseTarget> targets, BuildReport& report,
-                                const Progress& progress) {
+void build_levels(const FeatureImage& feature, const FeatureSpace& space, const Mask& mask,
+                  const BuildParams& params, const CollapseParams& collapse,
+                  std::span<const CollapseTarget> targets, BuildResult& result, const Progress& progress) {
     Stopwatch watch;
+    const GridMesh grid = grid_mesh(feature, mask);
+    Tracking tracking(grid, feature.width, feature.height, params);
     std::vector<CollapseResult> collapsed =
-        collapse_edges(grid_mesh(feature, mask), collapse, targets, part_of(progress, 0, 0.7));
-    report.seconds.collapse += watch.lap();
+        collapse_edges(grid, collapse, targets, part_of(progress, 0, 0.7), tracking.hooks());
+    result.report.seconds.collapse += watch.lap();
     FitParams fit;
-    fit.color_weight = params.projection_color_weight;
+    fit.color_weight = map_color_weight(params);
     fit.bary = params.bary;
     fit.space = space;
     fit.keep_colors = params.quadric_colors || params.objective == Objective::kRgb;
@@ -83,9 +85,13 @@ std::vector<Level> build_levels(const FeatureImage& feature, const FeatureSpace&
     refinement.exchange = params.exchange;
     refinement.min_quality = params.min_quality;
     refinement.max_face_area = collapse.max_face_area;
+    BuildReport& report = result.report;
     report.collapses = collapsed.back().collapses;
+    report.retracted = tracking.retracted();
     report.levels.clear();
-    std::vector<Level> levels;
+    result.mesh_image.visits = tracking.take_visits();
+    std::vector<Level>& levels = result.mesh_image.levels;
+    levels.clear();
     for (std::size_t k = 0; k < collapsed.size(); ++k) {
         Level level{std::move(collapsed[k].mesh), {}, collapsed[k].error * params.color_weight};
         const double share = 0.3 / static_cast<double>(collapsed.size()),
@@ -95,7 +101,9 @@ std::vector<Level> build_levels(const FeatureImage& feature, const FeatureSpace&
             refine_level(level.mesh, feature, mask, params.objective, refinement,
                          part_of(progress, begin, middle));
         report.seconds.refine += watch.lap();
-        level.map = fit_map(level.mesh, feature, fit, part_of(progress, middle, begin + share), mask);
+        level.map = tracking.tracked()
+                        ? fit_given_map(level.mesh, feature, tracking.take_map(k), fit, mask)
+                        : fit_map(level.mesh, feature, fit, part_of(progress, middle, begin + share), mask);
         const PixelMap trivial = trivial_map(level.mesh, feature.width, feature.height, mask);
         report.levels.push_back(
             {map_rms(level.mesh, level.map, feature), map_rms(level.mesh, trivial, feature), {}});
@@ -106,7 +114,6 @@ std::vector<Level> build_levels(const FeatureImage& feature, const FeatureSpace&
         levels.push_back(std::move(level));
         report.seconds.map += watch.lap();
     }
-    return levels;
 }
 
 }  // namespace
@@ -137,10 +144,10 @@ BuildResult build_mesh_image(const Image& image, const BuildParams& asked, const
     const auto pixels = static_cast<double>(result.report.pixels);
     const std::vector<CollapseTarget> targets = collapse_targets(params, pixels);
     CollapseParams collapse = collapse_params(params, targets.front(), pixels);
-    std::vector<Level>& levels = result.mesh_image.levels;
+    const std::vector<Level>& levels = result.mesh_image.levels;
     if (params.max_cluster) collapse.max_face_area = static_cast<float>(*params.max_cluster);
     for (;;) {
-        levels = build_levels(feature, space, mask, params, collapse, targets, result.report, progress);
+        build_levels(feature, space, mask, params, collapse, targets, result, progress);
         if (!params.max_cluster) break;
         // The collapse bounds a face's area; the map decides how many pixels that becomes.
         std::int64_t largest = 0;

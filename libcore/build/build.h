@@ -35,6 +35,13 @@ struct PyramidParams {
         errors;  ///< instead: quadric error of each level, rising; then StopParams do not count
 };
 
+/// How pixels find their places on the base mesh.
+enum class MapKind {
+    kRelaxed,  ///< moved to where the mesh has their colours, without a fold (param/relax.h)
+    kTracked,  ///< carried through every collapse, as the paper has it (param/track.h); it may fold
+    kTrivial   ///< each at its own place
+};
+
 /// Which error refinement lowers, of the mesh drawn alone.
 enum class Objective {
     kLuv,  ///< L*u*v*; colours are then fitted to the pixel map and to the drawing
@@ -43,6 +50,7 @@ enum class Objective {
 
 inline constexpr int kMaxRefine = 1000;
 inline constexpr int kUsualRefine = 2;
+inline constexpr double kUsualMapColorWeight = 1.0 / 20;  ///< of the relaxed map
 
 struct BuildParams {
     std::vector<ChannelChoice> channels;  ///< the feature space; none: the picture's colour
@@ -59,11 +67,17 @@ struct BuildParams {
     /// passes of [1 2 1] / 4 before gradients are taken; none: by density for the flattened metric, else 0
     std::optional<int> smoothing;
     bool quadric_colors = false;  ///< vertex colours are those of the quadrics, as in the paper, not fitted
-    double projection_color_weight = 1.0 / 20;  ///< of colour against smoothness in the map; 0: trivial map
-    std::optional<WeightPrecision> bary;        ///< none: half where the map stays a bijection, else float
-    std::optional<std::int64_t> max_cluster;    ///< no face with more pixels than this; >= 3
+    std::optional<MapKind> map;   ///< none: relaxed, or trivial where projection_color_weight is 0
+    /// relaxed: of colour against smoothness; tracked: of squared L*u*v* against squared pixels in the
+    /// flattened rings. 0 is the trivial map and excludes the two others, which need more; none: the map's
+    /// default (map_color_weight).
+    std::optional<double> projection_color_weight;
+    bool visits = false;  ///< count how often the collapse down to the finest level touches each pixel
+    std::optional<WeightPrecision> bary;      ///< none: half where the map stays a bijection, else float
+    std::optional<std::int64_t> max_cluster;  ///< no face with more pixels than this; >= 3
     /// Rounds of refinement (refine/refine.h) of each level; 0 to kMaxRefine. None: kUsualRefine where the
-    /// features are a colour and the metric the flattened one with fitted colours, else 0.
+    /// features are a colour and the metric the flattened one with fitted colours, else 0; 0 for a
+    /// tracked map, which takes none.
     std::optional<std::int64_t> refine;
     double shape_weight = 0.4;  ///< of the triangles' shape in refinement (RefineParams::shape_weight); >= 0
     double exchange = 0;        ///< share of vertices that a round adds and takes away elsewhere; 0 to 1
@@ -89,8 +103,13 @@ struct BuildReport {
     BuildSeconds seconds;
     std::int64_t pixels = 0;  ///< meshed: those inside the mask, or all
     std::int64_t collapses = 0;
+    std::int64_t retracted = 0;  ///< collapses that the tracked map has forbidden
     std::vector<LevelReport> levels;
 };
+
+/// What BuildParams::map and projection_color_weight come to.
+MapKind map_kind(const BuildParams& params);
+double map_color_weight(const BuildParams& params);
 
 struct BuildResult {
     MeshImage mesh_image;  ///< without generator; `parameters` lists every parameter that shaped the result

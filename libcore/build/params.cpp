@@ -4,6 +4,7 @@
 #include <sstream>
 
 #include "libcore/base/error.h"
+#include "libcore/param/track.h"
 
 namespace imgmesh {
 namespace {
@@ -55,14 +56,22 @@ void check_params(const BuildParams& p) {
     const double lambda = p.geometry_weight / p.color_weight;
     require(lambda >= 1e-9 && lambda <= 1e9,
             cat("geometry weight / color weight is ", lambda, ", expected 1e-9 to 1e9"));
+    const double projection = p.projection_color_weight.value_or(1);
+    require(std::isfinite(projection) && projection >= 0,
+            cat("projection color weight is ", projection, ", expected a finite number, 0 or more"));
+    require(projection > 0 || p.map.value_or(MapKind::kTrivial) == MapKind::kTrivial,
+            "projection color weight 0 is the trivial map, not a tracked or relaxed one");
+    require(!p.projection_color_weight || projection == 0 ||
+                p.map.value_or(MapKind::kRelaxed) != MapKind::kTrivial,
+            cat("the trivial map has projection color weight 0, not ", projection));
+    require(
+        map_kind(p) != MapKind::kTracked || p.refine.value_or(0) == 0,
+        cat("a tracked map follows the collapse alone: refine is ", p.refine.value_or(0), ", expected 0"));
     require(!p.quadric_colors || (p.refine.value_or(0) == 0 && p.objective == Objective::kLuv),
             "colors are the quadrics', but refinement and the objective rgb fit their own: expected refine 0 "
             "and objective luv");
     require(p.smoothing.value_or(0) >= 0 && p.smoothing.value_or(0) <= kMaxSmoothing,
             cat("smoothing is ", p.smoothing.value_or(0), ", expected 0 to ", kMaxSmoothing));
-    require(std::isfinite(p.projection_color_weight) && p.projection_color_weight >= 0,
-            cat("projection color weight is ", p.projection_color_weight,
-                ", expected a finite number, 0 or more"));
     require(p.levels.count >= 1 && p.levels.count <= kMaxLevels,
             cat("levels is ", p.levels.count, ", expected 1 to ", kMaxLevels));
     require(p.levels.faces.size() <= kMaxLevels && p.levels.errors.size() <= kMaxLevels,
@@ -94,6 +103,22 @@ void check_params(const BuildParams& p) {
             cat("min quality is ", p.min_quality, ", expected 0 to 0.8"));
 }
 
+MapKind map_kind(const BuildParams& p) {
+    return p.map.value_or(p.projection_color_weight == 0.0 ? MapKind::kTrivial : MapKind::kRelaxed);
+}
+
+double map_color_weight(const BuildParams& p) {
+    switch (map_kind(p)) {
+        case MapKind::kTrivial:
+            return 0;
+        case MapKind::kTracked:
+            return p.projection_color_weight.value_or(TrackParams{}.color_weight);
+        case MapKind::kRelaxed:
+            break;
+    }
+    return p.projection_color_weight.value_or(kUsualMapColorWeight);
+}
+
 std::vector<CollapseTarget> collapse_targets(const BuildParams& params, double pixels) {
     std::vector<CollapseTarget> targets;
     for (const std::int64_t faces : params.levels.faces) targets.push_back({.faces = faces});
@@ -120,6 +145,7 @@ CollapseParams collapse_params(const BuildParams& params, const CollapseTarget& 
     out.solver = params.solver;
     out.geometry_weight = static_cast<float>(params.geometry_weight / params.color_weight);
     out.rebuild_quadrics = params.rebuild_quadrics;
+    out.tiles = map_kind(params) != MapKind::kTracked && !params.visits;
     // Summing up what merges add and smoothing are not part of what others published.
     const bool published = params.metric != Metric::kFlattened;
     out.total_priority = params.total_priority.value_or(published);
@@ -132,7 +158,8 @@ CollapseParams collapse_params(const BuildParams& params, const CollapseTarget& 
 }
 
 std::int64_t refine_rounds(const BuildParams& params) {
-    const bool plain = params.metric != Metric::kFlattened || params.quadric_colors;
+    const bool plain =
+        params.metric != Metric::kFlattened || params.quadric_colors || map_kind(params) == MapKind::kTracked;
     return params.refine.value_or(plain ? 0 : kUsualRefine);
 }
 
@@ -153,7 +180,10 @@ std::vector<BuildParameter> listed_params(const BuildParams& p, const CollapsePa
     out.emplace_back("color-weight", p.color_weight);
     out.emplace_back("quadrics", std::string(p.rebuild_quadrics ? "rebuilt" : "accumulated"));
     out.emplace_back("priority", std::string(collapse.total_priority ? "total" : "increment"));
-    out.emplace_back("projection-color-weight", p.projection_color_weight);
+    constexpr const char* kMaps[] = {"relaxed", "tracked", "trivial"};
+    out.emplace_back("map", std::string(kMaps[static_cast<std::size_t>(map_kind(p))]));
+    out.emplace_back("projection-color-weight", map_color_weight(p));
+    if (p.visits) out.emplace_back("visits", true);
     out.emplace_back("colors", std::string(p.quadric_colors ? "quadric" : "fitted"));
     out.emplace_back("smoothing", std::int64_t{collapse.smoothing});
     out.emplace_back("refine", refine_rounds(p));

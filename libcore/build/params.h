@@ -21,7 +21,7 @@ CollapseParams collapse_params(const BuildParams& params, const CollapseTarget& 
 std::vector<BuildParameter> listed_params(const BuildParams& params, const CollapseParams& collapse);
 
 /// Rounds of refinement: as wanted, or else none for published metrics and for colours of the quadrics, which
-/// are to be compared as they are.
+/// are to be compared as they are, nor for a tracked map, which must end with the collapse.
 std::int64_t refine_rounds(const BuildParams& params);
 
 }  // namespace imgmesh

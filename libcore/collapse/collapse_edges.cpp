@@ -32,12 +32,14 @@ std::vector<float> with_channels(const std::vector<float>& values, int from, int
 
 template <class Q>
 std::vector<CollapseResult> collapse_by(const GridMesh& grid, const CollapseParams& params,
-                                        std::span<const CollapseTarget> targets, const Progress& progress) {
-    Collapser<Q> collapser(grid, params);
+                                        std::span<const CollapseTarget> targets, const Progress& progress,
+                                        const CollapseHooks& hooks) {
+    Collapser<Q> collapser(grid, params, hooks);
     std::vector<CollapseResult> levels;
     for (const CollapseTarget& target : targets) {
         collapser.run(target, progress);
         levels.push_back(collapser.snapshot());
+        if (hooks.reached) hooks.reached(levels.size() - 1, levels.back());
     }
     return levels;
 }
@@ -45,27 +47,28 @@ std::vector<CollapseResult> collapse_by(const GridMesh& grid, const CollapsePara
 // grid.feature has C channels.
 template <int C>
 std::vector<CollapseResult> collapse(const GridMesh& grid, const CollapseParams& params,
-                                     std::span<const CollapseTarget> targets, const Progress& progress) {
+                                     std::span<const CollapseTarget> targets, const Progress& progress,
+                                     const CollapseHooks& hooks) {
     if (params.metric == Metric::kFlattened && params.solver == Solver::kClosed)
-        return collapse_by<Quadric<C>>(grid, params, targets, progress);
-    return collapse_by<DenseQuadric<C>>(grid, params, targets, progress);
+        return collapse_by<Quadric<C>>(grid, params, targets, progress, hooks);
+    return collapse_by<DenseQuadric<C>>(grid, params, targets, progress, hooks);
 }
 
 }  // namespace
 
 std::vector<CollapseResult> collapse_edges(const GridMesh& grid, const CollapseParams& params,
-                                           std::span<const CollapseTarget> targets,
-                                           const Progress& progress) {
+                                           std::span<const CollapseTarget> targets, const Progress& progress,
+                                           const CollapseHooks& hooks) {
     const int channels = grid.feature.channels;
     if (channels < 1 || channels > kMaxFeatures)
         throw Error(ErrorCode::kUsage, cat(channels, " features, expected 1 to ", kMaxFeatures));
     return with_padded_features(channels, [&](auto padded) {
         constexpr int kPadded = padded();
-        if (channels == kPadded) return collapse<kPadded>(grid, params, targets, progress);
+        if (channels == kPadded) return collapse<kPadded>(grid, params, targets, progress, hooks);
         GridMesh wide = grid;
         wide.feature.channels = kPadded;
         wide.feature.data = with_channels(grid.feature.data, channels, kPadded);
-        std::vector<CollapseResult> levels = collapse<kPadded>(wide, params, targets, progress);
+        std::vector<CollapseResult> levels = collapse<kPadded>(wide, params, targets, progress, hooks);
         for (CollapseResult& level : levels) {
             level.mesh.channels = channels;
             level.mesh.feature = with_channels(level.mesh.feature, kPadded, channels);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <span>
 #include <vector>
@@ -32,6 +33,7 @@ struct CollapseParams {
     /// pixels on
     bool rebuild_quadrics = false;
     bool total_priority = false;  ///< edges go by the total error (the paper), not by what a merge adds to it
+    bool tiles = true;  ///< while the goal is far, edges go tile by tile: faster, but seams show in the order
     /// no new triangle larger than this [px^2]
     float max_face_area = std::numeric_limits<float>::infinity();
     /// nor of a lesser q = 4 sqrt(3) area / sum of squared edges (1 is best); 0 leaves only the guard against
@@ -43,6 +45,24 @@ struct CollapseResult {
     BaseMesh mesh;               ///< vertices in the order of their pixels; positions on kPositionStep
     double error = 0;            ///< largest total quadric error of a merged vertex so far
     std::int64_t collapses = 0;  ///< so far
+};
+
+/// A collapse that is about to happen: `gone` merges into `kept`, which moves. Vertices are numbered as in
+/// the grid mesh.
+struct CollapseStep {
+    Id kept, gone;
+    float x, y;                      ///< of the merged vertex [pixels]
+    std::span<const float> feature;  ///< of the merged vertex; perhaps with zeros behind the grid's channels
+};
+
+/// Who follows the collapse while it runs; both may be empty, and cost nothing then.
+struct CollapseHooks {
+    /// Before each collapse, in order. Returns false to retract it: the edge is tried again only when
+    /// something around it has changed.
+    std::function<bool(const CollapseStep&)> before;
+    /// When a level's target is reached, with its result (features perhaps padded likewise), before the
+    /// collapse goes on to the next.
+    std::function<void(std::size_t level, const CollapseResult&)> reached;
 };
 
 /// Collapses edges until a limit is reached or no edge may go. Every collapse keeps the mesh a triangulation
@@ -57,7 +77,7 @@ struct CollapseResult {
 /// of them, 480 with another metric or solver than the first; O(n). Deterministic.
 std::vector<CollapseResult> collapse_edges(const GridMesh& grid, const CollapseParams& params,
                                            std::span<const CollapseTarget> targets,
-                                           const Progress& progress = {});
+                                           const Progress& progress = {}, const CollapseHooks& hooks = {});
 
 /// The mesh of a single level.
 CollapseResult collapse_edges(const GridMesh& grid, const CollapseParams& params,

@@ -43,8 +43,9 @@ struct Placement {
 template <class Q>
 class Collapser {
   public:
-    Collapser(const GridMesh& grid, const CollapseParams& params)
+    Collapser(const GridMesh& grid, const CollapseParams& params, const CollapseHooks& hooks)
         : params_(params),
+          hooks_(hooks),
           width_(grid.feature.width),
           height_(grid.feature.height),
           rings_(ring_mesh(grid)),
@@ -66,7 +67,7 @@ class Collapser {
             if (params_.rebuild_quadrics && vertices_ <= next_rebuild_) rebuild_quadrics();
             const std::int64_t collapses_before = collapses_;
             postponed_ = kNever;
-            const int side = far_from_done() ? kTile : std::max(width_, height_);
+            const int side = params_.tiles && far_from_done() ? kTile : std::max(width_, height_);
             for (int y = 0; y < height_ && !done(); y += side)
                 for (int x = 0; x < width_ && !done(); x += side) {
                     file_tile(x, y, side);
@@ -244,6 +245,7 @@ class Collapser {
         }
         const float total = sum.at(place.x, place.y);
         if (total > target_.max_error) return;
+        if (hooks_.before && !may_happen(i, j, sum, place)) return;
         error_ = std::max(error_, static_cast<double>(total));
         if (outline_) outline_->merge(rings_, i, j, place.x, place.y);
         apply_merge(rings_, i, j, ring);
@@ -255,6 +257,14 @@ class Collapser {
         ++collapses_;
         for (int k = 0; k < rings_[i].valence; ++k) file(i, rings_[i].neighbor[k]);
         file_batch();
+    }
+
+    // What the follower says to a collapse.
+    bool may_happen(Id i, Id j, const Q& sum, const Placement& place) const {
+        std::array<float, Q::kChannels> feature;
+        for (int c = 0; c < Q::kChannels; ++c)
+            feature[static_cast<std::size_t>(c)] = sum.feature(c, place.x, place.y);
+        return hooks_.before({i, j, place.x, place.y, feature});
     }
 
     // Files edge (i, j) if it costs less than the threshold; interior ones wait for file_batch().
@@ -352,6 +362,7 @@ class Collapser {
     static constexpr bool kBatched = kCanonical<Q>;
 
     CollapseParams params_;
+    const CollapseHooks& hooks_;
     int width_, height_;
     RingMesh rings_;
     std::vector<Q> quadrics_;

@@ -1,11 +1,14 @@
 #include "libcore/param/fit_map.h"
 
+#include <algorithm>
+
 #include "libcore/base/error.h"
 #include "libcore/image/color.h"
 #include "libcore/param/fit_colors.h"
 #include "libcore/param/relax.h"
 #include "libcore/param/storable_map.h"
 #include "libcore/param/trivial_map.h"
+#include "libcore/param/weight_grid.h"
 
 namespace imgmesh {
 namespace {
@@ -44,19 +47,44 @@ void round_colors(BaseMesh& mesh, const FeatureSpace& space) {
     }
 }
 
+float longest_edge(const BaseMesh& mesh) {
+    float longest = 0;
+    for (const auto& [a, b] : mesh_edges(mesh))
+        longest = std::max(longest, (mesh.position[a] - mesh.position[b]).norm());
+    return longest;
+}
+
+// Fits the colours to both a map and the drawing without it, and ends on what a container holds.
+class ColorFit {
+  public:
+    ColorFit(BaseMesh& mesh, const FeatureImage& feature, const FitParams& params, const PixelMap& trivial)
+        : mesh_(mesh), feature_(feature), params_(params), trivial_(trivial) {}
+
+    void fit(const PixelMap& map) const {
+        if (params_.keep_colors) return;
+        fit_colors(mesh_, feature_, {{&map, 1 - params_.gouraud_share}, {&trivial_, params_.gouraud_share}},
+                   params_.space);
+    }
+    void round() const {
+        if (params_.space.color) round_colors(mesh_, params_.space);
+    }
+
+  private:
+    BaseMesh& mesh_;
+    const FeatureImage& feature_;
+    const FitParams& params_;
+    const PixelMap& trivial_;
+};
+
 }  // namespace
 
 PixelMap fit_map(BaseMesh& mesh, const FeatureImage& feature, const FitParams& params,
                  const Progress& progress, const Mask& mask) {
     const PixelMap trivial = trivial_map(mesh, feature.width, feature.height, mask);
-    const auto fit = [&](const PixelMap& map) {
-        if (params.keep_colors) return;
-        fit_colors(mesh, feature, {{&map, 1 - params.gouraud_share}, {&trivial, params.gouraud_share}},
-                   params.space);
-    };
+    const ColorFit colors(mesh, feature, params, trivial);
     const std::vector<Face> neighbors = face_neighbors(mesh);
     MovingPixels pixels = resting_pixels(trivial, mask);
-    fit(trivial);
+    colors.fit(trivial);
     // A strip of one pixel has no cell whose fold could be watched; its map stays trivial.
     const int rounds = params.color_weight > 0 && feature.width > 1 && feature.height > 1 ? params.rounds : 0;
     for (int round = 0; round < rounds; ++round) {
@@ -64,11 +92,30 @@ PixelMap fit_map(BaseMesh& mesh, const FeatureImage& feature, const FitParams& p
         const std::vector<FaceField> fields = face_fields(mesh);
         relax(pixels, fields, neighbors, feature, static_cast<float>(1 / params.color_weight), params.sweeps,
               further_fields(mesh, fields));
-        if (round + 1 < rounds) fit(unrounded_map(pixels, fields));
+        if (round + 1 < rounds) colors.fit(unrounded_map(pixels, fields));
     }
     PixelMap map = stored(mesh, pixels, face_fields(mesh), neighbors, params.bary);
-    fit(map);
-    if (params.space.color) round_colors(mesh, params.space);
+    colors.fit(map);
+    colors.round();
+    return map;
+}
+
+PixelMap fit_given_map(BaseMesh& mesh, const FeatureImage& feature, PixelMap map, const FitParams& params,
+                       const Mask& mask) {
+    constexpr float kCoarsest = 0.125f;  // [pixels]
+    const bool fine = longest_edge(mesh) * kHalfWeightStep <= kCoarsest;
+    map.precision = params.bary.value_or(fine ? WeightPrecision::kHalf : WeightPrecision::kFloat);
+    const double steps = weight_steps(map.precision);
+    for (PixelCoord& coord : map.coords)
+        if (coord.face != kNone)
+            coord = on_weight_grid(
+                coord.face, {1.0 - double(coord.u) - double(coord.v), double(coord.u), double(coord.v)},
+                steps);
+    const PixelMap trivial = trivial_map(mesh, feature.width, feature.height, mask);
+    const ColorFit colors(mesh, feature, params, trivial);
+    colors.fit(trivial);
+    colors.fit(map);
+    colors.round();
     return map;
 }
 

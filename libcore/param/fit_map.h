@@ -34,4 +34,9 @@ struct FitParams {
 PixelMap fit_map(BaseMesh& mesh, const FeatureImage& feature, const FitParams& params,
                  const Progress& progress = {}, const Mask& mask = {});
 
+/// The same for a map that is there already, as a tracker made it: its weights are rounded to the grid, its
+/// folds stay. Halves serve unless a face is so large that their step would be an eighth of a pixel.
+PixelMap fit_given_map(BaseMesh& mesh, const FeatureImage& feature, PixelMap map, const FitParams& params,
+                       const Mask& mask = {});
+
 }  // namespace imgmesh

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "libcore/base/parallel.h"
+#include "libcore/param/weight_grid.h"
 
 namespace imgmesh {
 namespace {
@@ -33,7 +34,7 @@ class Storing {
           pixels_(pixels),
           fields_(fields),
           neighbors_(neighbors),
-          steps_(1.0 / (precision == WeightPrecision::kHalf ? kHalfWeightStep : kFloatWeightStep)) {
+          steps_(weight_steps(precision)) {
         map_.width = pixels.width;
         map_.height = pixels.height;
         map_.precision = precision;
@@ -85,21 +86,7 @@ class Storing {
         w[1] = std::clamp((d.x() * ac.y() - d.y() * ac.x()) / det, 0.0, 1.0);
         w[2] = std::clamp((ab.x() * d.y() - ab.y() * d.x()) / det, 0.0, 1.0);
         w[0] = std::max(0.0, 1 - w[1] - w[2]);
-        const double sum = w[0] + w[1] + w[2];
-        std::array<double, 3> whole{}, rest{};
-        double left = steps_;
-        for (std::size_t k = 0; k < 3; ++k) {
-            whole[k] = std::floor(w[k] / sum * steps_);
-            rest[k] = w[k] / sum * steps_ - whole[k];
-            left -= whole[k];
-        }
-        for (; left > 0; --left) {
-            const auto k =
-                static_cast<std::size_t>(std::max_element(rest.begin(), rest.end()) - rest.begin());
-            ++whole[k];
-            rest[k] = -1;
-        }
-        return {face, static_cast<float>(whole[1] / steps_), static_cast<float>(whole[2] / steps_)};
+        return on_weight_grid(face, w, steps_);
     }
 
     std::vector<std::pair<int, int>> bad_cells() const {

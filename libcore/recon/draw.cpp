@@ -12,6 +12,7 @@
 #include "libcore/recon/luv_encoder.h"
 #include "libcore/recon/patch_colors.h"
 #include "libcore/recon/raster.h"
+#include "libcore/recon/visit_lightness.h"
 
 namespace imgmesh {
 namespace {
@@ -176,6 +177,17 @@ Image draw(const MeshImage& mesh_image, int level_index, const DrawParams& param
             return encode_rows(source, map, [&](int y, float* planes) {
                 face_row(colors, map, y, planes);
                 darken_borders(map, y, planes);
+            });
+        }
+        case DrawMode::kVisits: {
+            if (level_index != 0)
+                throw Error(ErrorCode::kUsage,
+                            cat("level is ", level_index, ": visits are those of level 0"));
+            const std::vector<float> lightness = visit_lightness(mesh_image);
+            return encode_rows(source, map, [&](int y, float* planes) {
+                const auto width = static_cast<std::size_t>(map.width);
+                std::fill_n(planes, 3 * width, 0.0f);
+                std::copy_n(lightness.data() + static_cast<std::size_t>(y) * width, width, planes);
             });
         }
         case DrawMode::kFlat:

@@ -13,7 +13,8 @@ enum class DrawMode {
     kGouraud,  ///< the base mesh with colours interpolated linearly in L*u*v* over each face
     kWire,     ///< the edges of the base mesh over the (lightened) Gouraud drawing
     kPatches,  ///< each patch (the pixels of one face) in a colour of its own, neighbours distinct
-    kFlat      ///< each face in one colour: the mean of its corners'
+    kFlat,     ///< each face in one colour: the mean of its corners'
+    kVisits    ///< how often the collapse touched each pixel: the less the brighter (visit_lightness.h)
 };
 
 struct DrawParams {
@@ -23,10 +24,11 @@ struct DrawParams {
 
 /// Draws level `level_index`. The result has the source's sample type and colour space (linear where light
 /// above 1 counts, Gamut::kLight), clamped to [0, 1] unless the space is linear; RGB, and A where the source
-/// has a mask (0 outside the mask for map and patches, outside the mesh for the others). Size is round(scale
-/// * source size), at least 1; the centre of output pixel i is at (i + 0.5) / scale - 0.5 of the source.
-/// Throws Error(kUsage) for a level that is not there or a scale that the mode does not have,
-/// Error(kUnsupported) for a mesh without colour.
+/// has a mask (0 outside the mask for map, patches and visits, outside the mesh for the others). Size is
+/// round(scale * source size), at least 1; the centre of output pixel i is at (i + 0.5) / scale - 0.5 of the
+/// source. Throws Error(kUsage) for a level that is not there or a scale that the mode does not have,
+/// Error(kUnsupported) for a mesh without colour or, drawing visits, a file without them. Visits are those
+/// down to level 0: no other level has any.
 Image draw(const MeshImage& mesh_image, int level_index, const DrawParams& params);
 
 /// The scale, after draw()'s checks of it.

@@ -75,7 +75,7 @@ class Usage(CliCase):
                                       ("--colors", "raw", "fitted, quadric"),
                                       ("--color-space", "CMYK", "sRGB, linear"), ("--alpha", "keep", "cut, ignore")):
             self.assert_error("imgmesh-build", ["in.png", "-o", "out.glb", option, value], 2, option, value, listed)
-        self.assert_error("imgmesh-reconstruct", ["in.glb", "-o", "o.png", "--mode", "visits"], 2, "--mode", "wire")
+        self.assert_error("imgmesh-reconstruct", ["in.glb", "-o", "o.png", "--mode", "depth"], 2, "--mode", "wire")
         self.assert_error("imgmesh-reconstruct", ["in.glb", "-o", "o.png", "--depth", "12"], 2, "--depth", "16")
 
     def test_an_option_is_given_once(self):

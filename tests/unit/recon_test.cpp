@@ -11,6 +11,7 @@
 #include "libcore/recon/draw.h"
 #include "libcore/recon/luv_encoder.h"
 #include "libcore/recon/patch_colors.h"
+#include "libcore/recon/visit_lightness.h"
 #include "tests/support/meshes.h"
 
 using namespace imgmesh;
@@ -269,6 +270,33 @@ TEST_CASE("draw: levels and scales that are not there") {
     CHECK_THROWS_AS(draw_svg(m, 3, DrawMode::kFlat), Error);
     m.levels[0].mesh.channels = 1;
     CHECK_THROWS_AS(draw(m, 0, {}), Error);
+}
+
+// Of 100 pixels with 1, 2, ... 100 visits the two ends are cut off; the rest goes evenly from white to black.
+TEST_CASE("draw: visits, the less the brighter") {
+    MeshImage m = random_mesh_image(10, 10, 2, 2, 9);
+    CHECK_THROWS_AS(draw(m, 0, {DrawMode::kVisits}), Error);
+    for (Id v = 1; v <= 100; ++v) m.visits.push_back(v);
+    const std::vector<float> lightness = visit_lightness(m);
+    CHECK(lightness[0] == 100);
+    CHECK(lightness[1] == 100);
+    CHECK(lightness[2] < 100);
+    CHECK(lightness[49] == Approx(100.0 * 48 / 96));
+    CHECK(lightness[97] == 0);
+    CHECK(lightness[99] == 0);
+    const Image image = draw(m, 0, {DrawMode::kVisits});
+    for (int x = 0; x < 10; ++x)
+        for (int c = 0; c < 3; ++c) {
+            CHECK(image.pixel(x, 4)[c] == Approx(image.pixel(x, 4)[0]).epsilon(1e-3));  // grey
+            if (x > 0) CHECK(image.pixel(x, 4)[c] < image.pixel(x - 1, 4)[c]);
+        }
+    m.levels[0].map.coords[0] = {};  // outside the mask
+    CHECK(visit_lightness(m)[0] == 0);
+    std::fill(m.visits.begin(), m.visits.end(), 7);
+    CHECK(visit_lightness(m)[5] == 100);
+    m.levels.push_back(m.levels[0]);
+    CHECK_THROWS_AS(draw(m, 1, {DrawMode::kVisits}), Error);
+    CHECK_THROWS_AS(draw(m, 0, {DrawMode::kVisits, 2}), Error);
 }
 
 TEST_CASE("draw_svg: two triangles, written out") {
