@@ -211,10 +211,12 @@ TEST_CASE(
     "channels: the weights of all that is chosen, times four, with geometry's times sixteen, change "
     "nothing") {
     const Image image = picture_with_depth();
-    BuildParams params = chosen({{"R"}, {"G"}, {"B"}, {"depth.Z", 16}}), four = params;
+    BuildParams params = chosen({{"R"}, {"G"}, {"B"}, {"depth.Z", 16}});
+    params.projection_color_weight = 1.0 / 30;
+    BuildParams four = params;
     for (ChannelChoice& choice : four.channels) choice.weight *= 4;
     four.geometry_weight *= 16;
-    four.projection_color_weight /= 16;
+    four.projection_color_weight = 1.0 / 30 / 16;
     const MeshImage a = build_mesh_image(image, params).mesh_image,
                     b = build_mesh_image(image, four).mesh_image;
     CHECK(a.levels[0].mesh.faces == b.levels[0].mesh.faces);
