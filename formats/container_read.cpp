@@ -62,6 +62,8 @@ StoredMesh load_mesh(const AssetLevel& level, View buffer, Findings& findings) {
     copy_to(mesh.faces, cut(buffer, level.indices));
     copy_to(mesh.position, cut(buffer, level.positions));
     copy_to(mesh.color, cut(buffer, level.colors));
+    copy_to(mesh.light, cut(buffer, level.light));
+    for (const ByteRange& bytes : level.channels) copy_to(mesh.channels.emplace_back(), cut(buffer, bytes));
     return mesh;
 }
 
@@ -88,9 +90,12 @@ std::vector<LayerPart> load_layers(const Asset& asset, View bytes, Findings& fin
 }
 
 void add_level_facts(const Asset& asset, View buffer, ContainerFacts& facts) {
-    for (const AssetLevel& level : asset.levels)
-        facts.mesh_bytes +=
-            level.draco.length + level.indices.length + level.positions.length + level.colors.length;
+    for (const AssetLevel& level : asset.levels) {
+        for (const ByteRange& bytes :
+             {level.draco, level.indices, level.positions, level.colors, level.light})
+            facts.mesh_bytes += bytes.length;
+        for (const ByteRange& bytes : level.channels) facts.mesh_bytes += bytes.length;
+    }
     if (asset.levels[0].is_draco) facts.draco = draco_mode(cut(buffer, asset.levels[0].draco));
 }
 

@@ -44,13 +44,17 @@ ByteRange append(std::vector<std::uint8_t>& buffer, const std::vector<T>& values
 }
 
 // Stores the mesh of `level` in `buffer` and rewrites `map` for the mesh that a reader will get.
-AssetLevel store_level(const Level& level, DracoMode mode, std::vector<std::uint8_t>& buffer, PixelMap& map) {
-    StoredMesh mesh = stored_from_base(level.mesh);
+AssetLevel store_level(const Level& level, const StoredLayout& layout, DracoMode mode,
+                       std::vector<std::uint8_t>& buffer, PixelMap& map) {
+    StoredMesh mesh = stored_from_base(level.mesh, layout);
     AssetLevel out;
     if (mode == DracoMode::kOff) {
         out.indices = append(buffer, mesh.faces);
         out.positions = append(buffer, mesh.position);
-        out.colors = append(buffer, mesh.color);
+        if (layout.color) out.colors = append(buffer, mesh.color);
+        if (layout.light) out.light = append(buffer, mesh.light);
+        for (const std::vector<float>& channel : mesh.channels)
+            out.channels.push_back(append(buffer, channel));
     } else {
         DracoMesh draco = encode_draco_mesh(mesh, mode);
         out.is_draco = true;
@@ -136,7 +140,8 @@ void write_container(const std::string& path, const MeshImage& mesh_image, const
     std::vector<LayerPart> parts;
     for (const Level& level : mesh_image.levels) {
         parts.push_back({level_name(parts.size()), level.map, {}, {}});
-        asset.levels.push_back(store_level(level, options.draco, buffer, parts.back().map));
+        asset.levels.push_back(
+            store_level(level, layout_of(asset.source), options.draco, buffer, parts.back().map));
         parts.back().topology = asset.levels.back().topology;
     }
     parts.front().visits = mesh_image.visits;

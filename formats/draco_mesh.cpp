@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <bit>
 #include <memory>
+#include <type_traits>
 
 #include "formats/findings.h"
 #include "libcore/base/error.h"
@@ -107,39 +108,54 @@ Header read_header(std::span<const std::uint8_t> bytes) {
     return header;
 }
 
+template <typename T, std::size_t N>
+bool is_attribute(const draco::PointAttribute& a, draco::GeometryAttribute::Type type) {
+    const draco::DataType data = std::is_same_v<T, float> ? draco::DT_FLOAT32 : draco::DT_UINT16;
+    return a.attribute_type() == type && a.data_type() == data && a.num_components() == static_cast<int>(N);
+}
+
+int attribute_count(const DracoAttributeIds& ids) {
+    return 1 + ids.color.has_value() + ids.light.has_value() + static_cast<int>(ids.channels.size());
+}
+
 // A Draco decoder that looks at the attributes' shapes before it takes memory for their values: a few bytes
 // can declare thousands of attributes of 2 kB a vertex.
 template <typename Decoder>
 class GuardedDecoder : public Decoder {
+  public:
+    explicit GuardedDecoder(int attributes) : attributes_(attributes) {}
+
   protected:
     bool DecodeAllAttributes() override {
         const draco::PointCloud& cloud = *this->point_cloud();
-        if (cloud.num_attributes() != 2) refuse_attributes();
-        for (int i = 0; i < 2; ++i) {
+        if (cloud.num_attributes() != attributes_)
+            refuse("draco.attributes",
+                   cat("the Draco mesh has ", cloud.num_attributes(), " attributes, expected ", attributes_));
+        for (int i = 0; i < attributes_; ++i) {
             const draco::PointAttribute& a = *cloud.attribute(i);
-            const bool position = a.attribute_type() == draco::GeometryAttribute::POSITION &&
-                                  a.data_type() == draco::DT_FLOAT32 && a.num_components() == 3;
-            const bool color = a.attribute_type() == draco::GeometryAttribute::COLOR &&
-                               a.data_type() == draco::DT_UINT16 && a.num_components() == 4;
-            if (!position && !color) refuse_attributes();
+            if (!is_attribute<float, 3>(a, draco::GeometryAttribute::POSITION) &&
+                !is_attribute<std::uint16_t, 4>(a, draco::GeometryAttribute::COLOR) &&
+                !is_attribute<float, 3>(a, draco::GeometryAttribute::GENERIC) &&
+                !is_attribute<float, 1>(a, draco::GeometryAttribute::GENERIC))
+                refuse("draco.attributes",
+                       "expected a float POSITION of three and a uint16 COLOR of four components, other "
+                       "attributes floats of one or three");
         }
         return Decoder::DecodeAllAttributes();
     }
 
   private:
-    [[noreturn]] static void refuse_attributes() {
-        refuse("draco.attributes",
-               "expected a float POSITION of three and a uint16 COLOR of four components");
-    }
+    int attributes_;
 };
 
 template <typename Decoder>
-std::unique_ptr<draco::Mesh> decode_with(std::span<const std::uint8_t> bytes, Findings& findings) {
+std::unique_ptr<draco::Mesh> decode_with(std::span<const std::uint8_t> bytes, int attributes,
+                                         Findings& findings) {
     draco::DecoderBuffer buffer;
     buffer.Init(reinterpret_cast<const char*>(bytes.data()), bytes.size());
     auto mesh = std::make_unique<draco::Mesh>();
     const draco::Status status =
-        GuardedDecoder<Decoder>().Decode(draco::DecoderOptions(), &buffer, mesh.get());
+        GuardedDecoder<Decoder>(attributes).Decode(draco::DecoderOptions(), &buffer, mesh.get());
     if (!status.ok())
         refuse("draco.data",
                cat("Draco cannot decode the mesh: ",
@@ -155,7 +171,7 @@ template <typename T, std::size_t N>
 void copy_values(const draco::Mesh& mesh, std::uint32_t unique_id, draco::GeometryAttribute::Type type,
                  std::vector<std::array<T, N>>& out) {
     const draco::PointAttribute* attribute = mesh.GetAttributeByUniqueId(unique_id);
-    if (!attribute || attribute->attribute_type() != type)
+    if (!attribute || !is_attribute<T, N>(*attribute, type))
         refuse("draco.attributes", cat("the Draco mesh has no such attribute with id ", unique_id));
     out.resize(mesh.num_points());
     for (std::uint32_t p = 0; p < mesh.num_points(); ++p) {
@@ -169,12 +185,20 @@ void copy_values(const draco::Mesh& mesh, std::uint32_t unique_id, draco::Geomet
 // A mesh whose header has been looked at.
 StoredMesh decode(std::span<const std::uint8_t> bytes, const DracoAttributeIds& ids, bool edgebreaker,
                   Findings& findings) {
+    const int attributes = attribute_count(ids);
     const std::unique_ptr<draco::Mesh> mesh =
-        edgebreaker ? decode_with<draco::MeshEdgebreakerDecoder>(bytes, findings)
-                    : decode_with<draco::MeshSequentialDecoder>(bytes, findings);
+        edgebreaker ? decode_with<draco::MeshEdgebreakerDecoder>(bytes, attributes, findings)
+                    : decode_with<draco::MeshSequentialDecoder>(bytes, attributes, findings);
     StoredMesh out;
     copy_values(*mesh, ids.position, draco::GeometryAttribute::POSITION, out.position);
-    copy_values(*mesh, ids.color, draco::GeometryAttribute::COLOR, out.color);
+    if (ids.color) copy_values(*mesh, *ids.color, draco::GeometryAttribute::COLOR, out.color);
+    if (ids.light) copy_values(*mesh, *ids.light, draco::GeometryAttribute::GENERIC, out.light);
+    for (const std::uint32_t id : ids.channels) {
+        std::vector<std::array<float, 1>> values;
+        copy_values(*mesh, id, draco::GeometryAttribute::GENERIC, values);
+        std::vector<float>& channel = out.channels.emplace_back();
+        for (const auto& [value] : values) channel.push_back(value);
+    }
     out.faces.resize(mesh->num_faces());
     for (std::uint32_t f = 0; f < mesh->num_faces(); ++f) {
         const draco::Mesh::Face& face = mesh->face(draco::FaceIndex(f));
@@ -191,6 +215,16 @@ StoredMesh decode(std::span<const std::uint8_t> bytes, const DracoAttributeIds& 
 
 }  // namespace
 
+DracoAttributeIds draco_ids(const StoredLayout& layout) {
+    DracoAttributeIds ids;
+    std::uint32_t next = ids.position + 1;
+    ids.color.reset();
+    if (layout.color) ids.color = next++;
+    if (layout.light) ids.light = next++;
+    for (std::size_t c = 0; c < layout.channels; ++c) ids.channels.push_back(next++);
+    return ids;
+}
+
 DracoMesh encode_draco_mesh(const StoredMesh& mesh, DracoMode mode) {
     draco::Mesh out;
     out.set_num_points(static_cast<std::uint32_t>(mesh.position.size()));
@@ -199,10 +233,22 @@ DracoMesh encode_draco_mesh(const StoredMesh& mesh, DracoMode mode) {
         const auto [a, b, c] = mesh.faces[f];
         out.SetFace(draco::FaceIndex(f), {draco::PointIndex(a), draco::PointIndex(b), draco::PointIndex(c)});
     }
-    const DracoAttributeIds ids;
+    const DracoAttributeIds ids = draco_ids(mesh.layout());
     const int position = add_attribute(out, draco::GeometryAttribute::POSITION, draco::DT_FLOAT32, false,
                                        ids.position, mesh.position);
-    add_attribute(out, draco::GeometryAttribute::COLOR, draco::DT_UINT16, true, ids.color, mesh.color);
+    const auto add = [&](draco::DataType type, std::uint32_t id, const auto& values) {
+        const bool color = type == draco::DT_UINT16;
+        add_attribute(out, color ? draco::GeometryAttribute::COLOR : draco::GeometryAttribute::GENERIC, type,
+                      color, id, values);
+    };
+    if (ids.color) add(draco::DT_UINT16, *ids.color, mesh.color);
+    // Floats that no quantisation is asked for are stored as they are.
+    if (ids.light) add(draco::DT_FLOAT32, *ids.light, mesh.light);
+    for (std::size_t c = 0; c < mesh.channels.size(); ++c) {
+        std::vector<std::array<float, 1>> values;
+        for (const float value : mesh.channels[c]) values.push_back({value});
+        add(draco::DT_FLOAT32, ids.channels[c], values);
+    }
 
     draco::ExpertEncoder encoder(out);
     encoder.SetEncodingMethod(mode == DracoMode::kEdgebreaker ? draco::MESH_EDGEBREAKER_ENCODING
@@ -233,7 +279,9 @@ StoredMesh decode_draco_mesh(std::span<const std::uint8_t> bytes, const DracoAtt
         (edgebreaker ? header.vertices > vertices : header.vertices != vertices))
         refuse("mesh.counts", cat("the Draco mesh has ", header.vertices, " vertices and ", header.faces,
                                   " faces, expected ", vertices, " and ", faces));
-    if (header.seams > 1) refuse("draco.attributes", "more attributes than POSITION and COLOR");
+    if (header.seams >= attribute_count(ids))
+        refuse("draco.attributes", cat("the Draco mesh has ", header.seams + 1,
+                                       " attributes or more, expected ", attribute_count(ids)));
 
     StoredMesh mesh = decode(bytes, ids, edgebreaker, findings);
     if (mesh.faces.size() != faces || mesh.position.size() != vertices)

@@ -6,13 +6,28 @@
 #include "formats/gltf_names.h"
 #include "formats/json_members.h"
 #include "libcore/image/color.h"
+#include "libcore/image/feature_space.h"
 
 namespace imgmesh {
 namespace {
 
 using nlohmann::json;
 
-constexpr std::size_t kMaxChannels = 64;
+constexpr std::size_t kMaxName = 255;  // of a channel of an EXR
+
+void check_channels(const std::vector<std::string>& names) {
+    const auto refuse_names = [](const std::string& text) {
+        refuse("ext.channels", text, at_pointer("channels"));
+    };
+    for (const std::string& name : names) {
+        if (name.empty() || name.size() > kMaxName)
+            refuse_names(cat("a channel's name has ", name.size(), " bytes, expected 1 to ", kMaxName));
+        if (std::ranges::count(names, name) > 1) refuse_names(cat("two channels have the name ", name));
+    }
+    const int features = split_names(names).features();
+    if (features < 1 || features > kMaxFeatures)
+        refuse_names(cat("the channels are ", features, " features, expected 1 to ", kMaxFeatures));
+}
 
 }  // namespace
 
@@ -41,11 +56,14 @@ SourceInfo read_image_member(const json& image, const ContainerLimits& limits) {
     source.sample_type = static_cast<SampleType>(type - std::begin(kSampleTypes));
 
     const json& channels = member(image, "channels", "ext.member");
-    if (!channels.is_array() || channels.empty() || channels.size() > kMaxChannels ||
+    if (!channels.is_array() ||
         !std::all_of(channels.begin(), channels.end(), [](const json& c) { return c.is_string(); }))
-        refuse("ext.member", cat("\"channels\" is not an array of 1 to ", kMaxChannels, " names"),
+        refuse("ext.member", "\"channels\" is not an array of names", at_pointer("channels"));
+    if (channels.size() > kMaxFeatures)
+        refuse("ext.channels", cat(channels.size(), " channels, at most ", kMaxFeatures),
                at_pointer("channels"));
     source.channel_names = channels.get<std::vector<std::string>>();
+    check_channels(source.channel_names);
     const json& mask = member(image, "hasMask", "ext.member");
     if (!mask.is_boolean()) refuse("ext.member", "\"hasMask\" is not true or false", at_pointer("hasMask"));
     source.has_mask = mask.get<bool>();

@@ -33,6 +33,8 @@ struct AssetLevel {
     ByteRange draco;  ///< is_draco: the bitstream and its attributes
     DracoAttributeIds ids;
     ByteRange indices, positions, colors;  ///< else: uint32, 3 float32, 4 uint16, tightly packed
+    ByteRange light = {};                  ///< 3 float32
+    std::vector<ByteRange> channels = {};  ///< float32
     bool is_sound = true;  ///< false only for a validator: all but the node's index is unknown
     bool operator==(const AssetLevel&) const = default;
 };
@@ -63,6 +65,11 @@ struct Asset {
     bool has_layers = true;  ///< it is known where the EXR is
     bool has_buffer = true;  ///< likewise
 };
+
+/// What the meshes of such a picture have beside positions, and the names of its channels' attributes in
+/// their order.
+StoredLayout layout_of(const SourceInfo& source);
+std::vector<std::string> channel_attributes(const SourceInfo& source);
 
 /// The name of level k's node and EXR part.
 std::string level_name(std::size_t k);

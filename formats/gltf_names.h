@@ -7,6 +7,8 @@ inline constexpr const char* kPixelMap = "IMGMESH_pixel_map";
 inline constexpr const char* kDraco = "KHR_draco_mesh_compression";
 inline constexpr const char* kUnlit = "KHR_materials_unlit";
 inline constexpr const char* kLod = "MSFT_lod";
+/// The attribute of linear RGB where light above 1 counts.
+inline constexpr const char* kLight = "_LIGHT";
 inline constexpr const char* kLayersMimeType = "image/x-exr";
 inline constexpr const char* kGenerator = "generator";
 /// In the order of SampleType.

@@ -109,6 +109,7 @@ constexpr Element kIndices = {"indices", TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT, T
                               4};
 constexpr Element kPositions = {"POSITION", TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_VEC3, false, 12};
 constexpr Element kColors = {"COLOR_0", TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT, TINYGLTF_TYPE_VEC4, true, 8};
+constexpr Element kLights = {kLight, TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_VEC3, false, 12};
 
 const tinygltf::Accessor& checked_accessor(const tinygltf::Model& model, std::uint64_t index,
                                            const Element& want, std::uint64_t count) {
@@ -144,9 +145,37 @@ std::uint64_t attribute_index(const tinygltf::Primitive& primitive, const char* 
     return static_cast<std::uint64_t>(it->second);
 }
 
+bool has_attribute(const tinygltf::Model& model, int mesh, const char* name) {
+    if (mesh < 0 || static_cast<std::size_t>(mesh) >= model.meshes.size()) return false;
+    const auto& primitives = model.meshes[static_cast<std::size_t>(mesh)].primitives;
+    return !primitives.empty() && primitives[0].attributes.contains(name);
+}
+
+// The attributes that pixels are made of, each with the place for its Draco id and for its bytes.
+struct FeatureAttribute {
+    Element element;
+    std::uint32_t* id;
+    ByteRange* bytes;
+};
+
+std::vector<FeatureAttribute> feature_attributes(const StoredLayout& layout,
+                                                 const std::vector<std::string>& names, AssetLevel& level) {
+    level.ids = draco_ids(layout);
+    level.channels.resize(names.size());
+    std::vector<FeatureAttribute> out;
+    if (layout.color) out.push_back({kColors, &*level.ids.color, &level.colors});
+    if (layout.light) out.push_back({kLights, &*level.ids.light, &level.light});
+    for (std::size_t c = 0; c < names.size(); ++c)
+        out.push_back({{names[c].c_str(), TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_SCALAR, false, 4},
+                       &level.ids.channels[c],
+                       &level.channels[c]});
+    return out;
+}
+
 // Fills in where the mesh of a level is.
-void read_primitive(const json& document, const tinygltf::Model& model, int mesh_index,
-                    std::uint64_t buffer_length, AssetLevel& level) {
+void read_primitive(const json& document, const tinygltf::Model& model, int mesh_index, const Asset& asset,
+                    AssetLevel& level) {
+    const std::uint64_t buffer_length = asset.buffer_length;
     const tinygltf::Mesh& mesh = at(model.meshes, mesh_index, "mesh");
     if (mesh.primitives.size() != 1 || mesh.primitives[0].mode != TINYGLTF_MODE_TRIANGLES)
         refuse("gltf.primitive", cat("mesh ", mesh_index, " is not one primitive of triangles"));
@@ -160,8 +189,11 @@ void read_primitive(const json& document, const tinygltf::Model& model, int mesh
                                            kIndices, 3 * level.faces);
     const auto& positions =
         checked_accessor(model, attribute_index(primitive, "POSITION"), kPositions, level.vertices);
-    const auto& colors =
-        checked_accessor(model, attribute_index(primitive, "COLOR_0"), kColors, level.vertices);
+    const std::vector<std::string> names = channel_attributes(asset.source);
+    const std::vector<FeatureAttribute> features = feature_attributes(layout_of(asset.source), names, level);
+    for (const FeatureAttribute& feature : features)
+        checked_accessor(model, attribute_index(primitive, feature.element.name), feature.element,
+                         level.vertices);
     if (positions.minValues.size() != 3 || positions.maxValues.size() != 3)
         refuse("mesh.accessor", "the accessor of POSITION has no bounds");
     for (std::size_t i = 0; i < 3; ++i) {
@@ -176,13 +208,17 @@ void read_primitive(const json& document, const tinygltf::Model& model, int mesh
             return static_cast<std::uint32_t>(unsigned_member(attributes, name, "gltf.structure"));
         };
         level.is_draco = true;
-        level.ids = {id("POSITION"), id("COLOR_0")};
+        level.ids.position = id("POSITION");
+        for (const FeatureAttribute& feature : features) *feature.id = id(feature.element.name);
         level.draco =
             view_range(model, unsigned_member(*draco, "bufferView", "gltf.structure"), buffer_length);
     } else {
         level.indices = accessor_range(model, indices, kIndices, buffer_length);
         level.positions = accessor_range(model, positions, kPositions, buffer_length);
-        level.colors = accessor_range(model, colors, kColors, buffer_length);
+        for (const FeatureAttribute& feature : features)
+            *feature.bytes = accessor_range(
+                model, at(model.accessors, attribute_index(primitive, feature.element.name), "accessor"),
+                feature.element, buffer_length);
     }
 }
 
@@ -207,11 +243,12 @@ void read_levels(const json& document, const tinygltf::Model& model, const Conta
         const std::size_t node = part->second;
         const int mesh = model.nodes[node].mesh;
         const std::string at_node = cat("/nodes/", node), at_mesh = cat("/meshes/", mesh);
+        if (k == 0 && has_attribute(model, mesh, kLight)) asset.source.gamut = Gamut::kLight;
         AssetLevel level;
         level.is_sound = findings.attempt(cat(at_node, "/extensions/", kPixelMap), [&] {
             level = read_level_member(*extension(node), asset.source, limits);
         }) && findings.attempt(mesh < 0 ? at_node : at_mesh, [&] {
-            read_primitive(document, model, mesh, asset.buffer_length, level);
+            read_primitive(document, model, mesh, asset, level);
         });
         asset.levels.push_back(std::move(level));
         asset.places.push_back({node, static_cast<std::uint64_t>(std::max(mesh, 0)), at_mesh});

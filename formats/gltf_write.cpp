@@ -56,7 +56,7 @@ tinygltf::Material unlit_material() {
     return material;
 }
 
-tinygltf::Mesh level_mesh(tinygltf::Model& model, const AssetLevel& level) {
+tinygltf::Mesh level_mesh(tinygltf::Model& model, const AssetLevel& level, const SourceInfo& source) {
     tinygltf::Primitive primitive;
     primitive.mode = TINYGLTF_MODE_TRIANGLES;
     primitive.material = 0;
@@ -66,16 +66,29 @@ tinygltf::Mesh level_mesh(tinygltf::Model& model, const AssetLevel& level) {
                      range(level.indices), TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER);
     const int position = add_accessor(model, TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_VEC3,
                                       level.vertices, range(level.positions), TINYGLTF_TARGET_ARRAY_BUFFER);
-    const int color = add_accessor(model, TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT, TINYGLTF_TYPE_VEC4,
-                                   level.vertices, range(level.colors), TINYGLTF_TARGET_ARRAY_BUFFER);
     auto& accessors = model.accessors;
     accessors[static_cast<std::size_t>(position)].minValues.assign(level.low.begin(), level.low.end());
     accessors[static_cast<std::size_t>(position)].maxValues.assign(level.high.begin(), level.high.end());
-    accessors[static_cast<std::size_t>(color)].normalized = true;
-    primitive.attributes = {{"POSITION", position}, {"COLOR_0", color}};
+    primitive.attributes = {{"POSITION", position}};
+    const StoredLayout layout = layout_of(source);
+    const DracoAttributeIds ids = draco_ids(layout);
+    Value::Object attributes = {{"POSITION", Value(static_cast<int>(ids.position))}};
+    const auto add = [&](const std::string& name, int component, int type, const ByteRange& bytes,
+                         std::uint32_t id) {
+        primitive.attributes[name] =
+            add_accessor(model, component, type, level.vertices, range(bytes), TINYGLTF_TARGET_ARRAY_BUFFER);
+        attributes[name] = Value(static_cast<int>(id));
+    };
+    if (layout.color) {
+        add("COLOR_0", TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT, TINYGLTF_TYPE_VEC4, level.colors, *ids.color);
+        accessors.back().normalized = true;
+    }
+    if (layout.light) add(kLight, TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_VEC3, level.light, *ids.light);
+    const std::vector<std::string> names = channel_attributes(source);
+    for (std::size_t c = 0; c < names.size(); ++c)
+        add(names[c], TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_SCALAR,
+            level.is_draco ? ByteRange() : level.channels[c], ids.channels[c]);
     if (level.is_draco) {
-        Value::Object attributes = {{"POSITION", Value(static_cast<int>(level.ids.position))},
-                                    {"COLOR_0", Value(static_cast<int>(level.ids.color))}};
         primitive.extensions[kDraco] =
             Value(Value::Object{{"bufferView", Value(add_view(model, level.draco, 0))},
                                 {"attributes", Value(std::move(attributes))}});
@@ -110,7 +123,7 @@ tinygltf::Model gltf_model(const Asset& asset) {
     }
     Value::Array coarser;
     for (std::size_t k = 0; k < asset.levels.size(); ++k) {
-        model.meshes.push_back(level_mesh(model, asset.levels[k]));
+        model.meshes.push_back(level_mesh(model, asset.levels[k], asset.source));
         model.meshes.back().name = level_name(k) + "-mesh";
         model.nodes.push_back(level_node(asset.source, k));
         model.nodes.back().name = level_name(k);

@@ -9,6 +9,7 @@
 
 #include "formats/atomic_file.h"
 #include "formats/glb.h"
+#include "formats/gltf_asset.h"
 #include "formats/gltf_names.h"
 #include "formats/stored_mesh.h"
 #include "libcore/base/error.h"
@@ -137,7 +138,7 @@ void write_region_mesh(const std::string& path, const BaseMesh& mesh, std::span<
     for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
     if (extension != ".glb") throw Error(ErrorCode::kUsage, cat(path, ": a region mesh is written as .glb"));
     AtomicFile file(path, overwrite);
-    const Pieces pieces = cut(stored_from_base(mesh), region_of_face);
+    const Pieces pieces = cut(stored_from_base(mesh, layout_of(source)), region_of_face);
     if (pieces.pieces.empty())
         throw Error(ErrorCode::kUnsupported, cat(path, ": no face of the base mesh belongs to a region"));
     const std::uint64_t bytes = 20 * pieces.position.size() + 4 * pieces.index.size();

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <compare>
 #include <numeric>
 #include <span>
+#include <tuple>
 
 #include "formats/findings.h"
 #include "formats/sha256.h"
@@ -29,7 +31,23 @@ std::array<Vec2f, 3> corners(const BaseMesh& mesh, const Face& face) {
 struct Corner {
     std::array<float, 3> position;
     std::array<std::uint16_t, 4> color;
-    auto operator<=>(const Corner&) const = default;
+    const StoredMesh* mesh;
+    Id vertex;
+
+    std::partial_ordering operator<=>(const Corner& other) const {
+        if (const auto order = std::tie(position, color) <=> std::tie(other.position, other.color);
+            order != 0)
+            return order;
+        if (!mesh->light.empty())
+            if (const auto order = mesh->light[vertex] <=> other.mesh->light[other.vertex]; order != 0)
+                return order;
+        for (std::size_t c = 0; c < mesh->channels.size(); ++c)
+            if (const auto order = mesh->channels[c][vertex] <=> other.mesh->channels[c][other.vertex];
+                order != 0)
+                return order;
+        return std::partial_ordering::equivalent;
+    }
+    bool operator==(const Corner& other) const { return (*this <=> other) == 0; }
 };
 
 // The corners of a face from the smallest on: the same however the face was rotated.
@@ -39,13 +57,15 @@ struct Key {
     std::uint8_t first;  // which corner of the face comes first
 };
 
+constexpr std::array<std::uint16_t, 4> kNoColor{};
+
 std::vector<Key> sorted_keys(const StoredMesh& mesh) {
     std::vector<Key> keys(mesh.faces.size());
     for (Id f = 0; f < keys.size(); ++f) {
         std::array<Corner, 3> c;
         for (std::size_t i = 0; i < 3; ++i) {
             const Id v = mesh.faces[f][i];
-            c[i] = {mesh.position[v], mesh.color[v]};
+            c[i] = {mesh.position[v], mesh.color.empty() ? kNoColor : mesh.color[v], &mesh, v};
         }
         const auto first = std::min_element(c.begin(), c.end()) - c.begin();
         std::rotate(c.begin(), c.begin() + first, c.end());
@@ -57,27 +77,50 @@ std::vector<Key> sorted_keys(const StoredMesh& mesh) {
     return keys;
 }
 
+std::uint16_t code_of(float light) {
+    return static_cast<std::uint16_t>(std::lround(std::clamp(light, 0.0f, 1.0f) * 65535.0f));
+}
+
+// The attributes of one more vertex.
+void add_features(const float* feature, const StoredLayout& layout, StoredMesh& stored) {
+    if (layout.light) {
+        const Vec3f light = storable_light(Vec3f(feature));
+        stored.light.push_back({light[0], light[1], light[2]});
+        stored.color.push_back({code_of(light[0]), code_of(light[1]), code_of(light[2]), 65535});
+    } else if (layout.color) {
+        const auto codes = color_codes(Vec3f(feature));
+        stored.color.push_back({codes[0], codes[1], codes[2], 65535});
+    }
+    if (layout.color) feature += 3;
+    for (std::vector<float>& channel : stored.channels) channel.push_back(*feature++);
+}
+
+bool is_light(const std::array<float, 3>& light) {
+    return std::all_of(light.begin(), light.end(), [](float x) { return x >= 0 && x <= kMostLight; });
+}
+
 }  // namespace
 
-StoredMesh stored_from_base(const BaseMesh& mesh) {
+StoredMesh stored_from_base(const BaseMesh& mesh, const StoredLayout& layout) {
     const auto fail = [](const std::string& what) {
         throw Error(ErrorCode::kInternal, "cannot store the mesh: " + what);
     };
-    if (mesh.channels != 3 || mesh.feature.size() != 3 * mesh.vertex_count())
-        fail("not three features a vertex");
+    const std::size_t features = (layout.color ? 3 : 0) + layout.channels;
+    if (mesh.channels != static_cast<int>(features) || mesh.feature.size() != features * mesh.vertex_count())
+        fail(cat("not ", features, " features a vertex"));
+    if (!std::all_of(mesh.feature.begin(), mesh.feature.end(), [](float x) { return std::isfinite(x); }))
+        fail("a feature is not finite");
     if (mesh.faces.empty()) fail("it has no faces");
     StoredMesh stored;
     stored.position.reserve(mesh.vertex_count());
-    stored.color.reserve(mesh.vertex_count());
+    stored.channels.resize(layout.channels);
     for (Id v = 0; v < mesh.vertex_count(); ++v) {
         const Vec2f& p = mesh.position[v];
         if (!on_grid(p.x()) || !on_grid(p.y()))
             fail(cat("vertex ", v, " at (", p.x(), ",", p.y(), ") is not on the grid of 1/32 pixel"));
         // 0 + x and 0 - y are never a negative zero, which would count as another position.
         stored.position.push_back({0.0f + p.x(), 0.0f - p.y(), 0.0f});
-        const float* feature = mesh.feature_of(v);
-        const auto codes = color_codes(Vec3f(feature[0], feature[1], feature[2]));
-        stored.color.push_back({codes[0], codes[1], codes[2], 65535});
+        add_features(mesh.feature_of(v), layout, stored);
     }
     for (const Face& face : mesh.faces) {
         if (*std::max_element(face.begin(), face.end()) >= mesh.vertex_count())
@@ -91,10 +134,13 @@ StoredMesh stored_from_base(const BaseMesh& mesh) {
 
 BaseMesh base_from_stored(const StoredMesh& mesh, Findings& findings) {
     Repeated off_grid(findings, "mesh.position"), alphas(findings, "mesh.color"),
-        indices(findings, "mesh.index"), turned(findings, "mesh.orientation");
+        indices(findings, "mesh.index"), turned(findings, "mesh.orientation"), lights(findings, "mesh.light"),
+        values(findings, "mesh.channel");
+    const StoredLayout layout = mesh.layout();
     BaseMesh base;
+    base.channels = (layout.color ? 3 : 0) + static_cast<int>(layout.channels);
     base.position.reserve(mesh.position.size());
-    base.feature.reserve(3 * mesh.position.size());
+    base.feature.reserve(mesh.position.size() * static_cast<std::size_t>(base.channels));
     for (std::size_t v = 0; v < mesh.position.size(); ++v) {
         const auto& [x, y, z] = mesh.position[v];
         if (!on_grid(x) || !on_grid(y) || z != 0)
@@ -104,13 +150,30 @@ BaseMesh base_from_stored(const StoredMesh& mesh, Findings& findings) {
                                  Place());
             });
         base.position.emplace_back(x, 0.0f - y);
-        const auto& [red, green, blue, alpha] = mesh.color[v];
-        if (alpha != 65535)
-            alphas.hit([&, &alpha = alpha] {
-                return std::pair(cat("vertex ", v, " has alpha ", alpha, ", expected 65535"), Place());
-            });
-        const Vec3f luv = color_from_codes({red, green, blue});
-        base.feature.insert(base.feature.end(), luv.data(), luv.data() + 3);
+        if (layout.color) {
+            const auto& [red, green, blue, alpha] = mesh.color[v];
+            if (alpha != 65535)
+                alphas.hit([&, &alpha = alpha] {
+                    return std::pair(cat("vertex ", v, " has alpha ", alpha, ", expected 65535"), Place());
+                });
+            if (layout.light && !is_light(mesh.light[v]))
+                lights.hit([&] {
+                    const auto& [r, g, b] = mesh.light[v];
+                    return std::pair(cat("vertex ", v, " has the light (", r, ",", g, ",", b,
+                                         "), expected 0 to ", kMostLight),
+                                     Place());
+                });
+            const Vec3f luv = layout.light ? luv_from_linear(Vec3f(mesh.light[v].data()))
+                                           : color_from_codes({red, green, blue});
+            base.feature.insert(base.feature.end(), luv.data(), luv.data() + 3);
+        }
+        for (std::size_t c = 0; c < layout.channels; ++c) {
+            const float value = mesh.channels[c][v];
+            if (!std::isfinite(value))
+                values.hit(
+                    [&] { return std::pair(cat("channel ", c, " of vertex ", v, " is ", value), Place()); });
+            base.feature.push_back(value);
+        }
     }
     for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
         const Face& face = mesh.faces[f];

@@ -13,11 +13,24 @@ namespace imgmesh {
 
 class Findings;
 
-/// Positions are (x, -y, 0) [pixels], colours linear RGB and alpha as 16-bit codes. Parallel arrays.
+/// Which attributes a mesh has beside its positions.
+struct StoredLayout {
+    bool color = true;
+    bool light = false;        ///< colours without an upper bound
+    std::size_t channels = 0;  ///< channels beside the colour
+    bool operator==(const StoredLayout&) const = default;
+};
+
+/// Positions are (x, -y, 0) [pixels], colours linear RGB and alpha as 16-bit codes. Parallel arrays, but
+/// those of attributes that are not there are empty.
 struct StoredMesh {
     std::vector<std::array<float, 3>> position;
     std::vector<std::array<std::uint16_t, 4>> color;
     std::vector<Face> faces;
+    std::vector<std::array<float, 3>> light;  ///< linear RGB; `color` is then what of it is within [0, 1]
+    std::vector<std::vector<float>> channels;
+
+    StoredLayout layout() const { return {!color.empty(), !light.empty(), channels.size()}; }
 
     bool operator==(const StoredMesh&) const = default;
 };
@@ -26,12 +39,12 @@ struct StoredMesh {
 /// steps of kPositionStep: Draco quantises with floor(x + 0.5) in floats, which is exact up to there.
 inline constexpr int kMaxCoordinate = 131072;
 
-/// L*u*v* features as 16-bit linear colour, y turned up. Throws Error(kInternal) for a mesh that a container
-/// cannot hold without loss: no faces, other features than three, an index out of range, a position off
-/// kPositionStep, a face without area.
-StoredMesh stored_from_base(const BaseMesh& mesh);
-/// The inverse. Errors: indices, positions, colours or faces that are not as they must be; with collecting
-/// findings the result is of use only where there are none.
+/// L*u*v* features as linear colour, others as they are, y turned up. Throws Error(kInternal) for a mesh that
+/// a container cannot hold without loss: no faces, other features than `layout` has, an index out of range, a
+/// position off kPositionStep, a face without area, a value that is not finite.
+StoredMesh stored_from_base(const BaseMesh& mesh, const StoredLayout& layout = {});
+/// The inverse. Errors: indices, positions, colours, channels or faces that are not as they must be; with
+/// collecting findings the result is of use only where there are none.
 BaseMesh base_from_stored(const StoredMesh& mesh, Findings& findings);
 BaseMesh base_from_stored(const StoredMesh& mesh);  ///< strict findings
 
@@ -46,8 +59,8 @@ struct FaceMatch {
 };
 
 /// Matches meshes that differ by the order of vertices and faces and the rotation of corners. Faces are told
-/// apart by the positions and colours of their corners, not by vertex, since vertices may coincide and Draco
-/// may split them. Throws Error(kInternal) where they differ otherwise. O(F log F).
+/// apart by the positions, colours and channels of their corners, not by vertex, since vertices may coincide
+/// and Draco may split them. Throws Error(kInternal) where they differ otherwise. O(F log F).
 FaceMatch match_faces(const StoredMesh& from, const StoredMesh& to);
 
 /// Rewrites a pixel map of the mesh `from` for the mesh `to` of match_faces(from, to). Exact, as all weights

@@ -86,6 +86,10 @@ void print_difference(const Report& d, std::ostream& out) {
     const Report& e = d["ciede2000"];
     table.add("CIEDE2000",
               cat("mean ", number(e["mean"]), ", 95 % ", number(e["p95"]), ", largest ", number(e["max"])));
+    if (d.contains("channels"))
+        for (const auto& [name, channel] : d["channels"].items())
+            table.add(printable_line(name),
+                      cat("RMS ", number(channel["rms"]), ", largest ", number(channel["max"])));
     table.print(out, 4);
 }
 

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "libcore/metrics/compare_channels.h"
 #include "libcore/metrics/compare_images.h"
 #include "libcore/metrics/metrics.h"
 #include "libcore/metrics/quality_distributions.h"

@@ -13,6 +13,7 @@
 #include "libcore/build/presets.h"
 #include "libcore/image/color.h"
 #include "libcore/metrics/metrics.h"
+#include "tools/common/channel_list.h"
 #include "tools/common/names.h"
 #include "tools/common/options.h"
 #include "tools/common/output.h"
@@ -58,6 +59,7 @@ void add_options(CLI::App& app, Options& o) {
                                          "Values of the options below, for speed, as usual, for the lowest "
                                          "error of the mesh drawn alone, or for "
                                          "triangles of good shape");
+    add_channels(app, o.params.channels);
     const StopParams stop;
     CLI::Option* const faces = add_count(app, "--faces", o.params.stop.faces, {2}, "Stop at this many faces");
     CLI::Option* const vertices =
@@ -249,6 +251,7 @@ Report build_one(const Job& job, const Options& o, const Context& context, const
     // The figures are those of what a reader gets.
     const Container written = read_container(job.output);
     Report levels = Report::array();
+    const std::vector<std::string> plain = split_names(written.mesh_image.source.channel_names).plain;
     for (std::size_t k = 0; k < written.mesh_image.levels.size(); ++k) {
         const Level& level = written.mesh_image.levels[k];
         levels.push_back({{"vertices", level.mesh.vertex_count()},
@@ -258,6 +261,8 @@ Report build_one(const Job& job, const Options& o, const Context& context, const
                           {"gouraud_rms", result.report.levels[k].gouraud_rms},
                           {"flipped_pixel_triangles", map_quality(level.mesh, level.map).flipped_triangles},
                           {"mean_edge_ratio", mesh_quality(level.mesh).mean_edge_ratio}});
+        for (std::size_t c = 0; c < plain.size(); ++c)
+            levels.back()["channel_rms"][plain[c]] = result.report.levels[k].plain_rms[c];
     }
     const double bytes = static_cast<double>(written.facts.total_bytes);
     const BuildSeconds& seconds = result.report.seconds;
@@ -266,6 +271,7 @@ Report build_one(const Job& job, const Options& o, const Context& context, const
                   {"width", image.width},
                   {"height", image.height},
                   {"color_space", color_space_name(image.color_space)},
+                  {"has_light", written.mesh_image.source.gamut == Gamut::kLight},
                   {"alpha", image.channel("A") < 0 ? "none"
                             : cut                  ? "cut"
                                                    : "ignored"},
@@ -347,6 +353,9 @@ void print(const Report& report, std::ostream& out) {
         table.add("mesh", cat(image["vertices"], " vertices, ", image["faces"], " faces"));
         table.add("error",
                   cat("map ", number("map_rms"), ", Gouraud ", number("gouraud_rms"), " L*u*v* RMS"));
+        if (image.contains("channel_rms"))
+            for (const auto& [name, rms] : image["channel_rms"].items())
+                table.add(printable_line(name), cat("map ", format_number(rms.get<double>()), " RMS"));
         for (std::size_t k = 1; k < image["levels"].size(); ++k) {
             const Report& level = image["levels"][k];
             table.add(cat("level ", k), cat(level["vertices"], " vertices, ", level["faces"], " faces, map ",

@@ -8,8 +8,9 @@
 #include "formats/container.h"
 #include "formats/image_io.h"
 #include "libcore/image/color.h"
+#include "libcore/image/feature_space.h"
 #include "libcore/metrics/error_image.h"
-#include "libcore/recon/draw.h"
+#include "libcore/recon/draw_channels.h"
 #include "tools/common/names.h"
 #include "tools/common/options.h"
 #include "tools/common/output.h"
@@ -139,7 +140,9 @@ Input load_container(const std::string& path, const Options& o) {
                     {"level", index}};
     if (o.inputs.size() == 2) {
         const DrawMode mode = o.mode.value_or(DrawMode::kMap);
-        input.image = draw(m, static_cast<int>(index), {mode});
+        if (split_names(m.source.channel_names).color.empty())
+            throw Error(ErrorCode::kUnsupported, cat(path, ": the container has no colour"));
+        input.image = draw_channels(m, static_cast<int>(index), {mode});
         input.report["mode"] = name_of(mode_choices(), mode);
     }
     input.quality = LevelQuality{level.mesh.vertex_count(), level.mesh.faces.size(),
@@ -219,6 +222,8 @@ Report run(const Options& o, Context& context) {
         const Distribution ciede2000 = distribution(difference->ciede2000, kCiede2000Bins);
         panels = {{"error in L*u*v*", {{0, luv}}}, {"CIEDE2000", {{0, ciede2000}}}};
         report["difference"] = difference_report(*difference, luv, ciede2000);
+        for (const auto& [name, rms, max] : compare_channels(inputs[0].image, inputs[1].image))
+            report["difference"]["channels"][name] = {{"rms", rms}, {"max", max}};
     }
     if (o.tolerance) {
         const bool within = difference->rms_luv <= *o.tolerance;

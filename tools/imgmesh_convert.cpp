@@ -7,6 +7,7 @@
 #include "formats/container.h"
 #include "formats/image_io.h"
 #include "formats/mesh_export.h"
+#include "libcore/image/feature_space.h"
 #include "libcore/recon/draw.h"
 #include "tools/common/limits.h"
 #include "tools/common/names.h"
@@ -136,6 +137,8 @@ void export_level(const Options& o, const MeshImage& m, int index, Context& cont
         write_image(o.output, id_image(level, m.source.has_mask), {context.overwrite, SampleType::kUint8});
         return;
     }
+    if ((extension == ".ply" || extension == ".obj") && split_names(m.source.channel_names).color.empty())
+        throw Error(ErrorCode::kUnsupported, cat(o.input, ": the container has no colour to export"));
     std::string text;
     if (extension == ".svg")
         text = o.shading == Shading::kGradient ? draw_svg_gradient(m, index)

@@ -82,6 +82,7 @@ Report facts_report(const Container& container) {
             {"channels", m.source.channel_names},
             {"color_space", color_space_name(m.source.color_space)},
             {"sample_type", name_of(sample_type_choices(), m.source.sample_type)},
+            {"has_light", m.source.gamut == Gamut::kLight},
             {"has_mask", m.source.has_mask},
             {"has_visits", !m.visits.empty()},
             {"draco", name_of(draco_choices(), facts.draco)},
@@ -203,8 +204,9 @@ void print(const Report& report, std::ostream& out) {
     out << input << '\n';
     TextTable table;
     table.add("size", cat(report["width"], " x ", report["height"], " pixels"));
-    table.add("channels", cat(channels, ", ", text("sample_type"), ", ", text("color_space"),
-                              report["has_mask"] ? ", with a mask" : ""));
+    table.add("channels",
+              cat(channels, ", ", text("sample_type"), ", ", text("color_space"),
+                  report["has_light"] ? ", light above 1" : "", report["has_mask"] ? ", with a mask" : ""));
     table.add("container", cat("version ", text("version"), ", Draco ", text("draco")));
     table.add("file", cat(bytes("total"), ": meshes ", bytes("meshes"), ", layers ", bytes("layers"),
                           ", other ", bytes("other")));

@@ -7,7 +7,9 @@
 #include "formats/atomic_file.h"
 #include "formats/container.h"
 #include "formats/image_io.h"
+#include "libcore/image/feature_space.h"
 #include "libcore/recon/draw.h"
+#include "libcore/recon/draw_channels.h"
 #include "tools/common/limits.h"
 #include "tools/common/names.h"
 #include "tools/common/options.h"
@@ -78,6 +80,21 @@ void check_size(const SourceInfo& source, double scale) {
                         " pixels, more than ", limits.max_side, " a side or ", limits.max_pixels, " in all"));
 }
 
+// Whether all channels are written, not the colour alone. Throws Error(kUnsupported) where there is no colour
+// to draw.
+bool writes_channels(const Options& o, const SourceInfo& source) {
+    const SplitNames names = split_names(source.channel_names);
+    const bool holds = lower_extension(o.output) == ".exr" &&
+                       (o.draw.mode == DrawMode::kMap || o.draw.mode == DrawMode::kGouraud);
+    if (names.color.empty() && !holds) {
+        std::string list;
+        for (const std::string& name : names.plain) list += (list.empty() ? "" : ", ") + name;
+        throw Error(ErrorCode::kUnsupported, cat(o.input, ": has no colour, its channels are ", list,
+                                                 "; they can be written as .exr in mode map or gouraud"));
+    }
+    return holds && !names.plain.empty();
+}
+
 Report run(const Options& o, Context& context) {
     const bool svg = lower_extension(o.output) == ".svg";
     check_options(o, svg);
@@ -94,6 +111,7 @@ Report run(const Options& o, Context& context) {
     if (o.draw.mode == DrawMode::kVisits && mesh_image.visits.empty())
         throw Error(ErrorCode::kUnsupported,
                     cat(o.input, ": there is no visit map; imgmesh-build --visits stores one"));
+    const bool all_channels = writes_channels(o, source);
     int width = source.width, height = source.height;
     context.progress(0.4, "draw");
     if (svg) {
@@ -103,7 +121,8 @@ Report run(const Options& o, Context& context) {
         file.commit();
     } else {
         check_size(source, o.draw.scale);
-        const Image image = draw(mesh_image, o.level, o.draw);
+        const Image image =
+            all_channels ? draw_channels(mesh_image, o.level, o.draw) : draw(mesh_image, o.level, o.draw);
         context.progress(0.8, "write");
         write_image(o.output, image, {context.overwrite, o.depth});
         width = image.width;

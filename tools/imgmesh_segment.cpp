@@ -8,6 +8,7 @@
 #include "formats/label_files.h"
 #include "formats/region_gltf.h"
 #include "libcore/image/color.h"
+#include "libcore/image/feature_space.h"
 #include "libcore/segment/contour_map.h"
 #include "libcore/segment/draw_regions.h"
 #include "libcore/segment/region_faces.h"
@@ -123,6 +124,8 @@ Report run(const Options& o, Context& context) {
     if (!o.image.empty()) inputs.push_back(o.image);
     check_distinct(inputs, outputs_of(o));
     const MeshImage& mesh_image = container.mesh_image;
+    if (split_names(mesh_image.source.channel_names).color.empty())
+        throw Error(ErrorCode::kUnsupported, cat(o.input, ": the container has no colour"));
     if (o.level >= static_cast<int>(mesh_image.levels.size()))
         throw Error(ErrorCode::kUsage, cat("--level ", o.level, ": ", o.input, " has levels 0 to ",
                                            mesh_image.levels.size() - 1));

@@ -19,9 +19,24 @@
 namespace imgmesh {
 namespace {
 
-// The colour channels that the mesh was made from, as the file had them.
-std::vector<std::string> color_channels(const Image& image) {
-    return image.channel("R") >= 0 ? std::vector<std::string>{"R", "G", "B"} : std::vector<std::string>{"Y"};
+// The channels that the mesh is made from, as the file has them.
+std::vector<std::string> used_channels(const Image& image, const std::vector<ChannelChoice>& choices) {
+    if (choices.empty()) return split_names(image.channel_names).color;
+    std::vector<std::string> names;
+    for (const ChannelChoice& choice : choices) names.push_back(choice.name);
+    return names;
+}
+
+// Features as a reader gets them: colours without their weight on the colours' grid, other channels in their
+// own unit.
+void take_weights_out(BaseMesh& mesh, const FeatureSpace& space) {
+    for (Id v = 0; v < mesh.vertex_count(); ++v) {
+        float* f = mesh.feature_of(v);
+        for (int c = 0; c < space.features(); ++c) f[c] /= space.weight(c);
+        if (!space.color || space.color_weight == 1) continue;
+        const Vec3f color = storable_color(Vec3f(f), space.gamut);
+        std::copy(color.data(), color.data() + 3, f);
+    }
 }
 
 // A part [begin, end] of the whole, as a progress of its own.
@@ -50,9 +65,9 @@ Mask checked(Mask mask, const Image& image) {
 }
 
 // Collapse and maps with the collapse's limits as they stand.
-void build_levels(const FeatureImage& feature, const Mask& mask, const BuildParams& params,
-                  const CollapseParams& collapse, std::span<const CollapseTarget> targets,
-                  BuildResult& result, const Progress& progress) {
+void build_levels(const FeatureImage& feature, const FeatureSpace& space, const Mask& mask,
+                  const BuildParams& params, const CollapseParams& collapse,
+                  std::span<const CollapseTarget> targets, BuildResult& result, const Progress& progress) {
     Stopwatch watch;
     const GridMesh grid = grid_mesh(feature, mask);
     Tracking tracking(grid, feature.width, feature.height, params);
@@ -62,6 +77,7 @@ void build_levels(const FeatureImage& feature, const Mask& mask, const BuildPara
     FitParams fit;
     fit.color_weight = map_color_weight(params);
     fit.bary = params.bary;
+    fit.space = space;
     fit.keep_colors = params.quadric_colors || params.objective == Objective::kRgb;
     RefineParams refinement;
     refinement.rounds = static_cast<int>(refine_rounds(params));
@@ -90,7 +106,11 @@ void build_levels(const FeatureImage& feature, const Mask& mask, const BuildPara
                         : fit_map(level.mesh, feature, fit, part_of(progress, middle, begin + share), mask);
         const PixelMap trivial = trivial_map(level.mesh, feature.width, feature.height, mask);
         report.levels.push_back(
-            {map_rms(level.mesh, level.map, feature), map_rms(level.mesh, trivial, feature)});
+            {map_rms(level.mesh, level.map, feature), map_rms(level.mesh, trivial, feature), {}});
+        for (int c = space.color ? 3 : 0; c < space.features(); ++c)
+            report.levels.back().plain_rms.push_back(feature_rms(level.mesh, level.map, feature, c) /
+                                                     space.weight(c));
+        take_weights_out(level.mesh, space);
         levels.push_back(std::move(level));
         report.seconds.map += watch.lap();
     }
@@ -98,19 +118,26 @@ void build_levels(const FeatureImage& feature, const Mask& mask, const BuildPara
 
 }  // namespace
 
-BuildResult build_mesh_image(const Image& image, const BuildParams& params, const Progress& progress,
+BuildResult build_mesh_image(const Image& image, const BuildParams& asked, const Progress& progress,
                              Mask mask) {
-    check_params(params);
+    check_params(asked);
     if (image.width < 1 || image.height < 1) throw Error(ErrorCode::kUsage, "the picture is empty");
     for (const float sample : image.data)
         if (!std::isfinite(sample))
             throw Error(ErrorCode::kUnsupported, "the picture has samples that are not finite");
-    // A container's colours are codes of [0, 1]. What lies outside could only mislead the fit: L*u*v* of
-    // negative light has no bound.
-    Stopwatch watch;
-    const FeatureImage feature = luv_image(image, Range::kClipped);
-
     mask = checked(std::move(mask), image);
+    Stopwatch watch;
+    // What lies outside of the colours that a container holds could only mislead the fit: L*u*v* of negative
+    // light has no bound.
+    const FeatureSpace space = feature_space(image, asked.channels, mask);
+    const bool refinable =
+        space.color && space.features() == 3 && space.color_weight == 1 && space.gamut == Gamut::kDisplay;
+    BuildParams params = asked;
+    if (!params.refine) params.refine = refinable ? refine_rounds(asked) : 0;
+    if ((*params.refine > 0 || params.objective == Objective::kRgb) && !refinable)
+        throw Error(ErrorCode::kUnsupported, "refinement is for colour alone, without light above 1");
+    const FeatureImage feature = extract_features(image, space, mask);
+
     BuildResult result;
     result.report.seconds.collapse = watch.lap();
     result.report.pixels = mask.empty() ? static_cast<std::int64_t>(image.pixel_count()) : mask.count();
@@ -120,7 +147,7 @@ BuildResult build_mesh_image(const Image& image, const BuildParams& params, cons
     const std::vector<Level>& levels = result.mesh_image.levels;
     if (params.max_cluster) collapse.max_face_area = static_cast<float>(*params.max_cluster);
     for (;;) {
-        build_levels(feature, mask, params, collapse, targets, result, progress);
+        build_levels(feature, space, mask, params, collapse, targets, result, progress);
         if (!params.max_cluster) break;
         // The collapse bounds a face's area; the map decides how many pixels that becomes.
         std::int64_t largest = 0;
@@ -133,8 +160,13 @@ BuildResult build_mesh_image(const Image& image, const BuildParams& params, cons
         collapse.max_face_area *=
             0.95f * static_cast<float>(*params.max_cluster) / static_cast<float>(largest);
     }
-    result.mesh_image.source = {image.width,       image.height,          image.color_space,
-                                image.sample_type, color_channels(image), !mask.empty()};
+    result.mesh_image.source = {image.width,
+                                image.height,
+                                image.color_space,
+                                image.sample_type,
+                                used_channels(image, params.channels),
+                                !mask.empty(),
+                                space.gamut};
     result.mesh_image.parameters = listed_params(params, collapse);
     const bool half = levels.front().map.precision == WeightPrecision::kHalf;
     result.mesh_image.parameters.emplace_back("bary", std::string(half ? "half" : "float"));

@@ -7,6 +7,7 @@
 
 #include "libcore/base/progress.h"
 #include "libcore/collapse/metric.h"
+#include "libcore/image/feature_space.h"
 #include "libcore/image/image.h"
 #include "libcore/image/mask.h"
 #include "libcore/param/mesh_image.h"
@@ -52,7 +53,8 @@ inline constexpr int kUsualRefine = 2;
 inline constexpr double kUsualMapColorWeight = 1.0 / 20;  ///< of the relaxed map
 
 struct BuildParams {
-    StopParams stop;  ///< of the finest level
+    std::vector<ChannelChoice> channels;  ///< the feature space; none: the picture's colour
+    StopParams stop;                      ///< of the finest level
     PyramidParams levels;
     Metric metric = Metric::kFlattened;
     Solver solver = Solver::kClosed;
@@ -85,8 +87,9 @@ struct BuildParams {
 
 /// Figures of a level, measured on what a reader gets back.
 struct LevelReport {
-    double map_rms = 0;      ///< through the pixel map [L*u*v*]
-    double gouraud_rms = 0;  ///< base mesh drawn without the map [L*u*v*]
+    double map_rms = 0;             ///< through the pixel map [L*u*v*, or features with their weights]
+    double gouraud_rms = 0;         ///< base mesh drawn without the map, likewise
+    std::vector<double> plain_rms;  ///< of each channel beside the colour, through the map [its own unit]
 };
 
 /// Wall time of the stages, all levels together [s].
@@ -113,17 +116,18 @@ struct BuildResult {
     BuildReport report;
 };
 
-/// picture -> L*u*v* -> dense mesh -> collapse -> base mesh -> refinement -> pixel map -> least-squares
-/// colours.
-/// Linear light is clipped to [0, 1]. A side of one pixel counts as a strip one pixel wide (docs/format.md).
-/// Alpha is ignored but for what `mask` has taken from it. Same result for any number of threads.
+/// picture -> features -> dense mesh -> collapse -> base mesh -> refinement -> pixel map -> least-squares
+/// features.
+/// Linear light below 0 is clipped to 0, and above 1 to 1 unless the picture is one of floats (gamut_of). A
+/// side of one pixel counts as a strip one pixel wide (docs/format.md). Alpha is ignored but for what `mask`
+/// has taken from it, and where it is chosen as a channel. Same result for any number of threads.
 ///
 /// mask   the pixels to mesh (mask.h); empty() for all. Exactly the others get no face in the map. A mask
 /// with
 ///        all pixels inside counts as none. Percents and shares are of the pixels inside.
 /// Throws Error(kUsage) for a parameter out of range, Error(kBadFile) for a mask of another size,
 /// Error(kUnsupported) for a mask without a pixel inside, and for a picture without colour channels or with
-/// values that are not finite.
+/// values that are not finite; and as feature_space() and extract_features() do.
 BuildResult build_mesh_image(const Image& image, const BuildParams& params, const Progress& progress = {},
                              Mask mask = {});
 

@@ -18,6 +18,11 @@ int smoothing_passes(double pixels_per_vertex) {
     return pixels_per_vertex >= 250 ? 4 : pixels_per_vertex >= 66 ? 2 : pixels_per_vertex >= 12 ? 1 : 0;
 }
 
+std::ostream& operator<<(std::ostream& out, const ChannelChoice& choice) {
+    out << choice.name;
+    return choice.weight == 1 ? out : out << ':' << choice.weight;
+}
+
 template <typename T>
 std::string joined(const std::vector<T>& values) {
     std::ostringstream out;
@@ -34,6 +39,7 @@ bool stops_by_itself(const BuildParams& p) {
 
 void check_params(const BuildParams& p) {
     const auto positive = [](double x) { return std::isfinite(x) && x > 0; };
+    check_channels(p.channels);
     require(p.stop.faces.value_or(2) >= 2,
             cat("faces is ", p.stop.faces.value_or(2), ", expected 2 or more"));
     require(p.stop.vertices.value_or(4) >= 4,
@@ -160,6 +166,7 @@ std::int64_t refine_rounds(const BuildParams& params) {
 std::vector<BuildParameter> listed_params(const BuildParams& p, const CollapseParams& collapse) {
     std::vector<BuildParameter> out{{"metric", std::string(metric_name(p.metric))},
                                     {"solver", std::string(solver_name(p.solver))}};
+    if (!p.channels.empty()) out.emplace_back("channels", joined(p.channels));
     if (stops_by_itself(p)) {
         if (p.stop.faces) out.emplace_back("faces", *p.stop.faces);
         if (p.stop.vertices) out.emplace_back("vertices", *p.stop.vertices);

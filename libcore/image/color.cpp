@@ -6,7 +6,6 @@
 #include <array>
 #include <cctype>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "libcore/base/error.h"
@@ -156,54 +155,6 @@ Vec3f linear_from_luv(const Vec3f& luv) {
     return (matrices().xyz_to_srgb * xyz).cast<float>();
 }
 
-Vec3f in_gamut(const Vec3f& luv, Gamut gamut) {
-    constexpr float kInfinity = std::numeric_limits<float>::infinity();
-    const float most = gamut == Gamut::kDisplay ? 1.0f : kInfinity,
-                lightest = gamut == Gamut::kDisplay ? 100.0f : kInfinity;
-    // Less than half a 16-bit code beyond counts as inside, so that a result is never projected again.
-    constexpr float kSlack = 4e-6f;
-    const auto inside = [most](const Vec3f& color) {
-        const Vec3f linear = linear_from_luv(color);
-        // Without lightness there is no chroma: linear_from_luv makes (0, u, v) the black that it is not.
-        return linear.minCoeff() >= -kSlack && linear.maxCoeff() <= most + kSlack &&
-               (color[0] > 0 || (color[1] == 0 && color[2] == 0));
-    };
-    if (inside(luv)) return luv;
-    // Towards a grey of the same lightness the gamut is always reached; bisect for where.
-    const Vec3f grey(std::clamp(luv[0], 0.0f, lightest), 0, 0);
-    Vec3f best = luv_from_linear(linear_from_luv(luv).cwiseMax(0.0f).cwiseMin(most));
-    // Darker and lighter greys too: at a lightness a little off, the gamut may reach much closer.
-    for (const float shift : {-8.0f, -4.0f, -2.0f, 0.0f, 2.0f, 4.0f, 8.0f}) {
-        const Vec3f center(std::clamp(grey[0] + shift, 0.0f, lightest), 0, 0);
-        const Vec3f rim(center[0], luv[1], luv[2]);
-        float low = 0, high = 1;
-        for (int step = 0; step < 12; ++step) {
-            const float middle = 0.5f * (low + high);
-            (inside(center + middle * (rim - center)) ? low : high) = middle;
-        }
-        const Vec3f candidate = center + low * (rim - center);
-        if ((candidate - luv).squaredNorm() < (best - luv).squaredNorm()) best = candidate;
-    }
-    return best;
-}
-
-std::array<std::uint16_t, 3> color_codes(const Vec3f& luv) {
-    const Vec3f linear = linear_from_luv(in_gamut(luv));
-    std::array<std::uint16_t, 3> codes;
-    for (int c = 0; c < 3; ++c)
-        codes[static_cast<std::size_t>(c)] =
-            static_cast<std::uint16_t>(std::lround(std::clamp(linear[c], 0.0f, 1.0f) * 65535.0f));
-    return codes;
-}
-
-Vec3f color_from_codes(const std::array<std::uint16_t, 3>& codes) {
-    return luv_from_linear(Vec3f(codes[0], codes[1], codes[2]) / 65535.0f);
-}
-
-Vec3f storable_color(const Vec3f& luv) {
-    return color_from_codes(color_codes(luv));
-}
-
 namespace {
 
 // decode_curve of the 256 values that an 8-bit sample has, as floats.
@@ -227,6 +178,18 @@ class DecodeTable {
     std::array<float, 256> value_;
 };
 
+// Where a picture's colour is; grey counts as R = G = B.
+struct ColorChannels {
+    int r, g, b;
+
+    explicit ColorChannels(const Image& image)
+        : r(image.channel("R")), g(image.channel("G")), b(image.channel("B")) {
+        if (std::min({r, g, b}) < 0) r = g = b = image.channel("Y");
+    }
+    bool any() const { return r >= 0; }
+    Vec3f at(const float* pixel) const { return {pixel[r], pixel[g], pixel[b]}; }
+};
+
 // Whether a space has sRGB's primaries, so that decoding its curve gives linear light.
 bool has_srgb_primaries(ColorSpace space) {
     return space != ColorSpace::kAdobeRgb && space != ColorSpace::kDisplayP3;
@@ -234,11 +197,20 @@ bool has_srgb_primaries(ColorSpace space) {
 
 }  // namespace
 
+Gamut gamut_of(const Image& image, const Mask& mask) {
+    const ColorChannels channels(image);
+    const bool floats = image.sample_type == SampleType::kHalf || image.sample_type == SampleType::kFloat;
+    for (std::size_t i = 0; floats && channels.any() && i < image.pixel_count(); ++i) {
+        const Vec3f encoded = channels.at(image.data.data() + i * static_cast<std::size_t>(image.channels));
+        if (mask.contains(i) && linear_from_encoded(image.color_space, encoded).maxCoeff() > 1)
+            return Gamut::kLight;
+    }
+    return Gamut::kDisplay;
+}
+
 FeatureImage luv_image(const Image& image, Range range) {
-    const int r = image.channel("R"), g = image.channel("G"), b = image.channel("B"),
-              grey = image.channel("Y");
-    const bool color = r >= 0 && g >= 0 && b >= 0;
-    if (!color && grey < 0)
+    const ColorChannels channels(image);
+    if (!channels.any())
         throw Error(ErrorCode::kUnsupported, "the picture has no colour: neither channels R, G, B nor Y");
     const DecodeTable decode(image.color_space);
     const bool tabulated = image.sample_type == SampleType::kUint8 && has_srgb_primaries(image.color_space);
@@ -248,10 +220,11 @@ FeatureImage luv_image(const Image& image, Range range) {
             const float* in = image.row(y).data();
             float* dst = out.pixel(static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width));
             for (int x = 0; x < image.width; ++x, in += image.channels, dst += 3) {
-                const Vec3f encoded = color ? Vec3f(in[r], in[g], in[b]) : Vec3f::Constant(in[grey]);
+                const Vec3f encoded = channels.at(in);
                 Vec3f linear = tabulated ? Vec3f(decode(encoded[0]), decode(encoded[1]), decode(encoded[2]))
                                          : linear_from_encoded(image.color_space, encoded);
-                if (range == Range::kClipped) linear = linear.cwiseMax(0.0f).cwiseMin(1.0f);
+                if (range != Range::kAny)
+                    linear = linear.cwiseMax(0.0f).cwiseMin(range == Range::kClipped ? 1.0f : kMostLight);
                 const Vec3f luv = luv_from_linear(linear);
                 std::copy(luv.data(), luv.data() + 3, dst);
             }

@@ -6,6 +6,7 @@
 
 #include "libcore/base/types.h"
 #include "libcore/image/image.h"
+#include "libcore/image/mask.h"
 
 namespace imgmesh {
 
@@ -40,15 +41,26 @@ enum class Gamut {
 /// gamut by a lot.)
 Vec3f in_gamut(const Vec3f& luv, Gamut gamut = Gamut::kDisplay);
 
-/// What a container's COLOR_0 keeps of `luv`: in_gamut(luv) as linear RGB rounded to 16 bits.
-/// storable_color(storable_color(x)) == storable_color(x), bit for bit.
-Vec3f storable_color(const Vec3f& luv);
+/// What a container keeps of `luv`: in_gamut(luv) as linear RGB rounded, for displays to 16-bit codes, for
+/// light to storable_light(). storable_color(storable_color(x)) == storable_color(x), bit for bit.
+Vec3f storable_color(const Vec3f& luv, Gamut gamut = Gamut::kDisplay);
 /// Linear RGB of a storable colour as its 16-bit codes, and back.
 std::array<std::uint16_t, 3> color_codes(const Vec3f& luv);
 Vec3f color_from_codes(const std::array<std::uint16_t, 3>& codes);
 
-/// What luv_image does with linear light outside [0, 1].
-enum class Range { kAny, kClipped };
+/// The most light that a colour of Gamut::kLight has. Quadrics are single precision: the squares of its L*
+/// have room.
+inline constexpr float kMostLight = 1 << 20;
+
+/// in_gamut(luv, kLight) as linear RGB, rounded to 16 bits of the largest of the three and at least to 2^-20:
+/// fine enough for any eye, and coarse enough for storable_color() to come back to the same bits.
+Vec3f storable_light(const Vec3f& luv);
+
+/// kLight for a picture of floats with linear light above 1 in some pixel of the mask, else kDisplay.
+Gamut gamut_of(const Image& image, const Mask& mask = {});
+
+/// What luv_image does with linear light: nothing, or clip it to [0, 1] or to [0, kMostLight].
+enum class Range { kAny, kClipped, kLight };
 
 /// Colour of every pixel as L*u*v*. One channel (grey) counts as R = G = B; alpha is ignored.
 /// Throws Error(kUnsupported) where the picture has neither R, G, B nor Y.

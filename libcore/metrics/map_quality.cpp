@@ -96,7 +96,11 @@ MapQuality map_quality(const BaseMesh& mesh, const PixelMap& map, bool has_mask)
     return q;
 }
 
-double map_rms(const BaseMesh& mesh, const PixelMap& map, const FeatureImage& reference) {
+namespace {
+
+// map_rms over features [feature_begin, feature_end).
+double range_rms(const BaseMesh& mesh, const PixelMap& map, const FeatureImage& reference, int feature_begin,
+                 int feature_end) {
     if (map.width != reference.width || map.height != reference.height)
         throw Error(ErrorCode::kUsage, cat("pixel map is ", map.width, "x", map.height, ", reference is ",
                                            reference.width, "x", reference.height));
@@ -116,7 +120,7 @@ double map_rms(const BaseMesh& mesh, const PixelMap& map, const FeatureImage& re
                     const auto [a, b, c] = mesh.faces[coord.face];
                     const float *fa = mesh.feature_of(a), *fb = mesh.feature_of(b), *fc = mesh.feature_of(c);
                     const float u = coord.u, v = coord.v, w = 1 - u - v;
-                    for (int k = 0; k < mesh.channels; ++k) {
+                    for (int k = feature_begin; k < feature_end; ++k) {
                         const float error = w * fa[k] + u * fb[k] + v * fc[k] - want[k];
                         sum += double(error) * double(error);
                     }
@@ -130,6 +134,16 @@ double map_rms(const BaseMesh& mesh, const PixelMap& map, const FeatureImage& re
     });
     const std::int64_t pixels = std::accumulate(counts.begin(), counts.end(), std::int64_t{0});
     return pixels > 0 ? std::sqrt(std::accumulate(sums.begin(), sums.end(), 0.0) / double(pixels)) : 0;
+}
+
+}  // namespace
+
+double map_rms(const BaseMesh& mesh, const PixelMap& map, const FeatureImage& reference) {
+    return range_rms(mesh, map, reference, 0, mesh.channels);
+}
+
+double feature_rms(const BaseMesh& mesh, const PixelMap& map, const FeatureImage& reference, int feature) {
+    return range_rms(mesh, map, reference, feature, feature + 1);
 }
 
 }  // namespace imgmesh

@@ -59,4 +59,7 @@ std::vector<Vec2d> mapped_positions(const BaseMesh& mesh, const PixelMap& map);
 /// Throws Error(kUsage) where sizes or channels differ.
 double map_rms(const BaseMesh& mesh, const PixelMap& map, const FeatureImage& reference);
 
+/// The same of one feature alone.
+double feature_rms(const BaseMesh& mesh, const PixelMap& map, const FeatureImage& reference, int feature);
+
 }  // namespace imgmesh

@@ -38,10 +38,11 @@ PixelMap stored(const BaseMesh& mesh, const MovingPixels& pixels, const std::vec
                 "the weights are too coarse for faces this large: --bary float holds them");
 }
 
-void round_colors(BaseMesh& mesh, float weight) {
+void round_colors(BaseMesh& mesh, const FeatureSpace& space) {
+    const float weight = space.color_weight;
     for (Id v = 0; v < mesh.vertex_count(); ++v) {
         const Eigen::Map<Vec3f> color(mesh.feature_of(v));
-        const Vec3f storable = weight * storable_color(color / weight);
+        const Vec3f storable = weight * storable_color(color / weight, space.gamut);
         std::copy(storable.data(), storable.data() + 3, mesh.feature_of(v));
     }
 }
@@ -65,7 +66,7 @@ class ColorFit {
                    params_.space);
     }
     void round() const {
-        if (params_.space.color) round_colors(mesh_, params_.space.color_weight);
+        if (params_.space.color) round_colors(mesh_, params_.space);
     }
 
   private:

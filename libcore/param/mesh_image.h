@@ -6,6 +6,7 @@
 #include <variant>
 #include <vector>
 
+#include "libcore/image/color.h"
 #include "libcore/image/image.h"
 #include "libcore/mesh/base_mesh.h"
 #include "libcore/param/pixel_map.h"
@@ -29,8 +30,11 @@ struct SourceInfo {
     ColorSpace color_space =
         ColorSpace::kSrgb;  ///< of the picture; meshes are in feature space (L*u*v*) all the same
     SampleType sample_type = SampleType::kUint8;
+    /// What meshes are made of, by the file's names: split_names() says which are the features' L*u*v*, the
+    /// others are features as they are, in this order.
     std::vector<std::string> channel_names = {"R", "G", "B"};
-    bool has_mask = false;  ///< some pixels are outside (PixelCoord::face == kNone)
+    bool has_mask = false;          ///< some pixels are outside (PixelCoord::face == kNone)
+    Gamut gamut = Gamut::kDisplay;  ///< of the meshes' colours
 };
 
 struct MeshImage {

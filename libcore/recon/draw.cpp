@@ -113,9 +113,9 @@ class WireRow {
 
 Image encode_rows(const SourceInfo& source, const PixelMap& map, const RowFunction& row_function) {
     Image image = make_image(map.width, map.height, source.has_mask ? 4 : 3);
-    image.color_space = source.color_space;
+    image.color_space = source.gamut == Gamut::kLight ? ColorSpace::kLinear : source.color_space;
     image.sample_type = source.sample_type;
-    const LuvEncoder encoder(source.color_space);
+    const LuvEncoder encoder(image.color_space);
     parallel_blocks(0, map.height, kGrainRows, [&](int first, int last) {
         std::vector<float> planes(static_cast<std::size_t>(map.width) * 3);
         for (int y = first; y < last; ++y) {
@@ -136,8 +136,10 @@ bool may_scale(DrawMode mode) {
     return mode == DrawMode::kGouraud || mode == DrawMode::kWire || mode == DrawMode::kFlat;
 }
 
-void check_scale(const SourceInfo& source, const DrawParams& params) {
-    if (params.scale == 1) return;
+}  // namespace
+
+double checked_scale(const SourceInfo& source, const DrawParams& params) {
+    if (params.scale == 1) return 1;
     if (!may_scale(params.mode))
         throw Error(ErrorCode::kUsage,
                     cat("scale is ", params.scale, ": this drawing has the picture's own size"));
@@ -145,15 +147,14 @@ void check_scale(const SourceInfo& source, const DrawParams& params) {
         throw Error(ErrorCode::kUsage,
                     cat("scale is ", params.scale, ", expected above 0 and at most ", kMaxPixels,
                         " pixels of a ", source.width, "x", source.height, " picture"));
+    return params.scale;
 }
-
-}  // namespace
 
 Image draw(const MeshImage& mesh_image, int level_index, const DrawParams& params) {
     const SourceInfo& source = mesh_image.source;
     const Level& level = level_to_draw(mesh_image, level_index);
     const BaseMesh& mesh = level.mesh;
-    check_scale(source, params);
+    checked_scale(source, params);
 
     PixelMap raster;
     if (may_scale(params.mode))

@@ -22,13 +22,17 @@ struct DrawParams {
     double scale = 1;  ///< of the output against the picture; other than 1 only for gouraud, wire and flat
 };
 
-/// Draws level `level_index`. The result has the source's colour space and sample type, clamped to [0, 1]
-/// unless the space is linear; RGB, and A where the source has a mask (0 outside the mask for map, patches
-/// and visits, outside the mesh for the others). Size is round(scale * source size), at least 1; the centre
-/// of output pixel i is at (i + 0.5) / scale - 0.5 of the source. Throws Error(kUsage) for a level that is
-/// not there or a scale that the mode does not have, Error(kUnsupported) for a mesh without colour or,
-/// drawing visits, a file without them. Visits are those down to level 0: no other level has any.
+/// Draws level `level_index`. The result has the source's sample type and colour space (linear where light
+/// above 1 counts, Gamut::kLight), clamped to [0, 1] unless the space is linear; RGB, and A where the source
+/// has a mask (0 outside the mask for map, patches and visits, outside the mesh for the others). Size is
+/// round(scale * source size), at least 1; the centre of output pixel i is at (i + 0.5) / scale - 0.5 of the
+/// source. Throws Error(kUsage) for a level that is not there or a scale that the mode does not have,
+/// Error(kUnsupported) for a mesh without colour or, drawing visits, a file without them. Visits are those
+/// down to level 0: no other level has any.
 Image draw(const MeshImage& mesh_image, int level_index, const DrawParams& params);
+
+/// The scale, after draw()'s checks of it.
+double checked_scale(const SourceInfo& source, const DrawParams& params);
 
 /// The wire drawing (the edges alone, on nothing) or the flat drawing as an SVG document in sRGB. One unit is
 /// a source pixel; the picture's sides lie half a pixel outside the outermost pixel centres, as in draw().

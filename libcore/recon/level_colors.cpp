@@ -1,17 +1,25 @@
 #include "libcore/recon/level_colors.h"
 
 #include "libcore/base/error.h"
+#include "libcore/image/feature_space.h"
 
 namespace imgmesh {
 
-const Level& level_to_draw(const MeshImage& mesh_image, int level_index) {
+const Level& checked_level(const MeshImage& mesh_image, int level_index) {
     if (level_index < 0 || static_cast<std::size_t>(level_index) >= mesh_image.levels.size())
         throw Error(ErrorCode::kUsage, cat("level is ", level_index, ", expected 0 to ",
                                            static_cast<int>(mesh_image.levels.size()) - 1));
-    const Level& level = mesh_image.levels[static_cast<std::size_t>(level_index)];
-    if (level.mesh.channels < 3)
-        throw Error(ErrorCode::kUnsupported, cat("the base mesh has ", level.mesh.channels,
-                                                 " channels, expected colour as L*, u*, v*"));
+    return mesh_image.levels[static_cast<std::size_t>(level_index)];
+}
+
+const Level& level_to_draw(const MeshImage& mesh_image, int level_index) {
+    const Level& level = checked_level(mesh_image, level_index);
+    std::string names;
+    for (const std::string& name : mesh_image.source.channel_names)
+        names += (names.empty() ? "" : ", ") + name;
+    if (level.mesh.channels < 3 || split_names(mesh_image.source.channel_names).color.empty())
+        throw Error(ErrorCode::kUnsupported,
+                    cat("the base mesh has no colour, its channels are ", names, "; an EXR holds them"));
     return level;
 }
 

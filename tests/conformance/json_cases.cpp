@@ -149,6 +149,9 @@ void add_extension_cases(std::map<std::string, Case>& cases) {
     cases["ext.version"] = json_case([](json& d) { root(d)["version"] = "2.0"; });
     cases["ext.member"] = json_case([](json& d) { root(d).erase("build"); });
     cases["ext.value"] = json_case([](json& d) { root(d)["image"]["colorSpace"] = "CMYK"; });
+    cases["ext.channels"] = json_case([](json& d) {
+        root(d)["image"]["channels"] = {"R", "G", "B", "Z", "Z"};
+    });
     cases["ext.layers"] = json_case([](json& d) { root(d)["layers"]["bufferView"] = 0; });
     cases["ext.level"] = json_case([](json& d) { level(d, 0)["part"] = "lod1"; });
     cases["ext.unknown"] = json_case([](json& d) { root(d)["image"]["depth"] = 8; });

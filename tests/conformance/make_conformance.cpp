@@ -50,6 +50,19 @@ int run(const fs::path& out) {
     masked.parts[0].map.coords[4] = {};
     masked.parts[0].visits.assign(9, 2);
     masked.write(out / "valid-mask-visits", true);
+    Sample channels(2, DracoMode::kEdgebreaker);
+    channels.asset.source.channel_names = {"R", "G", "B", "depth.Z"};
+    channels.asset.source.gamut = Gamut::kLight;
+    for (StoredMesh& mesh : channels.meshes) {
+        mesh.light = {{0, 0, 0}, {2, 0, 0}, {0, 3, 0}, {0, 0, 4}};
+        mesh.channels = {{0, -1, 2, 1e30f}};
+    }
+    channels.write(out / "valid-channels-light", true);
+    Sample no_color;
+    no_color.asset.source.channel_names = {"depth.Z"};
+    no_color.meshes[0].color.clear();
+    no_color.meshes[0].channels = {{0, -1, 2, 3}};
+    no_color.write(out / "valid-no-color", false);
     Sample tiled;
     tiled.edit_exr = [](Exr& exr) {
         exr.tiled = true;

@@ -37,6 +37,9 @@ AssetLevel store(const StoredMesh& mesh, DracoMode mode, double error, Bytes& bu
         level.indices = append(buffer, mesh.faces);
         level.positions = append(buffer, mesh.position);
         level.colors = append(buffer, mesh.color);
+        level.light = append(buffer, mesh.light);
+        for (const std::vector<float>& channel : mesh.channels)
+            level.channels.push_back(append(buffer, channel));
     } else {
         draco = encode_draco_mesh(mesh, mode);
         level.is_draco = true;

@@ -1,15 +1,17 @@
 #!/usr/bin/python3
 """Draws the picture of a container without any code of imgmesh, from docs/format.md alone.
 
-read_container.py IN OUT.png [--level K] [--expect PICTURE [--min-psnr DB]]
+read_container.py IN OUT.png [--level K] [--exposure E] [--expect PICTURE [--min-psnr DB]] [--channel NAME --within LOW HIGH]
 
 IN is a .glb or .gltf written with --draco none. With --expect the result is compared, and the exit code is 1 below
-DB (default 45) decibels.
+DB (default 45) decibels. --exposure multiplies the light before it is drawn. --channel prints the least and the
+largest value of a channel beside the colour; the exit code is 1 where they are not LOW to HIGH.
 """
 import argparse
 import hashlib
 import json
 import pathlib
+import re
 import struct
 import sys
 import tempfile
@@ -57,18 +59,40 @@ def read_accessor(document, binary, index):
     return np.frombuffer(binary, dtype, accessor["count"] * width, start).reshape(-1, width)
 
 
+def channel_attributes(names):
+    """The attributes of the channels beside the colour, by the channels' names."""
+    colour = {"R", "G", "B"} if {"R", "G", "B"} <= set(names) else {"Y"}
+    attributes = {}
+    for name in names:
+        if name in colour:
+            continue
+        first = attribute = "_CHANNEL_" + re.sub("[^A-Z0-9]", "_", re.sub("[a-z]", lambda m: m[0].upper(), name))
+        count = 1
+        while attribute in attributes.values():
+            count += 1
+            attribute = f"{first}_{count}"
+        attributes[name] = attribute
+    return attributes
+
+
 def read_mesh(document, binary, node):
-    """Faces (F, 3) and linear colours (V, 3)."""
+    """Faces (F, 3), linear colours (V, 3), and the other channels' values (V) by their names."""
     (primitive,) = document["meshes"][node["mesh"]]["primitives"]
     if "KHR_draco_mesh_compression" in primitive.get("extensions", {}):
         sys.exit("the mesh is Draco-compressed; write it with --draco none")
     indices = read_accessor(document, binary, primitive["indices"])
     positions = read_accessor(document, binary, primitive["attributes"]["POSITION"])
-    colors = read_accessor(document, binary, primitive["attributes"]["COLOR_0"])
+    if "_LIGHT" in primitive["attributes"]:
+        colors = read_accessor(document, binary, primitive["attributes"]["_LIGHT"])
+    else:
+        colors = read_accessor(document, binary, primitive["attributes"]["COLOR_0"])[:, :3] / 65535.0
+    names = document["extensions"][EXTENSION]["image"]["channels"]
+    channels = {name: read_accessor(document, binary, primitive["attributes"][attribute])[:, 0]
+                for name, attribute in channel_attributes(names).items()}
     topology = hashlib.sha256(indices.tobytes() + positions.tobytes()).hexdigest()
     if topology != node["extensions"][EXTENSION]["topology"]:
         sys.exit("the topology hash does not match")
-    return indices.reshape(-1, 3), colors[:, :3] / 65535.0
+    return indices.reshape(-1, 3), colors, channels
 
 
 def read_layers(exr, part):
@@ -123,20 +147,22 @@ def srgb_from_linear(rgb):
     return np.where(rgb <= 0.0031308, 12.92 * rgb, 1.055 * rgb ** (1 / 2.4) - 0.055)
 
 
-def reconstruct(path, level):
-    """The picture as (H, W, 3) bytes, and where it has faces (H, W)."""
+def reconstruct(path, level, exposure=1.0):
+    """The picture as (H, W, 3) bytes, where it has faces (H, W), and the other channels (H, W) by their names."""
     document, binary, exr = read_gltf(path)
     part = f"lod{level}"
     node = next(n for n in document["nodes"] if n["extensions"][EXTENSION]["part"] == part)
-    faces, colors = read_mesh(document, binary, node)
+    faces, colors, channels = read_mesh(document, binary, node)
     face, u, v = read_layers(exr, part)
     inside = face != NO_FACE
     corners = luv_from_linear(colors)[faces[np.where(inside, face, 0)]]
     u, v = u.astype(float), v.astype(float)
     weights = np.stack([1 - u - v, u, v], axis=-1)
     luv = (weights[..., None] * corners).sum(axis=2)
-    rgb = srgb_from_linear(linear_from_luv(luv)) * inside[..., None]
-    return np.rint(rgb * 255).astype(np.uint8), inside
+    rgb = srgb_from_linear(exposure * linear_from_luv(luv)) * inside[..., None]
+    drawn = {name: (weights * values[faces[np.where(inside, face, 0)]]).sum(axis=2)
+             for name, values in channels.items()}
+    return np.rint(rgb * 255).astype(np.uint8), inside, drawn
 
 
 def main():
@@ -144,10 +170,18 @@ def main():
     parser.add_argument("input", type=pathlib.Path)
     parser.add_argument("output", type=pathlib.Path)
     parser.add_argument("--level", type=int, default=0)
+    parser.add_argument("--exposure", type=float, default=1.0)
+    parser.add_argument("--channel")
+    parser.add_argument("--within", type=float, nargs=2, default=(-np.inf, np.inf))
     parser.add_argument("--expect", type=pathlib.Path)
     parser.add_argument("--min-psnr", type=float, default=45.0)
     options = parser.parse_args()
-    picture, inside = reconstruct(options.input, options.level)
+    picture, inside, channels = reconstruct(options.input, options.level, options.exposure)
+    if options.channel:
+        values = channels[options.channel][inside]
+        print(f"{options.channel}: {values.min():g} to {values.max():g}")
+        if values.min() < options.within[0] or values.max() > options.within[1]:
+            return 1
     Image.fromarray(np.dstack([picture, inside.astype(np.uint8) * 255])).save(options.output)
     if not options.expect:
         return 0

@@ -252,10 +252,10 @@ TEST_CASE("build: progress rises from 0 to 1") {
 }
 
 // L*u*v* of negative light has no bound, so an unclipped sample would outweigh the whole picture.
-TEST_CASE("build: light outside 0 and 1 is clipped") {
+TEST_CASE("build: light below 0 is clipped, and above 1 too in pictures of integers") {
     Image clipped = make_image(24, 18, 3);
     clipped.color_space = ColorSpace::kLinear;
-    clipped.sample_type = SampleType::kFloat;
+    clipped.sample_type = SampleType::kUint16;
     for (std::size_t i = 0; i < clipped.data.size(); ++i)
         clipped.data[i] = static_cast<float>(i * 7 % 11) / 10.0f;
     Image wild = clipped;

@@ -44,6 +44,35 @@ void write_picture(const std::string& path, const MeshImage& image) {
     }
 }
 
+// The same with a depth, as "channels ...", and with light of up to 4 times what a display shows, as "light
+// ...": there the picture to expect is that of a quarter of the light.
+void write_with_channels(const std::filesystem::path& folder, const std::string& name, const MeshImage& image,
+                         DracoMode mode) {
+    MeshImage channels = image, light = image;
+    channels.source.channel_names = {"R", "G", "B", "depth.Z", "depth z"};
+    light.source.gamut = Gamut::kLight;
+    light.source.color_space = ColorSpace::kLinear;
+    light.source.sample_type = SampleType::kFloat;
+    for (std::size_t k = 0; k < image.levels.size(); ++k) {
+        BaseMesh& mesh = channels.levels[k].mesh;
+        const BaseMesh& plain = image.levels[k].mesh;
+        mesh.channels = 5;
+        mesh.feature.clear();
+        for (Id v = 0; v < plain.vertex_count(); ++v) {
+            const float* f = plain.feature_of(v);
+            mesh.feature.insert(mesh.feature.end(), f, f + 3);
+            // Functions that interpolation does not change: what a pixel has is told by where it is mapped
+            // to.
+            mesh.feature.push_back(100 + plain.position[v].x());
+            mesh.feature.push_back(-plain.position[v].y());
+            const Vec3f luv = storable_color(luv_from_linear(4 * linear_from_luv(Vec3f(f))), Gamut::kLight);
+            std::copy(luv.data(), luv.data() + 3, light.levels[k].mesh.feature_of(v));
+        }
+    }
+    write_container((folder / ("channels " + name + ".glb")).string(), channels, {mode, true});
+    write_container((folder / ("light " + name + ".glb")).string(), light, {mode, true});
+}
+
 // Faces of any regions, one region of a single face, and some faces left out.
 void write_regions(const std::filesystem::path& folder, const std::string& name, const MeshImage& image) {
     const BaseMesh& mesh = image.levels[0].mesh;
@@ -82,6 +111,7 @@ int main(int argc, char** argv) {
                 for (const char* extension : {".glb", ".gltf"})
                     write_container((folder / (name + extension)).string(), image, {mode, true});
                 write_picture((folder / (name + ".ppm")).string(), image);
+                write_with_channels(folder, name, image, mode);
                 if (mode == DracoMode::kOff) write_regions(folder / "regions", name, image);
             }
     return 0;

@@ -318,7 +318,7 @@ TEST_CASE("refusals: truncated and flipped containers give an Error, never a cra
 TEST_CASE("glTF JSON: read(write(x)) == x") {
     Asset asset;
     asset.version = "1.0";
-    asset.source = {640, 480, ColorSpace::kDisplayP3, SampleType::kHalf, {"Y", "ä"}, true};
+    asset.source = {640, 480, ColorSpace::kDisplayP3, SampleType::kHalf, {"Y", "ä"}, true, Gamut::kLight};
     asset.generator = "test";
     asset.parameters = {{"a", std::int64_t{-5}}, {"b", 0.1}, {"c", std::string("x")}, {"d", false}};
     asset.buffer_length = 5000;
@@ -329,18 +329,23 @@ TEST_CASE("glTF JSON: read(write(x)) == x") {
         AssetLevel& l = asset.levels[k];
         l = {30, 40, 0.1 + double(k), std::string(64, 'a'), {0, -479, 0}, {639, 0, 0}, k == 0, {}, {}, {},
              {}, {}};
+        l.ids = draco_ids(layout_of(asset.source));
+        l.channels.resize(1);
         if (l.is_draco)
             l.draco = {0, 333};
         else {
             l.indices = {400, 480};
             l.positions = {880, 360};
             l.colors = {1240, 240};
+            l.light = {1480, 360};
+            l.channels[0] = {1840, 120};
         }
     }
     const auto check = [&] {
         const Asset back = asset_from_json(json_from_asset(asset), {});
         CHECK(back.version == asset.version);
         CHECK(back.source.channel_names == asset.source.channel_names);
+        CHECK(back.source.gamut == asset.source.gamut);
         CHECK(back.source.color_space == asset.source.color_space);
         CHECK(back.source.sample_type == asset.source.sample_type);
         CHECK(back.source.width == 640);

@@ -7,6 +7,7 @@
 
 #include "formats/atomic_file.h"
 #include "libcore/base/error.h"
+#include "libcore/image/feature_space.h"
 #include "tests/support/random_mesh_image.h"
 #include "tests/support/temporary_folder.h"
 
@@ -15,28 +16,46 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// Where a pixel is mapped to on the mesh and in what colour, in exact arithmetic: weights times positions and
-// times 16-bit codes fit a double with bits to spare. So two maps that mean the same are equal here, however
-// faces are numbered and corners rotated.
+// What of a vertex is compared: its place, its colour as what is stored of it (16-bit codes or light), its
+// channels.
+std::vector<double> stored_values(const MeshImage& image, const BaseMesh& mesh, Id v) {
+    std::vector<double> out{double(mesh.position[v].x()), double(mesh.position[v].y())};
+    const float* f = mesh.feature_of(v);
+    const float* const end = f + mesh.channels;
+    if (!split_names(image.source.channel_names).color.empty()) {
+        const Vec3f color(f);
+        for (std::size_t k = 0; k < 3; ++k)
+            out.push_back(image.source.gamut == Gamut::kLight
+                              ? storable_light(color)[static_cast<Eigen::Index>(k)]
+                              : float(color_codes(color)[k]));
+        f += 3;
+    }
+    out.insert(out.end(), f, end);
+    return out;
+}
+
+// Where a pixel is mapped to on the mesh and what it is there: the sums of weights times values, which do not
+// depend on how faces are numbered and corners rotated, as each sum is taken from its least term on.
 struct Mapped {
-    std::array<double, 5> sum{};
+    std::vector<double> sum;
     bool inside = false;
     bool operator==(const Mapped&) const = default;
 };
 
-std::vector<Mapped> mapped(const Level& level) {
+std::vector<Mapped> mapped(const MeshImage& image, const Level& level) {
     std::vector<Mapped> out;
     for (const PixelCoord& c : level.map.coords) {
         Mapped m;
         m.inside = c.face != kNone;
         const std::array<double, 3> weight = {1.0 - double(c.u) - double(c.v), double(c.u), double(c.v)};
-        for (std::size_t i = 0; m.inside && i < 3; ++i) {
-            const Id v = level.mesh.faces[c.face][i];
-            const float* f = level.mesh.feature_of(v);
-            const auto codes = color_codes(Vec3f(f[0], f[1], f[2]));
-            m.sum[0] += weight[i] * double(level.mesh.position[v].x());
-            m.sum[1] += weight[i] * double(level.mesh.position[v].y());
-            for (std::size_t k = 0; k < 3; ++k) m.sum[2 + k] += weight[i] * codes[k];
+        std::array<std::vector<double>, 3> values;
+        for (std::size_t i = 0; m.inside && i < 3; ++i)
+            values[i] = stored_values(image, level.mesh, level.mesh.faces[c.face][i]);
+        for (std::size_t k = 0; k < values[0].size(); ++k) {
+            std::array<double, 3> terms{};
+            for (std::size_t i = 0; i < 3; ++i) terms[i] = weight[i] * values[i][k];
+            std::sort(terms.begin(), terms.end());
+            m.sum.push_back(terms[0] + terms[1] + terms[2]);
         }
         out.push_back(m);
     }
@@ -44,13 +63,14 @@ std::vector<Mapped> mapped(const Level& level) {
 }
 
 // The faces by their corners' positions and features, in an order of their own.
-std::vector<std::array<std::array<float, 5>, 3>> face_set(const BaseMesh& mesh) {
-    std::vector<std::array<std::array<float, 5>, 3>> faces;
+std::vector<std::array<std::vector<float>, 3>> face_set(const BaseMesh& mesh) {
+    std::vector<std::array<std::vector<float>, 3>> faces;
     for (const Face& face : mesh.faces) {
-        std::array<std::array<float, 5>, 3> corners;
+        std::array<std::vector<float>, 3> corners;
         for (std::size_t i = 0; i < 3; ++i) {
             const float* f = mesh.feature_of(face[i]);
-            corners[i] = {mesh.position[face[i]].x(), mesh.position[face[i]].y(), f[0], f[1], f[2]};
+            corners[i] = {mesh.position[face[i]].x(), mesh.position[face[i]].y()};
+            corners[i].insert(corners[i].end(), f, f + mesh.channels);
         }
         std::rotate(corners.begin(), std::min_element(corners.begin(), corners.end()), corners.end());
         faces.push_back(corners);
@@ -66,6 +86,7 @@ void check_same(const MeshImage& a, const MeshImage& b) {
     CHECK(a.source.sample_type == b.source.sample_type);
     CHECK(a.source.channel_names == b.source.channel_names);
     CHECK(a.source.has_mask == b.source.has_mask);
+    CHECK(a.source.gamut == b.source.gamut);
     CHECK(a.generator == b.generator);
     CHECK(std::map(a.parameters.begin(), a.parameters.end()) ==
           std::map(b.parameters.begin(), b.parameters.end()));
@@ -75,7 +96,8 @@ void check_same(const MeshImage& a, const MeshImage& b) {
         CHECK(a.levels[k].error == b.levels[k].error);
         CHECK(a.levels[k].map.precision == b.levels[k].map.precision);
         CHECK(face_set(a.levels[k].mesh) == face_set(b.levels[k].mesh));
-        CHECK(mapped(a.levels[k]) == mapped(b.levels[k]));
+        CHECK(mapped(a, a.levels[k]) == mapped(b, b.levels[k]));
+        CHECK(a.levels[k].mesh.channels == b.levels[k].mesh.channels);
     }
 }
 
@@ -121,6 +143,55 @@ TEST_CASE("container: what is read back is what was written, for every spelling,
         CHECK(entry.path().filename().string().front() != '.');  // no temporary file is left
 }
 
+TEST_CASE("container: channels and light are read back to the bit, in every mode") {
+    const TemporaryFolder folder;
+    std::mt19937 random(1);
+    // Names that become the same attribute, and names that other software has trouble with.
+    const std::vector<std::string> odd = {"depth.Z", "depth z", "DEPTH_Z", "\u00fc", "A", "R"};
+    std::vector<std::string> many;
+    for (int c = 0; c < 13; ++c) many.push_back(cat("band", c));
+    for (const bool color : {false, true})
+        for (const bool light : {false, true})
+            for (const auto& plain : {std::vector<std::string>{}, std::vector<std::string>{"Z"}, odd, many}) {
+                if ((!color && (light || plain.empty())) || (color && plain == odd)) continue;
+                MeshImage image = random_mesh_image(23, 18, 2, WeightPrecision::kHalf, false, 7);
+                change_channels(image, color, light, plain, random);
+                for (const DracoMode mode :
+                     {DracoMode::kEdgebreaker, DracoMode::kSequential, DracoMode::kOff}) {
+                    INFO(color << light << plain.size() << int(mode));
+                    write_container(folder / "x.glb", image, {mode, true});
+                    const MeshImage back = read_container(folder / "x.glb").mesh_image;
+                    check_same(image, back);
+                    write_container(folder / "y.gltf", back, {DracoMode::kOff, true});
+                    check_same(image, read_container(folder / "y.gltf").mesh_image);
+                }
+            }
+}
+
+TEST_CASE("container: faces that differ by a channel alone are told apart") {
+    const TemporaryFolder folder;
+    std::mt19937 random(5);
+    MeshImage image = random_mesh_image(12, 9, 1, WeightPrecision::kHalf, false, 3);
+    change_channels(image, true, true, {"Z"}, random);
+    // The same mesh once more on top, with other values of Z; every second pixel is mapped to the copy.
+    BaseMesh& mesh = image.levels[0].mesh;
+    const auto vertices = static_cast<Id>(mesh.vertex_count()), faces = static_cast<Id>(mesh.faces.size());
+    for (Id v = 0; v < vertices; ++v) {
+        mesh.position.push_back(mesh.position[v]);
+        for (int c = 0; c < 4; ++c) mesh.feature.push_back(mesh.feature_of(v)[c] + (c == 3 ? 1.0f : 0.0f));
+    }
+    for (Id f = 0; f < faces; ++f) {
+        const auto [a, b, c] = mesh.faces[f];
+        mesh.faces.push_back({a + vertices, b + vertices, c + vertices});
+    }
+    for (std::size_t i = 0; i < image.levels[0].map.coords.size(); i += 2)
+        image.levels[0].map.coords[i].face += faces;
+    for (const DracoMode mode : {DracoMode::kEdgebreaker, DracoMode::kSequential, DracoMode::kOff}) {
+        write_container(folder / "x.glb", image, {mode, true});
+        check_same(image, read_container(folder / "x.glb").mesh_image);
+    }
+}
+
 TEST_CASE("container: .glb and .gltf turn into each other without loss, and writing is deterministic") {
     const TemporaryFolder folder;
     const MeshImage image = random_mesh_image(30, 20, 2, WeightPrecision::kHalf, true, 99);
@@ -141,17 +212,17 @@ TEST_CASE("container: a wrong face, a wrong rotation and a swapped weight are al
     const Level& level = image.levels[0];
     Level other = level;
     std::rotate(other.map.coords.begin(), other.map.coords.begin() + 1, other.map.coords.end());
-    CHECK_FALSE(mapped(other) == mapped(level));
+    CHECK_FALSE(mapped(image, other) == mapped(image, level));
     other = level;
     for (PixelCoord& c : other.map.coords) c.face = (c.face + 1) % static_cast<Id>(level.mesh.faces.size());
-    CHECK_FALSE(mapped(other) == mapped(level));
+    CHECK_FALSE(mapped(image, other) == mapped(image, level));
     other = level;
     for (Face& face : other.mesh.faces) std::rotate(face.begin(), face.begin() + 1, face.end());
-    CHECK_FALSE(mapped(other) == mapped(level));
+    CHECK_FALSE(mapped(image, other) == mapped(image, level));
     CHECK(face_set(other.mesh) == face_set(level.mesh));
     other = level;
     for (PixelCoord& c : other.map.coords) std::swap(c.u, c.v);
-    CHECK_FALSE(mapped(other) == mapped(level));
+    CHECK_FALSE(mapped(image, other) == mapped(image, level));
 }
 
 TEST_CASE("container: vertices without a face are dropped by edgebreaker and nothing else changes") {
@@ -215,6 +286,9 @@ TEST_CASE("container: the writer refuses parts that do not fit each other") {
     refused([](MeshImage& m) { m.visits.resize(5); });
     refused([](MeshImage& m) { m.levels[1].map.coords[5].face = 1000; });
     refused([](MeshImage& m) { m.source.has_mask = false; });
+    refused([](MeshImage& m) { m.source.channel_names.push_back("Z"); });
+    refused([](MeshImage& m) { m.source.channel_names = {"Z"}; });
+    refused([](MeshImage& m) { m.levels[1].mesh.feature[4] = INFINITY; });
     refused([](MeshImage& m) { m.levels[0].error = INFINITY; });
     refused([](MeshImage& m) { m.parameters.emplace_back("x", double(NAN)); });
     refused([](MeshImage& m) { m.parameters.emplace_back("generator", true); });

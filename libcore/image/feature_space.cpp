@@ -1,0 +1,114 @@
+#include "libcore/image/feature_space.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "libcore/base/error.h"
+
+namespace imgmesh {
+namespace {
+
+bool has(const std::vector<std::string>& names, const char* name) {
+    return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+std::string listed(const std::vector<std::string>& names) {
+    std::string list;
+    for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
+    return list;
+}
+
+std::vector<std::string> names_of(const std::vector<ChannelChoice>& choices) {
+    std::vector<std::string> names;
+    for (const ChannelChoice& choice : choices) names.push_back(choice.name);
+    return names;
+}
+
+double weight_of(const std::vector<ChannelChoice>& choices, const std::string& name) {
+    for (const ChannelChoice& choice : choices)
+        if (choice.name == name) return choice.weight;
+    return 1;
+}
+
+}  // namespace
+
+SplitNames split_names(const std::vector<std::string>& names) {
+    SplitNames split;
+    if (has(names, "R") && has(names, "G") && has(names, "B"))
+        split.color = {"R", "G", "B"};
+    else if (has(names, "Y"))
+        split.color = {"Y"};
+    for (const std::string& name : names)
+        if (!has(split.color, name.c_str())) split.plain.push_back(name);
+    return split;
+}
+
+void check_channels(const std::vector<ChannelChoice>& choices) {
+    const auto refuse = [](const std::string& text) { throw Error(ErrorCode::kUsage, text); };
+    const std::vector<std::string> names = names_of(choices);
+    for (const auto& [name, weight] : choices) {
+        if (!(weight > 0 && std::isfinite(weight)))
+            refuse(cat("channel ", name, " has the weight ", weight, ", expected a finite number above 0"));
+        if (std::ranges::count(names, name) > 1) refuse(cat("channel ", name, " is chosen twice"));
+    }
+    const SplitNames split = split_names(names);
+    for (const std::string& name : split.color)
+        if (weight_of(choices, name) != weight_of(choices, split.color[0]))
+            refuse("R, G and B are one colour and have one weight");
+    if (split.features() > kMaxFeatures)
+        refuse(cat("the channels are ", split.features(), " features, at most ", kMaxFeatures,
+                   split.color.empty() ? "" : "; a colour counts as three"));
+}
+
+FeatureSpace feature_space(const Image& image, const std::vector<ChannelChoice>& choices, const Mask& mask) {
+    check_channels(choices);
+    for (const ChannelChoice& choice : choices)
+        if (image.channel(choice.name) < 0)
+            throw Error(ErrorCode::kBadFile, cat("the picture has no channel ", choice.name, ", it has ",
+                                                 listed(image.channel_names)));
+    const SplitNames split = split_names(choices.empty() ? image.channel_names : names_of(choices));
+    FeatureSpace space;
+    space.color = !split.color.empty();
+    if (choices.empty() && !space.color)
+        throw Error(ErrorCode::kUnsupported,
+                    cat("the picture has no colour, neither channels R, G, B nor Y, but ",
+                        listed(image.channel_names), "; channels can be chosen"));
+    if (space.color) {
+        space.gamut = gamut_of(image, mask);
+        space.color_weight = static_cast<float>(weight_of(choices, split.color[0]));
+    }
+    if (choices.empty()) return space;
+    space.plain = split.plain;
+    for (const std::string& name : space.plain)
+        space.plain_weight.push_back(static_cast<float>(weight_of(choices, name)));
+    return space;
+}
+
+FeatureImage extract_features(const Image& image, const FeatureSpace& space, const Mask& mask) {
+    FeatureImage color;
+    if (space.color) color = luv_image(image, space.gamut == Gamut::kLight ? Range::kLight : Range::kClipped);
+    if (space.plain.empty() && space.color_weight == 1) return color;
+    FeatureImage out{image.width, image.height, space.features(), {}};
+    out.data.reserve(image.pixel_count() * static_cast<std::size_t>(out.channels));
+    std::vector<int> from;
+    for (const std::string& name : space.plain) from.push_back(image.channel(name));
+    for (std::size_t i = 0; i < image.pixel_count(); ++i) {
+        for (int c = 0; c < color.channels; ++c) out.data.push_back(space.color_weight * color.pixel(i)[c]);
+        for (std::size_t c = 0; c < from.size(); ++c) {
+            const float value =
+                image.data[i * static_cast<std::size_t>(image.channels) + static_cast<std::size_t>(from[c])];
+            const float feature = mask.contains(i) ? value * space.plain_weight[c] : 0;
+            if (!(std::abs(feature) <= kLargestFeature)) {
+                const auto width = static_cast<std::size_t>(image.width);
+                throw Error(ErrorCode::kUnsupported,
+                            cat("channel ", space.plain[c], " is ", value, " at pixel (", i % width, ", ",
+                                i / width, "); times its weight ", space.plain_weight[c], " at most ",
+                                kLargestFeature, " is supported"));
+            }
+            out.data.push_back(feature);
+        }
+    }
+    return out;
+}
+
+}  // namespace imgmesh

@@ -1,0 +1,72 @@
+// Which colours a container holds.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "libcore/image/color.h"
+
+namespace imgmesh {
+
+Vec3f in_gamut(const Vec3f& luv, Gamut gamut) {
+    constexpr float kInfinity = std::numeric_limits<float>::infinity();
+    const float most = gamut == Gamut::kDisplay ? 1.0f : kInfinity,
+                lightest = gamut == Gamut::kDisplay ? 100.0f : kInfinity;
+    // Less than half a 16-bit code beyond counts as inside, so that a result is never projected again.
+    const auto inside = [most](const Vec3f& color) {
+        const Vec3f linear = linear_from_luv(color);
+        const float kSlack = 4e-6f * (most > 1 ? std::max(1.0f, linear.maxCoeff()) : 1.0f);
+        // Without lightness there is no chroma: linear_from_luv makes (0, u, v) the black that it is not.
+        return linear.minCoeff() >= -kSlack && linear.maxCoeff() <= most + kSlack &&
+               (color[0] > 0 || (color[1] == 0 && color[2] == 0));
+    };
+    if (inside(luv)) return luv;
+    // Towards a grey of the same lightness the gamut is always reached; bisect for where.
+    const Vec3f grey(std::clamp(luv[0], 0.0f, lightest), 0, 0);
+    Vec3f best = luv_from_linear(linear_from_luv(luv).cwiseMax(0.0f).cwiseMin(most));
+    // Darker and lighter greys too: at a lightness a little off, the gamut may reach much closer.
+    for (const float shift : {-8.0f, -4.0f, -2.0f, 0.0f, 2.0f, 4.0f, 8.0f}) {
+        const Vec3f center(std::clamp(grey[0] + shift, 0.0f, lightest), 0, 0);
+        const Vec3f rim(center[0], luv[1], luv[2]);
+        float low = 0, high = 1;
+        for (int step = 0; step < 12; ++step) {
+            const float middle = 0.5f * (low + high);
+            (inside(center + middle * (rim - center)) ? low : high) = middle;
+        }
+        const Vec3f candidate = center + low * (rim - center);
+        if ((candidate - luv).squaredNorm() < (best - luv).squaredNorm()) best = candidate;
+    }
+    return best;
+}
+
+std::array<std::uint16_t, 3> color_codes(const Vec3f& luv) {
+    const Vec3f linear = linear_from_luv(in_gamut(luv));
+    std::array<std::uint16_t, 3> codes;
+    for (int c = 0; c < 3; ++c)
+        codes[static_cast<std::size_t>(c)] =
+            static_cast<std::uint16_t>(std::lround(std::clamp(linear[c], 0.0f, 1.0f) * 65535.0f));
+    return codes;
+}
+
+Vec3f color_from_codes(const std::array<std::uint16_t, 3>& codes) {
+    return luv_from_linear(Vec3f(codes[0], codes[1], codes[2]) / 65535.0f);
+}
+
+Vec3f storable_light(const Vec3f& luv) {
+    constexpr int kBits = 16, kLeastExponent = -4;
+    Vec3f linear = linear_from_luv(in_gamut(luv, Gamut::kLight)).cwiseMax(0.0f).cwiseMin(kMostLight);
+    // Once more, as rounding may reach the next power of two, whose step is the double.
+    for (int pass = 0; pass < 2; ++pass) {
+        int exponent = 0;
+        std::frexp(linear.maxCoeff(), &exponent);
+        const float step = std::ldexp(1.0f, std::max(exponent, kLeastExponent) - kBits);
+        for (float& x : linear) x = std::round(x / step) * step;
+    }
+    return linear;
+}
+
+Vec3f storable_color(const Vec3f& luv, Gamut gamut) {
+    return gamut == Gamut::kDisplay ? color_from_codes(color_codes(luv))
+                                    : luv_from_linear(storable_light(luv));
+}
+
+}  // namespace imgmesh

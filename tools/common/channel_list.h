@@ -1,0 +1,15 @@
+// --channels: which channels of a picture are its features.
+#pragma once
+
+#include <vector>
+
+#include "libcore/image/feature_space.h"
+#include "tools/common/options.h"
+
+namespace imgmesh {
+
+/// A list of NAME or NAME:WEIGHT. What is wrong without any picture (check_channels) is Error(kUsage) at
+/// once.
+CLI::Option* add_channels(CLI::App& app, std::vector<ChannelChoice>& channels);
+
+}  // namespace imgmesh
