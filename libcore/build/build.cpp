@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "libcore/base/error.h"
 #include "libcore/base/stopwatch.h"
 #include "libcore/build/params.h"
 #include "libcore/build/refine_level.h"
+#include "libcore/build/rms_search.h"
 #include "libcore/collapse/collapse_edges.h"
 #include "libcore/image/color.h"
 #include "libcore/mesh/grid_mesh.h"
@@ -48,44 +50,102 @@ Mask checked(Mask mask, const Image& image) {
     return mask;
 }
 
-// Collapse and maps with the collapse's limits as they stand.
-std::vector<Level> build_levels(const FeatureImage& feature, const Mask& mask, const BuildParams& params,
-                                const CollapseParams& collapse, std::span<const CollapseTarget> targets,
-                                BuildReport& report, const Progress& progress) {
-    Stopwatch watch;
-    std::vector<CollapseResult> collapsed =
-        collapse_edges(grid_mesh(feature, mask), collapse, targets, part_of(progress, 0, 0.7));
-    report.seconds.collapse += watch.lap();
-    FitParams fit;
-    fit.color_weight = params.projection_color_weight;
-    fit.bary = params.bary;
-    fit.keep_colors = params.objective == Objective::kRgb;
-    RefineParams refinement;
-    refinement.rounds = static_cast<int>(params.refine.value_or(kUsualRefine));
-    refinement.shape_weight = params.shape_weight;
-    refinement.exchange = params.exchange;
-    refinement.min_quality = params.min_quality;
-    refinement.max_face_area = collapse.max_face_area;
-    report.collapses = collapsed.back().collapses;
-    report.levels.clear();
-    std::vector<Level> levels;
-    for (std::size_t k = 0; k < collapsed.size(); ++k) {
-        Level level{std::move(collapsed[k].mesh), {}, collapsed[k].error * params.color_weight};
-        const double share = 0.3 / static_cast<double>(collapsed.size()),
-                     begin = 0.7 + share * static_cast<double>(k);
-        const double middle = refinement.rounds > 0 ? begin + 0.7 * share : begin;
+// What makes levels of collapsed meshes.
+struct Pipeline {
+    const FeatureImage& feature;
+    const Mask& mask;
+    const BuildParams& params;
+    BuildReport& report;
+    const Progress& progress;
+
+    std::vector<CollapseResult> collapse(const CollapseParams& limits,
+                                         std::span<const CollapseTarget> targets) const {
+        Stopwatch watch;
+        std::vector<CollapseResult> collapsed =
+            collapse_edges(grid_mesh(feature, mask), limits, targets, part_of(progress, 0, 0.7));
+        report.seconds.collapse += watch.lap();
+        return collapsed;
+    }
+
+    // Refinement, pixel map and colours. Takes the share [begin, end] of the progress.
+    Level finish(CollapseResult&& collapsed, const CollapseParams& limits, LevelReport& figures, double begin,
+                 double end) const {
+        Stopwatch watch;
+        RefineParams refinement;
+        refinement.rounds = static_cast<int>(params.refine.value_or(kUsualRefine));
+        refinement.shape_weight = params.shape_weight;
+        refinement.exchange = params.exchange;
+        refinement.min_quality = params.min_quality;
+        refinement.max_face_area = limits.max_face_area;
+        Level level{std::move(collapsed.mesh), {}, collapsed.error * params.color_weight};
+        const double middle = refinement.rounds > 0 ? begin + 0.7 * (end - begin) : begin;
         if (refinement.rounds > 0 || params.objective == Objective::kRgb)
             refine_level(level.mesh, feature, mask, params.objective, refinement,
                          part_of(progress, begin, middle));
         report.seconds.refine += watch.lap();
-        level.map = fit_map(level.mesh, feature, fit, part_of(progress, middle, begin + share), mask);
+        FitParams fit;
+        fit.color_weight = params.projection_color_weight;
+        fit.bary = params.bary;
+        fit.keep_colors = params.objective == Objective::kRgb;
+        level.map = fit_map(level.mesh, feature, fit, part_of(progress, middle, end), mask);
         const PixelMap trivial = trivial_map(level.mesh, feature.width, feature.height, mask);
-        report.levels.push_back(
-            {map_rms(level.mesh, level.map, feature), map_rms(level.mesh, trivial, feature)});
-        levels.push_back(std::move(level));
+        figures = {map_rms(level.mesh, level.map, feature), map_rms(level.mesh, trivial, feature)};
         report.seconds.map += watch.lap();
+        return level;
+    }
+};
+
+// Collapse and maps with the collapse's limits as they stand.
+std::vector<Level> build_levels(const Pipeline& pipeline, const CollapseParams& limits,
+                                std::span<const CollapseTarget> targets) {
+    std::vector<CollapseResult> collapsed = pipeline.collapse(limits, targets);
+    BuildReport& report = pipeline.report;
+    report.collapses = collapsed.back().collapses;
+    report.levels.assign(collapsed.size(), {});
+    std::vector<Level> levels;
+    for (std::size_t k = 0; k < collapsed.size(); ++k) {
+        const double share = 0.3 / static_cast<double>(collapsed.size()),
+                     begin = 0.7 + share * static_cast<double>(k);
+        levels.push_back(
+            pipeline.finish(std::move(collapsed[k]), limits, report.levels[k], begin, begin + share));
     }
     return levels;
+}
+
+// The level that StopParams::rms asks for. Two runs of the collapse, of whose meshes only those that the
+// search measures are finished.
+std::vector<Level> build_to_rms(const Pipeline& pipeline, CollapseParams limits) {
+    const double rms = *pipeline.params.stop.rms;
+    const auto pixels = static_cast<double>(pipeline.report.pixels);
+    std::vector<CollapseResult> collapsed;
+    std::vector<Level> best;
+    Level level;
+    LevelReport figures;
+    std::int64_t collapses = 0;
+    double least = std::numeric_limits<double>::infinity();
+    const auto run = [&](const std::vector<std::int64_t>& counts) {
+        std::vector<CollapseTarget> targets;
+        for (const std::int64_t count : counts) targets.push_back({.vertices = count});
+        limits.smoothing =
+            collapse_params(pipeline.params, targets[std::min<std::size_t>(7, targets.size() - 1)], pixels)
+                .smoothing;
+        collapsed = pipeline.collapse(limits, targets);
+        return [&](std::size_t k) {
+            collapses = collapsed[k].collapses;
+            level = pipeline.finish(std::move(collapsed[k]), limits, figures, 0.7, 1);
+            least = std::min(least, figures.map_rms);
+            return figures.map_rms;
+        };
+    };
+    search_rms(std::max(std::int64_t{4}, pipeline.report.pixels), rms, run, [&] {
+        best.assign(1, std::move(level));
+        pipeline.report.levels = {figures};
+        pipeline.report.collapses = collapses;
+    });
+    if (best.empty())
+        throw Error(ErrorCode::kUnsupported,
+                    cat("rms is ", rms, ", but the least that could be reached is ", least));
+    return best;
 }
 
 }  // namespace
@@ -111,8 +171,10 @@ BuildResult build_mesh_image(const Image& image, const BuildParams& params, cons
     CollapseParams collapse = collapse_params(params, targets.front(), pixels);
     std::vector<Level>& levels = result.mesh_image.levels;
     if (params.max_cluster) collapse.max_face_area = static_cast<float>(*params.max_cluster);
+    const Pipeline pipeline{feature, mask, params, result.report, progress};
     for (;;) {
-        levels = build_levels(feature, mask, params, collapse, targets, result.report, progress);
+        levels =
+            params.stop.rms ? build_to_rms(pipeline, collapse) : build_levels(pipeline, collapse, targets);
         if (!params.max_cluster) break;
         // The collapse bounds a face's area; the map decides how many pixels that becomes.
         std::int64_t largest = 0;
