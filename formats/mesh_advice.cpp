@@ -9,17 +9,17 @@
 namespace imgmesh {
 namespace {
 
-// A side of one pixel counts as a strip around it (docs/format.md).
-std::pair<float, float> span_of(int side) {
-    if (side == 1) return {-0.5f, 0.5f};
+// A side of one pixel counts as a strip around it, and so do single pixels of a cut-out (docs/format.md).
+std::pair<float, float> span_of(int side, bool has_mask) {
+    if (side == 1 || has_mask) return {-0.5f, static_cast<float>(side) - 0.5f};
     return {0.0f, static_cast<float>(side - 1)};
 }
 
 void advise_on_vertices(const StoredMesh& mesh, const AssetLevel& level, const SourceInfo& source,
                         Findings& findings) {
     std::array<float, 3> low = mesh.position.front(), high = low;
-    const auto [left, right] = span_of(source.width);
-    const auto [top, bottom] = span_of(source.height);
+    const auto [left, right] = span_of(source.width, source.has_mask);
+    const auto [top, bottom] = span_of(source.height, source.has_mask);
     Repeated outside(findings, "mesh.outside");
     for (std::size_t v = 0; v < mesh.position.size(); ++v) {
         const auto& p = mesh.position[v];
@@ -68,7 +68,7 @@ void advise_on_faces(const StoredMesh& mesh, const SourceInfo& source, Findings&
                 return std::pair(cat("the edge from vertex ", edges[e].first, " to ", edges[e].second),
                                  Place());
             });
-    const auto extent = [](int side) { return double(span_of(side).second - span_of(side).first); };
+    const auto extent = [](int side) { return double(side == 1 ? 1 : side - 1); };
     const double whole = extent(source.width) * extent(source.height);  // exact, as the sum is
     if (!source.has_mask && area2 != 2 * whole)
         findings.add("mesh.area", cat("the faces have an area of ", area2 / 2, ", the picture ", whole));

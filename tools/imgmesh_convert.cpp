@@ -189,7 +189,7 @@ void print(const Report& report, std::ostream& out) {
     out << printable_line(report["input"].get<std::string>() + " -> " + report["output"].get<std::string>())
         << '\n';
     TextTable table;
-    table.add("levels", cat(report["levels"], report["layers"] ? "" : ", without pixel maps"));
+    table.add("levels", cat(report["levels"], report["layers"] ? ", with pixel maps" : ""));
     table.add("mesh", cat(report["vertices"], " vertices, ", report["faces"], " faces"));
     table.add("file", format_bytes(report["bytes"].get<std::uint64_t>()));
     table.print(out, 2);

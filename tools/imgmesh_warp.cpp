@@ -10,6 +10,7 @@
 #include "formats/edit_file.h"
 #include "formats/exr_parts.h"
 #include "formats/image_io.h"
+#include "libcore/warp/retarget.h"
 #include "libcore/warp/solve_edits.h"
 #include "libcore/warp/warp_image.h"
 #include "libcore/warp/warp_maps.h"
@@ -33,9 +34,10 @@ struct Options {
     std::optional<WarpHandle> handle;
     WarpEdit handle_edit;  ///< level and solver of `handle`
     OutputSize size;
+    bool retarget = false;  ///< `size` is --retarget's
 };
 
-const std::string kHandle = "--handle", kSize = "--size";
+const std::string kHandle = "--handle", kSize = "--size", kRetarget = "--retarget";
 
 // X,Y:DX,DY
 WarpHandle parse_handle(const std::string& text) {
@@ -59,13 +61,13 @@ WarpHandle parse_handle(const std::string& text) {
 }
 
 // WxH
-OutputSize parse_size(const std::string& text) {
+OutputSize parse_size(const std::string& name, const std::string& text) {
     const std::size_t cross = text.find('x');
     if (cross == std::string::npos)
-        throw Error(ErrorCode::kUsage, cat(kSize, " '", text, "': expected WIDTHxHEIGHT, as in 640x480"));
+        throw Error(ErrorCode::kUsage, cat(name, " '", text, "': expected WIDTHxHEIGHT, as in 640x480"));
     const CountRange range{1, ImageLimits().max_side};
-    return {static_cast<int>(parse_count(kSize, text.substr(0, cross), range)),
-            static_cast<int>(parse_count(kSize, text.substr(cross + 1), range))};
+    return {static_cast<int>(parse_count(name, text.substr(0, cross), range)),
+            static_cast<int>(parse_count(name, text.substr(cross + 1), range))};
 }
 
 void add_options(CLI::App& app, Options& o) {
@@ -94,8 +96,16 @@ void add_options(CLI::App& app, Options& o) {
                "For --handle: what moves beside the vertex, nothing (default) or all as rigidly as possible")
         ->needs(app.get_option(kHandle));
     add_value(
-        app, kSize, "WxH", [&o](const std::string& text) { o.size = parse_size(text); },
+        app, kSize, "WxH", [&o](const std::string& text) { o.size = parse_size(kSize, text); },
         "Size of the picture and of the STMap (default the picture's)");
+    add_value(
+        app, kRetarget, "WxH",
+        [&o](const std::string& text) {
+            o.size = parse_size(kRetarget, text);
+            o.retarget = true;
+        },
+        "As --size, but detail keeps its proportions and the rest of the picture gives way")
+        ->excludes(app.get_option(kSize));
 }
 
 bool is_container(const std::string& path) {
@@ -117,8 +127,9 @@ void check_options(const Options& o) {
     if (!o.displacement.empty() && lower_extension(o.displacement) != ".exr")
         throw Error(ErrorCode::kUsage,
                     cat("--displacement ", o.displacement, ": expected the name of an .exr"));
-    if (o.size.width > 0 && container && o.displacement.empty())
-        throw Error(ErrorCode::kUsage, cat(kSize, ": a container keeps its picture's size"));
+    if (o.size.width > 0 && container && (o.retarget || o.displacement.empty()))
+        throw Error(ErrorCode::kUsage,
+                    cat(o.retarget ? kRetarget : kSize, ": a container keeps its picture's size"));
 }
 
 WarpEdits all_edits(const Options& o) {
@@ -189,7 +200,8 @@ Report run(const Options& o, Context& context) {
 
     context.progress(0.3, "solve");
     const std::vector<VertexMoves> moves = solve(mesh_image, edits, o);
-    const DisplacementField field = displacement_field(mesh_image, moves);
+    DisplacementField field = displacement_field(mesh_image, moves);
+    if (o.retarget) add_field(field, retarget_field(mesh_image, o.size));
     Report report = {{"input", o.input},
                      {"edits", edits.size()},
                      {"moved_vertices", moved_vertices(moves)},

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Draws the pictures of docs/warp.md: make_warp.py BIN, with BIN the folder of the tools.
 
-A steering wheel (made up here) edited on three levels, and tests/data/kodim23.png edited.
+A steering wheel (made up here) edited on three levels, and tests/data/kodim23.png edited and given another shape.
 """
 import json
 import pathlib
@@ -78,6 +78,7 @@ def main():
     with tempfile.TemporaryDirectory(prefix="imgmesh-warp-") as name:
         draw_wheel(tools, pathlib.Path(name))
         draw_photo(tools, pathlib.Path(name))
+        draw_retarget(tools, pathlib.Path(name))
 
 
 def edited(tools, folder, container, picture, edits, level):
@@ -114,6 +115,15 @@ def draw_photo(tools, folder):
            "pins": [{"beyond": [512, 163, 60]}]}
     columns = [edited(tools, folder, container, PHOTO, edits, 1) for edits in ([], [lift, eye])]
     sheet(list(zip(*columns)), HERE / "warp-photo.jpg", 0.75)
+
+
+def draw_retarget(tools, folder):
+    container = folder / "one.glb"
+    run(tools / "imgmesh-build", PHOTO, "-o", container, "-q")
+    for option in ("--size", "--retarget"):
+        run(tools / "imgmesh-warp", container, "-q", "--image", PHOTO, option, "480x512", "-o", folder / f"{option}.png")
+    pictures = [shown(PHOTO), shown(folder / "--size.png"), shown(folder / "--retarget.png")]
+    sheet([pictures], HERE / "warp-retarget.jpg", 0.5)
 
 
 if __name__ == "__main__":

@@ -23,20 +23,31 @@ inline bool is_plain(const CellPoint& p) {
 // Places are rounded, so a share this close to the whole is the whole.
 inline constexpr float kWhole = 1 - 1.0f / 1024;
 
-// The share of an output pixel around the point that lies inside the picture's sides: exact for sides along
-// the output's axes. `scale` is output pixels per source pixel: what the rim, which moves as the pixels
-// beside it do, measures across, however the cells inside of it are distorted.
+// The share of an output pixel around the point that lies inside the picture's sides: 1 inside of sides that
+// do not move across themselves; exact for sides along the output's axes. `scale` is output pixels per source
+// pixel: what the rim, which moves as the pixels beside it do, measures across, however the cells inside of
+// it are distorted.
 inline float side_coverage(const DisplacementField& field, const Vec2f& scale, const CellPoint& p) {
-    const auto share = [](float at, int side, float across, float rim) {
-        const float from_centers = std::min(at, static_cast<float>(side - 1) - at);
-        if (across <= 0) return float(from_centers >= -0.5f);
+    constexpr float kStill = 1.0f / CellPlaces::kOne;
+    const int nearest[2] = {std::clamp(p.x, 0, field.width - 1), std::clamp(p.y, 0, field.height - 1)};
+    float both = 1;
+    for (int axis = 0; axis < 2; ++axis) {
+        const int side = axis == 0 ? field.width : field.height, cell = axis == 0 ? p.x : p.y;
+        const float at = static_cast<float>(cell) + (axis == 0 ? p.fx : p.fy),
+                    far = static_cast<float>(side - 1) - at, from_centers = std::min(at, far);
+        const int end = at < far ? 0 : side - 1;
+        const Vec2f& move =
+            field.move[axis == 0 ? field.index(end, nearest[1]) : field.index(nearest[0], end)];
+        if (from_centers >= -0.5f && std::abs(move[axis]) < kStill) continue;
+        const float across = std::hypot(p.dx[axis], p.dy[axis]);
+        if (across <= 0) {
+            both *= float(from_centers >= -0.5f);
+            continue;
+        }
         const float inside =
-            from_centers >= 0 ? from_centers / across + 0.5f * rim : (from_centers + 0.5f) / across;
-        return std::clamp(0.5f + inside, 0.0f, 1.0f);
-    };
-    const float both =
-        share(static_cast<float>(p.x) + p.fx, field.width, std::hypot(p.dx.x(), p.dy.x()), scale.x()) *
-        share(static_cast<float>(p.y) + p.fy, field.height, std::hypot(p.dx.y(), p.dy.y()), scale.y());
+            from_centers >= 0 ? from_centers / across + 0.5f * scale[axis] : (from_centers + 0.5f) / across;
+        both *= std::clamp(0.5f + inside, 0.0f, 1.0f);
+    }
     return both > kWhole ? 1.0f : both;
 }
 

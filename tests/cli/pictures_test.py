@@ -15,6 +15,7 @@ class Pictures(CliCase):
         report = self.build(picture, *args, **kwargs)
         verdict = self.report("imgmesh-info", "out.glb", "--validate")
         self.assertTrue(verdict["valid"])
+        self.assertEqual(verdict["findings"], [])
         self.run_ok("imgmesh-reconstruct", "out.glb", "-o", "back.tif")
         return report, picture_files.read(self.folder / "back.tif")
 

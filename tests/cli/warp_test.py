@@ -95,6 +95,17 @@ class Warp(CliCase):
         np.testing.assert_allclose(image, mean, atol=0.51 / 255)
         self.assertEqual(self.warp("--size", "100x7")[1].shape, (7, 100, 3))
 
+    def test_retarget(self):
+        report, image = self.warp("--retarget", "30x32", "--displacement", "d.exr")
+        self.assertEqual((report["width"], report["height"], image.shape), (30, 32, (32, 30, 3)))
+        self.assertEqual(report["folded_cells"], 0)
+        self.assertEqual(part(self.folder / "d.exr", 0)[0].shape, (32, 30, 3))
+        self.assertFalse(np.array_equal(image, self.warp("--size", "30x32")[1]))
+        # The same proportions: nothing gives way.
+        np.testing.assert_allclose(self.warp("--retarget", "24x16")[1], self.warp("--size", "24x16")[1], atol=1.01 / 255)
+        # An edit is added: its corner leaves the frame.
+        self.assertEqual(self.warp("--retarget", "30x32", "--handle", "0,0:4,4")[1].shape, (32, 30, 4))
+
     def test_maps(self):
         """The STMap, read as compositors do, gives the drawing; the displacement is where pixels go."""
         report, image = self.warp("--handle", "20,14:0.8,0.6", "--level", "1", "--displacement", "d.exr")
@@ -169,6 +180,7 @@ class Warp(CliCase):
         report = self.report(TOOL, "ring.glb", "-o", "w.glb", "--handle", "66,30:3,0", "--level", "1")
         self.assertEqual(report["moved_vertices"], 1)
         self.assertTrue(self.report("imgmesh-info", "w.glb", "--validate")["valid"])
+        self.assert_error(TOOL, ["ring.glb", "--image", "ring.png", "-o", "x.png", "--retarget", "40x40"], 5, "cut-out")
 
     def test_bad_edit_files(self):
         handle = {"vertex": 0, "move": [1, 1]}
@@ -195,7 +207,9 @@ class Warp(CliCase):
                 (["c.glb", "--image", "in.png", "-o", "x.txt"], "x.txt"),
                 (["c.glb", "--displacement", "x.png"], "--displacement", ".exr"),
                 (["c.glb", "-o", "x.glb", "--size", "3x3"], "--size"),
-                ([*picture, "--size", "3"], "--size"), ([*picture, "--size", "0x5"], "--size"),
+                ([*picture, "--size", "3"], "--size"), ([*picture, "--retarget", "3y3"], "--retarget"),
+                ([*picture, "--retarget", "3x3", "--size", "3x3"], "--retarget"),
+                (["c.glb", "-o", "x.glb", "--retarget", "3x3"], "--retarget"), ([*picture, "--size", "0x5"], "--size"),
                 ([*picture, "--size", "65536x5"], "--size"), ([*picture, "--size", "65535x65535"], "size"),
                 ([*picture, "--handle", "1,2"], "--handle"), ([*picture, "--handle", "1,2:3"], "--handle"),
                 ([*picture, "--handle", "1,2:3,nan"], "--handle"), ([*picture, "--handle", "1,2:3,4,5"], "--handle"),

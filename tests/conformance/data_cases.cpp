@@ -93,7 +93,7 @@ void add_mesh_cases(std::map<std::string, Case>& cases) {
         m.color.push_back(m.color[0]);
         m.faces.push_back({1, 2, 4});
     });
-    cases["mesh.outside"] = masked_case([](StoredMesh& m) { m.position[3][0] = 2.5f; });
+    cases["mesh.outside"] = masked_case([](StoredMesh& m) { m.position[3][0] = 2.75f; });
     cases["mesh.area"] = mesh_case([](StoredMesh& m) { m.position[3][0] = 1.5f; });
 }
 
