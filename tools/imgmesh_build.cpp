@@ -125,13 +125,14 @@ void add_options(CLI::App& app, Options& o) {
             throw Error(ErrorCode::kUsage, "--geometry-weight: the metric hoppe has no geometry to weigh");
     });
     add_count(app, "--smoothing", o.params.smoothing, {0, kMaxSmoothing},
-              "Passes of smoothing before gradients are taken (default by density)");
+              "Passes of smoothing before gradients are taken (default by density for flattened, else 0)");
     add_choice<bool, bool>(
         app, "--quadrics", o.params.rebuild_quadrics, {{"accumulated", false}, {"rebuilt", true}},
         "Summed up from the pixels on, or taken anew from the mesh at every halving (default accumulated)");
-    add_choice<bool, bool>(
+    add_choice<std::optional<bool>, bool>(
         app, "--priority", o.params.total_priority, {{"increment", false}, {"total", true}},
-        "Edges go by the error that a collapse adds, or by its total, as in the paper (default increment)");
+        "Edges go by the error that a collapse adds, or by its total (default increment "
+        "for flattened, else total)");
     CLI::Option* const projection =
         add_number(app, "--projection-color-weight", o.params.projection_color_weight, {0},
                    cat("Weight of colour in the pixel map, 0 for the trivial map (default ",
@@ -144,6 +145,9 @@ void add_options(CLI::App& app, Options& o) {
         cat("Smoothness of the pixel map against colour: 1 / projection color weight (default ",
             format_number(1 / params.projection_color_weight), ")"))
         ->excludes(projection);
+    add_choice<bool, bool>(
+        app, "--colors", o.params.quadric_colors, {{"fitted", false}, {"quadric", true}},
+        "Vertex colours: of least squares, or of the quadrics, as in the paper (default fitted)");
     add_choice(app, "--bary", o.params.bary, bary_choices(),
                "Precision of the pixel map (default half where the map stays one to one, else float)");
     add_choice(app, "--draco", o.draco, draco_choices(), "Mesh compression (default edgebreaker)");

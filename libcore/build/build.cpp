@@ -72,7 +72,7 @@ struct Pipeline {
                  double end) const {
         Stopwatch watch;
         RefineParams refinement;
-        refinement.rounds = static_cast<int>(params.refine.value_or(kUsualRefine));
+        refinement.rounds = static_cast<int>(refine_rounds(params));
         refinement.shape_weight = params.shape_weight;
         refinement.exchange = params.exchange;
         refinement.min_quality = params.min_quality;
@@ -86,7 +86,7 @@ struct Pipeline {
         FitParams fit;
         fit.color_weight = params.projection_color_weight;
         fit.bary = params.bary;
-        fit.keep_colors = params.objective == Objective::kRgb;
+        fit.keep_colors = params.quadric_colors || params.objective == Objective::kRgb;
         level.map = fit_map(level.mesh, feature, fit, part_of(progress, middle, end), mask);
         const PixelMap trivial = trivial_map(level.mesh, feature.width, feature.height, mask);
         figures = {map_rms(level.mesh, level.map, feature), map_rms(level.mesh, trivial, feature)};

@@ -54,13 +54,17 @@ struct BuildParams {
     double geometry_weight = 0.3;  ///< lambda: geometry against colour in the quadrics [L*u*v*^2 / px^2]; > 0
     double color_weight = 1.0;     ///< of colour in the quadrics; only the ratio counts, 1e-9 to 1e9
     bool rebuild_quadrics = false;  ///< take quadrics anew from the mesh at every halving ("memoryless")
-    bool total_priority = false;    ///< edges go by total error, as in the paper, not by what a merge adds
-    std::optional<int> smoothing;   ///< passes of [1 2 1] / 4 before gradients are taken; none: by density
+    /// edges go by total error, as in the paper, not by what a merge adds; none: for metrics but the
+    /// flattened
+    std::optional<bool> total_priority;
+    /// passes of [1 2 1] / 4 before gradients are taken; none: by density for the flattened metric, else 0
+    std::optional<int> smoothing;
+    bool quadric_colors = false;  ///< vertex colours are those of the quadrics, as in the paper, not fitted
     double projection_color_weight = 1.0 / 20;  ///< of colour against smoothness in the map; 0: trivial map
     std::optional<WeightPrecision> bary;        ///< none: half where the map stays a bijection, else float
     std::optional<std::int64_t> max_cluster;    ///< no face with more pixels than this; >= 3
     /// Rounds of refinement (refine/refine.h) of each level; 0 to kMaxRefine. None: kUsualRefine where the
-    /// features are a colour, else 0, as other features cannot be refined.
+    /// features are a colour and the metric the flattened one with fitted colours, else 0.
     std::optional<std::int64_t> refine;
     double shape_weight = 0.4;  ///< of the triangles' shape in refinement (RefineParams::shape_weight); >= 0
     double exchange = 0;        ///< share of vertices that a round adds and takes away elsewhere; 0 to 1

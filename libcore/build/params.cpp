@@ -53,6 +53,9 @@ void check_params(const BuildParams& p) {
     const double lambda = p.geometry_weight / p.color_weight;
     require(lambda >= 1e-9 && lambda <= 1e9,
             cat("geometry weight / color weight is ", lambda, ", expected 1e-9 to 1e9"));
+    require(!p.quadric_colors || (p.refine.value_or(0) == 0 && p.objective == Objective::kLuv),
+            "colors are the quadrics', but refinement and the objective rgb fit their own: expected refine 0 "
+            "and objective luv");
     require(p.smoothing.value_or(0) >= 0 && p.smoothing.value_or(0) <= kMaxSmoothing,
             cat("smoothing is ", p.smoothing.value_or(0), ", expected 0 to ", kMaxSmoothing));
     require(std::isfinite(p.projection_color_weight) && p.projection_color_weight >= 0,
@@ -115,12 +118,20 @@ CollapseParams collapse_params(const BuildParams& params, const CollapseTarget& 
     out.solver = params.solver;
     out.geometry_weight = static_cast<float>(params.geometry_weight / params.color_weight);
     out.rebuild_quadrics = params.rebuild_quadrics;
-    out.total_priority = params.total_priority;
+    // Summing up what merges add and smoothing are not part of what others published.
+    const bool published = params.metric != Metric::kFlattened;
+    out.total_priority = params.total_priority.value_or(published);
     out.min_shape = static_cast<float>(params.min_quality);
     const auto vertices = static_cast<double>(std::max(finest.vertices, finest.faces / 2));
     // With an error alone the density is not known beforehand; the default's serves.
-    out.smoothing = params.smoothing.value_or(smoothing_passes(vertices > 0 ? pixels / vertices : 100));
+    const int passes = published ? 0 : smoothing_passes(vertices > 0 ? pixels / vertices : 100);
+    out.smoothing = params.smoothing.value_or(passes);
     return out;
+}
+
+std::int64_t refine_rounds(const BuildParams& params) {
+    const bool plain = params.metric != Metric::kFlattened || params.quadric_colors;
+    return params.refine.value_or(plain ? 0 : kUsualRefine);
 }
 
 std::vector<BuildParameter> listed_params(const BuildParams& p, const CollapseParams& collapse) {
@@ -140,11 +151,12 @@ std::vector<BuildParameter> listed_params(const BuildParams& p, const CollapsePa
     if (p.metric != Metric::kHoppe) out.emplace_back("geometry-weight", p.geometry_weight);
     out.emplace_back("color-weight", p.color_weight);
     out.emplace_back("quadrics", std::string(p.rebuild_quadrics ? "rebuilt" : "accumulated"));
-    out.emplace_back("priority", std::string(p.total_priority ? "total" : "increment"));
+    out.emplace_back("priority", std::string(collapse.total_priority ? "total" : "increment"));
     out.emplace_back("projection-color-weight", p.projection_color_weight);
+    out.emplace_back("colors", std::string(p.quadric_colors ? "quadric" : "fitted"));
     out.emplace_back("smoothing", std::int64_t{collapse.smoothing});
-    out.emplace_back("refine", p.refine.value_or(kUsualRefine));
-    if (p.refine.value_or(kUsualRefine) > 0) {
+    out.emplace_back("refine", refine_rounds(p));
+    if (refine_rounds(p) > 0) {
         out.emplace_back("shape-weight", p.shape_weight);
         out.emplace_back("exchange", p.exchange);
     }

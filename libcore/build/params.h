@@ -20,4 +20,8 @@ CollapseParams collapse_params(const BuildParams& params, const CollapseTarget& 
 /// Every parameter that shaped the result, by its option's name.
 std::vector<BuildParameter> listed_params(const BuildParams& params, const CollapseParams& collapse);
 
+/// Rounds of refinement: as wanted, or else none for published metrics and for colours of the quadrics, which
+/// are to be compared as they are.
+std::int64_t refine_rounds(const BuildParams& params);
+
 }  // namespace imgmesh

@@ -23,6 +23,25 @@ class Metrics(CliCase):
                     self.assertEqual((found["metric"], found["solver"]), (metric, solver))
                     self.assertEqual("geometry-weight" in found, metric != "hoppe")
 
+    def test_published_metrics_go_by_total_error_and_pixel_gradients(self):
+        """Unless told otherwise: what is compared with is what was published."""
+        for metric, priority, smoothing in (("flattened", "increment", 1), ("hoppe", "total", 0),
+                                            ("garland", "total", 0)):
+            found = self.parameters("--metric", metric)
+            self.assertEqual((found["priority"], found["smoothing"]), (priority, smoothing))
+        found = self.parameters("--metric", "hoppe", "--priority", "increment", "--smoothing", "2")
+        self.assertEqual((found["priority"], found["smoothing"]), ("increment", 2))
+
+    def test_colours_of_the_quadrics_are_those_that_are_not_fitted(self):
+        picture_files.png(self.folder / "in.png", picture_files.noise(40, 30))
+        args = ("--vertices", "60", "--refine", "0", "--projection-color-weight", "0")
+        fitted, quadric = (self.build("in.png", *args, "--colors", c) for c in ("fitted", "quadric"))
+        self.assertEqual(fitted["vertices"], quadric["vertices"])
+        self.assertLess(fitted["gouraud_rms"], 0.99 * quadric["gouraud_rms"])
+        for wrong in (("--refine", "1"), ("--objective", "rgb")):
+            self.assert_error("imgmesh-build", ["in.png", "-o", "x.glb", "--colors", "quadric", *wrong], 2, "colors",
+                              "refine")
+
     def test_smoothing_is_by_density_or_as_wanted(self):
         self.assertEqual(self.parameters("--smoothing", "3")["smoothing"], 3)
         self.assertEqual(self.parameters("--smoothing", "0")["smoothing"], 0)

@@ -73,6 +73,7 @@ class Usage(CliCase):
                                       ("--draco", "zip", "edgebreaker, sequential, none"),
                                       ("--metric", "qem", "flattened, hoppe, garland"),
                                       ("--solver", "qr", "svd, lu, closed"),
+                                      ("--colors", "raw", "fitted, quadric"),
                                       ("--color-space", "CMYK", "sRGB, linear"), ("--alpha", "keep", "cut, ignore")):
             self.assert_error("imgmesh-build", ["in.png", "-o", "out.glb", option, value], 2, option, value, listed)
         self.assert_error("imgmesh-reconstruct", ["in.glb", "-o", "o.png", "--mode", "visits"], 2, "--mode", "wire")
