@@ -46,7 +46,7 @@ class Node {
     void check_members(std::initializer_list<const char*> names) const {
         if (!value_.is_object()) refuse(cat("expected an object, found ", value_.type_name()));
         for (const auto& [name, ignored] : value_.items())
-            if (std::none_of(names.begin(), names.end(), [&](const char* n) { return name == n; }))
+            if (std::find(names.begin(), names.end(), name) == names.end())
                 refuse(
                     cat("unknown member ", json(name).dump(-1, ' ', true, json::error_handler_t::replace)));
     }

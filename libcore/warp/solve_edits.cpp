@@ -68,7 +68,7 @@ std::vector<Id> selected(const BaseMesh& mesh, int level, const VertexSelection&
         const auto [left, top, right, bottom] = *s.box;
         add_within(
             mesh,
-            [&](const Vec2d& p) {
+            [left = left, top = top, right = right, bottom = bottom](const Vec2d& p) {
                 return p.x() >= left && p.x() <= right && p.y() >= top && p.y() <= bottom;
             },
             vertices);
