@@ -69,6 +69,8 @@ void add_options(CLI::App& app, Options& o) {
     CLI::Option* const density =
         add_number(app, "--density", o.params.stop.density, {0, 100, true},
                    cat("Stop at this many vertices, in percent of the pixels (default ", stop.density, ")"));
+    CLI::Option* const rms = add_number(app, "--rms", o.params.stop.rms, {0},
+                                        "Stop at an RMS of the reconstruction of at most this, in L*u*v*");
     density->excludes(faces)->excludes(vertices)->excludes(error);
     CLI::Option* const levels =
         add_count(app, "--levels", o.params.levels.count, {1, kMaxLevels},
@@ -88,6 +90,13 @@ void add_options(CLI::App& app, Options& o) {
         ->excludes(vertices)
         ->excludes(error)
         ->excludes(density);
+    rms->excludes(faces)
+        ->excludes(vertices)
+        ->excludes(error)
+        ->excludes(density)
+        ->excludes(levels)
+        ->excludes(level_faces)
+        ->excludes(level_errors);
     add_count(app, "--max-cluster", o.params.max_cluster, {3},
               "Pixels a face has at most, whatever the limits above say");
     add_number(

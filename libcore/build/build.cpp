@@ -2,12 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <optional>
 #include <utility>
 
 #include "libcore/base/error.h"
 #include "libcore/base/stopwatch.h"
 #include "libcore/build/params.h"
 #include "libcore/build/refine_level.h"
+#include "libcore/build/rms_search.h"
 #include "libcore/build/tracking.h"
 #include "libcore/collapse/collapse_edges.h"
 #include "libcore/image/color.h"
@@ -64,56 +67,117 @@ Mask checked(Mask mask, const Image& image) {
     return mask;
 }
 
-// Collapse and maps with the collapse's limits as they stand.
-void build_levels(const FeatureImage& feature, const FeatureSpace& space, const Mask& mask,
-                  const BuildParams& params, const CollapseParams& collapse,
-                  std::span<const CollapseTarget> targets, BuildResult& result, const Progress& progress) {
-    Stopwatch watch;
-    const GridMesh grid = grid_mesh(feature, mask);
-    Tracking tracking(grid, feature.width, feature.height, params);
-    std::vector<CollapseResult> collapsed =
-        collapse_edges(grid, collapse, targets, part_of(progress, 0, 0.7), tracking.hooks());
-    result.report.seconds.collapse += watch.lap();
-    FitParams fit;
-    fit.color_weight = map_color_weight(params);
-    fit.bary = params.bary;
-    fit.space = space;
-    fit.keep_colors = params.quadric_colors || params.objective == Objective::kRgb;
-    RefineParams refinement;
-    refinement.rounds = static_cast<int>(refine_rounds(params));
-    refinement.shape_weight = params.shape_weight;
-    refinement.exchange = params.exchange;
-    refinement.min_quality = params.min_quality;
-    refinement.max_face_area = collapse.max_face_area;
-    BuildReport& report = result.report;
-    report.collapses = collapsed.back().collapses;
-    report.retracted = tracking.retracted();
-    report.levels.clear();
-    result.mesh_image.visits = tracking.take_visits();
-    std::vector<Level>& levels = result.mesh_image.levels;
-    levels.clear();
-    for (std::size_t k = 0; k < collapsed.size(); ++k) {
-        Level level{std::move(collapsed[k].mesh), {}, collapsed[k].error * params.color_weight};
-        const double share = 0.3 / static_cast<double>(collapsed.size()),
-                     begin = 0.7 + share * static_cast<double>(k);
-        const double middle = refinement.rounds > 0 ? begin + 0.7 * share : begin;
+// What makes levels of collapsed meshes.
+struct Pipeline {
+    const FeatureImage& feature;
+    const FeatureSpace& space;
+    const Mask& mask;
+    const BuildParams& params;
+    BuildReport& report;
+    const Progress& progress;
+
+    std::vector<CollapseResult> collapse(const GridMesh& grid, const CollapseParams& limits,
+                                         std::span<const CollapseTarget> targets,
+                                         const CollapseHooks& hooks = {}) const {
+        Stopwatch watch;
+        std::vector<CollapseResult> collapsed =
+            collapse_edges(grid, limits, targets, part_of(progress, 0, 0.7), hooks);
+        report.seconds.collapse += watch.lap();
+        return collapsed;
+    }
+
+    // Refinement, pixel map (`tracked` where there is one) and colours. Takes the share [begin, end] of the
+    // progress.
+    Level finish(CollapseResult&& collapsed, const CollapseParams& limits, std::optional<PixelMap> tracked,
+                 LevelReport& figures, double begin, double end) const {
+        Stopwatch watch;
+        RefineParams refinement;
+        refinement.rounds = static_cast<int>(refine_rounds(params));
+        refinement.shape_weight = params.shape_weight;
+        refinement.exchange = params.exchange;
+        refinement.min_quality = params.min_quality;
+        refinement.max_face_area = limits.max_face_area;
+        Level level{std::move(collapsed.mesh), {}, collapsed.error * params.color_weight};
+        const double middle = refinement.rounds > 0 ? begin + 0.7 * (end - begin) : begin;
         if (refinement.rounds > 0 || params.objective == Objective::kRgb)
             refine_level(level.mesh, feature, mask, params.objective, refinement,
                          part_of(progress, begin, middle));
         report.seconds.refine += watch.lap();
-        level.map = tracking.tracked()
-                        ? fit_given_map(level.mesh, feature, tracking.take_map(k), fit, mask)
-                        : fit_map(level.mesh, feature, fit, part_of(progress, middle, begin + share), mask);
+        FitParams fit;
+        fit.color_weight = map_color_weight(params);
+        fit.bary = params.bary;
+        fit.space = space;
+        fit.keep_colors = params.quadric_colors || params.objective == Objective::kRgb;
+        level.map = tracked ? fit_given_map(level.mesh, feature, *std::move(tracked), fit, mask)
+                            : fit_map(level.mesh, feature, fit, part_of(progress, middle, end), mask);
         const PixelMap trivial = trivial_map(level.mesh, feature.width, feature.height, mask);
-        report.levels.push_back(
-            {map_rms(level.mesh, level.map, feature), map_rms(level.mesh, trivial, feature), {}});
+        figures = {map_rms(level.mesh, level.map, feature), map_rms(level.mesh, trivial, feature), {}};
         for (int c = space.color ? 3 : 0; c < space.features(); ++c)
-            report.levels.back().plain_rms.push_back(feature_rms(level.mesh, level.map, feature, c) /
-                                                     space.weight(c));
+            figures.plain_rms.push_back(feature_rms(level.mesh, level.map, feature, c) / space.weight(c));
         take_weights_out(level.mesh, space);
-        levels.push_back(std::move(level));
         report.seconds.map += watch.lap();
+        return level;
     }
+};
+
+// Collapse and maps with the collapse's limits as they stand.
+void build_levels(const Pipeline& pipeline, const CollapseParams& limits,
+                  std::span<const CollapseTarget> targets, MeshImage& mesh_image) {
+    Stopwatch watch;
+    const GridMesh grid = grid_mesh(pipeline.feature, pipeline.mask);
+    Tracking tracking(grid, pipeline.feature.width, pipeline.feature.height, pipeline.params);
+    BuildReport& report = pipeline.report;
+    report.seconds.collapse += watch.lap();
+    std::vector<CollapseResult> collapsed = pipeline.collapse(grid, limits, targets, tracking.hooks());
+    report.collapses = collapsed.back().collapses;
+    report.retracted = tracking.retracted();
+    report.levels.assign(collapsed.size(), {});
+    mesh_image.visits = tracking.take_visits();
+    mesh_image.levels.clear();
+    for (std::size_t k = 0; k < collapsed.size(); ++k) {
+        const double share = 0.3 / static_cast<double>(collapsed.size()),
+                     begin = 0.7 + share * static_cast<double>(k);
+        std::optional<PixelMap> tracked;
+        if (tracking.tracked()) tracked = tracking.take_map(k);
+        mesh_image.levels.push_back(pipeline.finish(std::move(collapsed[k]), limits, std::move(tracked),
+                                                    report.levels[k], begin, begin + share));
+    }
+}
+
+// The level that StopParams::rms asks for. Two runs of the collapse, of whose meshes only those that the
+// search measures are finished.
+void build_to_rms(const Pipeline& pipeline, CollapseParams limits, MeshImage& mesh_image) {
+    const GridMesh grid = grid_mesh(pipeline.feature, pipeline.mask);
+    const double rms = *pipeline.params.stop.rms;
+    const auto pixels = static_cast<double>(pipeline.report.pixels);
+    std::vector<CollapseResult> collapsed;
+    Level level;
+    LevelReport figures;
+    std::int64_t collapses = 0;
+    double least = std::numeric_limits<double>::infinity();
+    const auto run = [&](const std::vector<std::int64_t>& counts) {
+        std::vector<CollapseTarget> targets;
+        for (const std::int64_t count : counts) targets.push_back({.vertices = count});
+        limits.smoothing =
+            collapse_params(pipeline.params, targets[std::min<std::size_t>(7, targets.size() - 1)], pixels)
+                .smoothing;
+        collapsed = pipeline.collapse(grid, limits, targets);
+        return [&](std::size_t k) {
+            collapses = collapsed[k].collapses;
+            level = pipeline.finish(std::move(collapsed[k]), limits, {}, figures, 0.7, 1);
+            least = std::min(least, figures.map_rms);
+            return figures.map_rms;
+        };
+    };
+    mesh_image.levels.clear();
+    search_rms(std::max(std::int64_t{4}, pipeline.report.pixels), rms, run, [&] {
+        mesh_image.levels.assign(1, std::move(level));
+        pipeline.report.levels = {figures};
+        pipeline.report.collapses = collapses;
+    });
+    if (mesh_image.levels.empty())
+        throw Error(ErrorCode::kUnsupported,
+                    cat("rms is ", rms, ", but the least that could be reached is ", least));
 }
 
 }  // namespace
@@ -146,8 +210,12 @@ BuildResult build_mesh_image(const Image& image, const BuildParams& asked, const
     CollapseParams collapse = collapse_params(params, targets.front(), pixels);
     const std::vector<Level>& levels = result.mesh_image.levels;
     if (params.max_cluster) collapse.max_face_area = static_cast<float>(*params.max_cluster);
+    const Pipeline pipeline{feature, space, mask, params, result.report, progress};
     for (;;) {
-        build_levels(feature, space, mask, params, collapse, targets, result, progress);
+        if (params.stop.rms)
+            build_to_rms(pipeline, collapse, result.mesh_image);
+        else
+            build_levels(pipeline, collapse, targets, result.mesh_image);
         if (!params.max_cluster) break;
         // The collapse bounds a face's area; the map decides how many pixels that becomes.
         std::int64_t largest = 0;

@@ -19,7 +19,10 @@ struct StopParams {
     std::optional<std::int64_t> faces;     ///< at most this many faces; >= 2
     std::optional<std::int64_t> vertices;  ///< at most this many vertices; >= 4
     std::optional<double>
-        error;             ///< no collapse above this total quadric error (paper sec. 3.1) [L*u*v*^2 px^2]
+        error;  ///< no collapse above this total quadric error (paper sec. 3.1) [L*u*v*^2 px^2]
+    /// instead: as few vertices as an RMS of at most this through the pixel map takes, to about 3 %; 0 or
+    /// more [L*u*v*]. One level only. Error(kUnsupported) where the dense mesh has a larger one.
+    std::optional<double> rms;
     double density = 1.0;  ///< percent of the pixels that stay vertices; in (0, 100]
 };
 

@@ -46,6 +46,12 @@ void check_params(const BuildParams& p) {
             cat("vertices is ", p.stop.vertices.value_or(4), ", expected 4 or more"));
     require(p.stop.error.value_or(0) >= 0 && std::isfinite(p.stop.error.value_or(0)),
             cat("error is ", p.stop.error.value_or(0), ", expected a finite number, 0 or more"));
+    require(p.stop.rms.value_or(0) >= 0 && std::isfinite(p.stop.rms.value_or(0)),
+            cat("rms is ", p.stop.rms.value_or(0), ", expected a finite number, 0 or more"));
+    require(!p.stop.rms || (p.levels.count == 1 && p.levels.faces.empty() && p.levels.errors.empty()),
+            "rms stops at one level, and more are asked for");
+    require(!p.stop.rms || (map_kind(p) != MapKind::kTracked && !p.visits),
+            "rms is searched over several meshes, a tracked map and visits follow the collapse to one");
     require(positive(p.stop.density) && p.stop.density <= 100,
             cat("density is ", p.stop.density, ", expected a percentage above 0, at most 100"));
     require(positive(p.geometry_weight),
@@ -167,7 +173,9 @@ std::vector<BuildParameter> listed_params(const BuildParams& p, const CollapsePa
     std::vector<BuildParameter> out{{"metric", std::string(metric_name(p.metric))},
                                     {"solver", std::string(solver_name(p.solver))}};
     if (!p.channels.empty()) out.emplace_back("channels", joined(p.channels));
-    if (stops_by_itself(p)) {
+    if (p.stop.rms) {
+        out.emplace_back("rms", *p.stop.rms);
+    } else if (stops_by_itself(p)) {
         if (p.stop.faces) out.emplace_back("faces", *p.stop.faces);
         if (p.stop.vertices) out.emplace_back("vertices", *p.stop.vertices);
         if (p.stop.error) out.emplace_back("error", *p.stop.error);

@@ -72,6 +72,17 @@ class Refine(CliCase):
         self.assert_error("imgmesh-build", ["noise.png", "-o", "q.glb", "--map-smoothness", "4",
                                             "--projection-color-weight", "0.25"], 2, "--map-smoothness")
 
+    def test_rms(self):
+        def built(*args, code=0):
+            return self.report("imgmesh-build", "noise.png", "-o", "p.glb", *args, code=code)["images"][0]
+
+        image = built("--rms", "30")
+        self.assertLessEqual(image["map_rms"], 30)
+        self.assertGreater(image["map_rms"], 27)
+        self.assertEqual(self.report("imgmesh-info", "p.glb")["build"]["rms"], 30)
+        self.assertIn("rms", built("--rms", "1e-6", code=5)["failure"]["message"])
+        self.assert_error("imgmesh-build", ["noise.png", "-o", "q.glb", "--rms", "3", "--levels", "2"], 2, "--rms")
+
     def test_any_number_of_threads(self):
         picture = self.built("--refine", "2", "--threads", "1")
         one = (self.folder / "p.glb").read_bytes()

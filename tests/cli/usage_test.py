@@ -46,6 +46,7 @@ class Usage(CliCase):
             "--vertices": ["3"],
             "--density": ["nan", "0", "100.1"],
             "--error": ["-1"],
+            "--rms": ["-1", "nan"],
             "--geometry-weight": ["0"],
             "--color-weight": ["0"],
             "--smoothing": ["-1", "65", "1.5"],
