@@ -30,6 +30,10 @@ class Tools:
         """Distributions of the container's mesh."""
         return self._run("imgmesh-compare", self.folder / container)["inputs"][0]["mesh"]
 
+    def compare(self, original, mode, container="mesh.glb"):
+        """How far the container, drawn in that mode, is from the picture."""
+        return self._run("imgmesh-compare", original, self.folder / container, "--mode", mode)["difference"]
+
     def draw(self, mode, *args, container="mesh.glb", width=384):
         """An HTML image of the container, that many pixels wide."""
         target = self.folder / f"{mode}.png"

@@ -1,0 +1,74 @@
+#!/usr/bin/env python3
+"""Error and shape over size for every preset and for Hoppe's metric: a page with tables and curves.
+
+    quality_report.py BIN PICTURES OUT    folders of the tools, of PNG pictures, and of quality.md and its SVGs
+"""
+import pathlib
+import statistics
+import sys
+
+import svg_plot
+from tools_runner import Tools
+
+DENSITIES = (0.5, 1, 2, 4)
+METHODS = {"fast": ("--preset", "fast"), "default": (), "best, luv": ("--preset", "best"),
+           "best, rgb": ("--preset", "best", "--objective", "rgb"), "fem": ("--preset", "fem"),
+           "Hoppe's metric": ("--metric", "hoppe")}
+# Columns: title, key of measure(), format
+COLUMNS = (("map RMS", "map", ".2f"), ("mesh RMS", "mesh", ".2f"), ("mesh PSNR [dB]", "psnr", ".2f"),
+           ("edge ratio", "edge_ratio", ".2f"), ("mean q", "mean_q", ".3f"), ("least q", "least_q", ".3f"),
+           ("folds", "folds", "d"), ("seconds", "seconds", ".2f"))
+
+
+def measure(tools, picture, density, options):
+    report = tools.build(picture, "--density", density, "--threads", 1, *options)
+    compared = tools.compare(picture, "gouraud")
+    shape = tools.mesh()
+    return {"map": report["map_rms"], "mesh": report["gouraud_rms"], "psnr": compared["psnr"],
+            "edge_ratio": report["mean_edge_ratio"], "mean_q": shape["shape"]["mean"],
+            "least_q": shape["shape"]["min"], "folds": report["flipped_pixel_triangles"],
+            "seconds": report["seconds"]}
+
+
+def summary(rows):
+    """Means over pictures; the least of q, the sum of folds."""
+    out = {key: statistics.fmean(r[key] for r in rows) for key in rows[0]}
+    out["least_q"] = min(r["least_q"] for r in rows)
+    out["folds"] = sum(r["folds"] for r in rows)
+    return out
+
+
+def main(bin_folder, pictures, out):
+    paths, out = sorted(pathlib.Path(pictures).glob("*.png")), pathlib.Path(out)
+    if not paths:
+        sys.exit(f"quality: {pictures} has no .png pictures")
+    tools = Tools(bin_folder, out / "work")
+    results = {}
+    for name, options in METHODS.items():
+        for density in DENSITIES:
+            print(f"quality: {name}, {density} %", flush=True)
+            results[name, density] = summary([measure(tools, p, density, options) for p in paths])
+    text = ["# Error over size", "",
+            f"Means over {len(paths)} pictures, made by `./run quality FOLDER`. RMS is in L\\*u\\*v\\*, of the reconstruction "
+            "through the pixel map and of the mesh drawn alone; PSNR is that of the mesh drawn alone "
+            "(`imgmesh-reconstruct --mode gouraud`), in 8-bit sRGB; q = 4 sqrt(3) area / sum of squared edges, the least of "
+            "all pictures; folds are folded pixel triangles in all pictures; seconds are whole builds on one thread, "
+            "without the start of the program.", ""]
+    for density in DENSITIES:
+        text += [f"## {density} % of the pixels as vertices", "",
+                 "| | " + " | ".join(c[0] for c in COLUMNS) + " |", "|---" * (len(COLUMNS) + 1) + "|"]
+        text += [f"| {name} | " + " | ".join(format(results[name, density][key], f) for _, key, f in COLUMNS) + " |"
+                 for name in METHODS] + [""]
+    for key, title, unit in (("map", "Error through the map", "RMS in L*u*v*"), ("mesh", "Error of the mesh", "RMS in L*u*v*"),
+                             ("psnr", "The mesh drawn alone", "PSNR [dB]")):
+        curves = {name: [(d, results[name, d][key]) for d in DENSITIES] for name in METHODS}
+        (out / f"quality-{key}.svg").write_text(svg_plot.curves(title, "vertices, % of the pixels", unit, curves) + "\n",
+                                                encoding="utf-8")
+        text += [f"![{title}](quality-{key}.svg)"]
+    (out / "quality.md").write_text("\n".join(text) + "\n", encoding="utf-8")
+
+
+if __name__ == "__main__":
+    if len(sys.argv) != 4:
+        sys.exit("usage: quality_report.py BIN PICTURES OUT")
+    main(*sys.argv[1:])
