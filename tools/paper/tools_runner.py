@@ -3,6 +3,7 @@ import base64
 import io
 import json
 import pathlib
+import resource
 import subprocess
 
 from PIL import Image
@@ -14,10 +15,13 @@ class Tools:
     def __init__(self, bin_folder, folder):
         self.bin, self.folder = pathlib.Path(bin_folder), pathlib.Path(folder)
         self.folder.mkdir(parents=True, exist_ok=True)
+        self.cpu_seconds = 0.0  # of the last run
 
     def _run(self, tool, *args):
         command = [str(self.bin / tool), *map(str, args), "--json"]
+        before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
         result = subprocess.run(command, check=False, capture_output=True, text=True)
+        self.cpu_seconds = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before
         if result.returncode != 0:
             raise SystemExit(f"paper: {' '.join(command)} failed: {result.stderr.strip()}")
         return json.loads(result.stdout)
