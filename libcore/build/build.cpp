@@ -170,7 +170,11 @@ void build_to_rms(const Pipeline& pipeline, CollapseParams limits, MeshImage& me
         };
     };
     mesh_image.levels.clear();
-    search_rms(std::max(std::int64_t{4}, pipeline.report.pixels), rms, run, [&] {
+    // All of the dense mesh: strips of one pixel have more vertices than pixels.
+    const auto vertices = grid.mask.empty()
+                              ? static_cast<std::int64_t>(grid.vertex_count())
+                              : pipeline.report.pixels + static_cast<std::int64_t>(grid.copies.size());
+    search_rms(std::max(std::int64_t{4}, vertices), rms, run, [&] {
         mesh_image.levels.assign(1, std::move(level));
         pipeline.report.levels = {figures};
         pipeline.report.collapses = collapses;
@@ -199,7 +203,9 @@ BuildResult build_mesh_image(const Image& image, const BuildParams& asked, const
     BuildParams params = asked;
     if (!params.refine) params.refine = refinable ? refine_rounds(asked) : 0;
     if ((*params.refine > 0 || params.objective == Objective::kRgb) && !refinable)
-        throw Error(ErrorCode::kUnsupported, "refinement is for colour alone, without light above 1");
+        throw Error(ErrorCode::kUnsupported,
+                    "refinement, which the presets best and fem bring along, is for colour alone, without "
+                    "light above 1");
     const FeatureImage feature = extract_features(image, space, mask);
 
     BuildResult result;

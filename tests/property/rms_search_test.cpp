@@ -44,6 +44,18 @@ TEST_CASE("rms search: as few vertices as the error allows, found with few measu
         }
 }
 
+// A strip one pixel wide has more vertices than pixels: with all of them the picture is reached exactly.
+TEST_CASE("build: a wanted RMS is reached on strips") {
+    BuildParams params;
+    params.stop.rms = 0.1;
+    const Image strip = sample_picture(Kind::kNoise, 9, 1);
+    CHECK(build_mesh_image(strip, params).report.levels.front().map_rms <= 0.1);
+    const Image image = sample_picture(Kind::kNoise, 24, 16);
+    Mask columns{24, 16, std::vector<std::uint8_t>(24 * 16, 0)};
+    for (std::size_t i = 0; i < columns.inside.size(); i += 2) columns.inside[i] = 1;
+    CHECK(build_mesh_image(image, params, {}, columns).report.levels.front().map_rms <= 0.1);
+}
+
 TEST_CASE("build: a wanted RMS is kept, closely") {
     for (const Kind kind : {Kind::kGradient, Kind::kDisc, Kind::kNoise}) {
         const Image image = sample_picture(kind, 90, 70);
