@@ -15,7 +15,9 @@ enum class DracoMode { kEdgebreaker, kSequential, kOff };
 struct ContainerOptions {
     DracoMode draco = DracoMode::kEdgebreaker;
     bool overwrite = true;  ///< replace what stands at the path; other files are never replaced
-    bool layers = true;     ///< false: the meshes alone, a plain glTF asset that read_container refuses
+    /// files that stay although the .gltf that is replaced refers to them: those that were read
+    std::vector<std::string> keep = {};
+    bool layers = true;  ///< false: the meshes alone, a plain glTF asset that read_container refuses
 };
 
 /// Writes `mesh_image`; the extension of `path` (.glb or .gltf) decides the spelling.

@@ -97,9 +97,9 @@ void write_glb(const std::string& path, Asset& asset, std::vector<std::uint8_t> 
 // The rename of the .gltf switches over: until then the files of the old container stay as they are, and only
 // then they go. A crash in between leaves files that nothing refers to.
 void write_gltf(const std::string& path, Asset& asset, const std::vector<std::uint8_t>& buffer,
-                const std::vector<std::uint8_t>& layers, bool overwrite) {
+                const std::vector<std::uint8_t>& layers, const ContainerOptions& options) {
     const std::vector<std::string> old_files = companions_of(path);
-    AtomicFile gltf(path, overwrite);
+    AtomicFile gltf(path, options.overwrite);
     CompanionFile bin(path, ".bin", buffer);
     std::optional<CompanionFile> exr;
     if (asset.has_layers) exr.emplace(path, ".exr", layers);
@@ -116,7 +116,11 @@ void write_gltf(const std::string& path, Asset& asset, const std::vector<std::ui
     for (const std::string& file : old_files) {
         const std::string name = std::filesystem::path(file).filename().string();
         std::error_code error;  // a file that stays behind is in nobody's way
-        if (name != asset.buffer_name && name != asset.layers_name) std::filesystem::remove(file, error);
+        const bool kept = std::any_of(
+            options.keep.begin(), options.keep.end(),
+            [&](const std::string& other) { return std::filesystem::equivalent(file, other, error); });
+        if (!kept && name != asset.buffer_name && name != asset.layers_name)
+            std::filesystem::remove(file, error);
     }
 }
 
@@ -151,7 +155,7 @@ void write_container(const std::string& path, const MeshImage& mesh_image, const
     if (spelling == Spelling::kGlb)
         write_glb(path, asset, std::move(buffer), layers, options.overwrite);
     else
-        write_gltf(path, asset, buffer, layers, options.overwrite);
+        write_gltf(path, asset, buffer, layers, options);
 }
 
 }  // namespace imgmesh

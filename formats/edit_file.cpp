@@ -5,6 +5,7 @@
 #include <initializer_list>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "formats/atomic_file.h"
 #include "libcore/base/error.h"
@@ -172,7 +173,15 @@ WarpEdit edit(const Node& node) {
 }
 
 json parse(std::string_view text, const std::string& name, const EditLimits& limits) {
-    const auto guard = [&](int depth, json::parse_event_t, json&) {
+    if (text.find('\0') != std::string_view::npos)  // which the parser takes for the end
+        throw Error(ErrorCode::kBadFile, cat(name, ": no JSON: a byte of value 0"));
+    std::vector<std::set<std::string>> members;  // of the objects around
+    const auto guard = [&](int depth, json::parse_event_t event, json& parsed) {
+        if (event == json::parse_event_t::object_start) members.emplace_back();
+        if (event == json::parse_event_t::object_end) members.pop_back();
+        if (event == json::parse_event_t::key && !members.back().insert(parsed.get<std::string>()).second)
+            throw Error(ErrorCode::kBadFile,
+                        cat(name, ": a member \"", parsed.get<std::string>(), "\" twice"));
         if (depth > limits.max_json_depth)
             throw Error(ErrorCode::kBadFile,
                         cat(name, ": the JSON is nested deeper than ", limits.max_json_depth));

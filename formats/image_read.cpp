@@ -73,7 +73,11 @@ void check_finite(const std::string& path, const Image& image) {
 }
 
 DecodedPicture decode(const std::string& path, bool any_primaries, const ImageLimits& limits) {
-    std::vector<std::uint8_t> bytes = read_file(path, kMaxFileBytes);
+    // A device or a pipe has no size to check beforehand: no more is read than the pixels could need.
+    constexpr std::uint64_t kOther = std::uint64_t{64} << 20;  // profiles, previews, metadata
+    const std::uint64_t most = kOther + static_cast<std::uint64_t>(limits.max_pixels) *
+                                            static_cast<std::uint64_t>(limits.max_channels) * sizeof(float);
+    std::vector<std::uint8_t> bytes = read_file(path, std::min(kMaxFileBytes, most));
     const PictureClaim claim = probe_picture(path, bytes);
     switch (claim.format) {
         case PictureFormat::kExr:

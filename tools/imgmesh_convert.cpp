@@ -172,6 +172,7 @@ Report run(const Options& o, Context& context) {
         ContainerOptions options;
         options.draco = o.draco.value_or(container.facts.draco);
         options.overwrite = context.overwrite;
+        options.keep = container.facts.files;
         options.layers = !o.no_layers;
         write_container(o.output, m, options);
     } else {

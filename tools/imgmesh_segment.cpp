@@ -97,20 +97,16 @@ void check_options(const Options& o) {
         if (!path->empty() && !can_write_image(*path))
             throw Error(ErrorCode::kUsage,
                         cat(option, " ", *path, ": expected the name of a picture, as in .png"));
-    const std::vector<std::string> outputs = outputs_of(o);
-    for (std::size_t i = 0; i < outputs.size(); ++i)
-        for (std::size_t j = 0; j < i; ++j)
-            if (std::filesystem::path(outputs[i]).lexically_normal() ==
-                std::filesystem::path(outputs[j]).lexically_normal())
-                throw Error(ErrorCode::kUsage, cat(outputs[i], ": is named for two outputs"));
+    check_separate(outputs_of(o));
 }
 
 FeatureImage picture_of(const Options& o, const Level& level) {
     if (o.image.empty()) return reconstruct_luv(level);
     const Image image = read_image(o.image);
     if (image.width != level.map.width || image.height != level.map.height)
-        throw Error(ErrorCode::kUsage, cat("--image ", o.image, ": is ", image.width, "x", image.height, ", ",
-                                           o.input, " was made of ", level.map.width, "x", level.map.height));
+        throw Error(ErrorCode::kBadFile,
+                    cat("--image ", o.image, ": is ", image.width, "x", image.height, ", ", o.input,
+                        " was made of ", level.map.width, "x", level.map.height));
     return luv_image(image, Range::kClipped);
 }
 

@@ -189,6 +189,7 @@ Report run(const Options& o, Context& context) {
     for (const std::string& path : {o.image, o.edits})
         if (!path.empty()) read.push_back(path);
     check_distinct(read, written_files(o));
+    check_separate(written_files(o));
     std::optional<Image> image;
     if (!o.image.empty()) {
         image = read_image(o.image);

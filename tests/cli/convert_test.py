@@ -148,6 +148,14 @@ class Convert(CliCase):
                 self.run_ok("imgmesh-convert", "odd.glb", "-o", f"odd-out.{extension}", "-q")
             self.run_ok("imgmesh-convert", "odd.glb", "-o", "odd-out.svg", "--shading", "gradient", "-q")
 
+    def test_the_input_stays_whole(self):
+        """x.gltf is replaced; its files belong to the input as well, and stay."""
+        self.run_ok("imgmesh-convert", "c.glb", "-o", "x.gltf", "-q")
+        (self.folder / "y.gltf").write_bytes((self.folder / "x.gltf").read_bytes())
+        self.run_ok("imgmesh-convert", "y.gltf", "-o", "x.gltf", "--levels", "0", "-q")
+        for name in ("x.gltf", "y.gltf"):
+            self.run_ok("imgmesh-reconstruct", name, "-o", "r.png", "-q")
+
     def test_wrong_use(self):
         wrong = [(["-o", "x.docx"], "x.docx"), (["-o", "x"], "expected"), (["-o", "x.glb", "--levels", "2"], "--levels"),
                  (["-o", "x.glb", "--levels", "1,0"], "--levels"), (["-o", "x.glb", "--levels", "0,0"], "--levels"),

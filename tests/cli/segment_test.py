@@ -224,7 +224,7 @@ class Segment(CliCase):
         self.assert_error("imgmesh-segment", ["c.glb", "-o", "x.exr", "--ucm", "no/u.exr"], 3, "no")
         self.assert_error("imgmesh-segment", ["in.png", "-o", "x.exr"], 4, "in.png")
         picture_files.png(self.folder / "other.png", picture_files.ramp(20, 10))
-        self.assert_error("imgmesh-segment", ["c.glb", "-o", "x.exr", "--image", "other.png"], 2, "20x10", "60x40")
+        self.assert_error("imgmesh-segment", ["c.glb", "-o", "x.exr", "--image", "other.png"], 4, "20x10", "60x40")
 
     def test_text_report(self):
         text = self.run_ok("imgmesh-segment", "c.glb", "-o", "out.exr", "--segments", "5").stdout

@@ -219,6 +219,10 @@ class Warp(CliCase):
                 (["c.glb", "--image", "in.png", "-o", "in.png"], "in.png"),
                 (["c.glb", "--image", "in.png", "-o", "c.glb"], "c.glb")):
             self.assert_error(TOOL, args, 2, *words)
+        # One file for two results would lose one of them.
+        for args in (["-o", "x.exr", "--displacement", "x.exr"], ["-o", "y.gltf", "--displacement", "y.exr"],
+                     ["-o", "x.exr", "--displacement", str(self.folder / "x.exr")]):
+            self.assert_error(TOOL, ["c.glb", "--image", "in.png", *args], 2, "two outputs")
         picture_files.png(self.folder / "other.png", picture_files.ramp(32, 48))
         self.assert_error(TOOL, ["c.glb", "--image", "other.png", "-o", "x.png"], 4, "other.png", "32x48", "48x32")
         self.assert_error(TOOL, ["c.glb", "--image", "in.png", "-o", "x.jpg", "--handle", "0,0:9,9"], 2, "transparency")

@@ -116,3 +116,12 @@ TEST_CASE("edits_from_json: nothing makes it do more than refuse") {
     CHECK_THROWS_AS(read_edits(path, {1000, 16}), Error);
     CHECK_THROWS_AS(read_edits(folder / "missing.json"), Error);
 }
+
+TEST_CASE("edits_from_json: nothing behind the file's end, and no member twice") {
+    using namespace std::string_literals;
+    CHECK(refusal("{\"edits\":[]}") == "");
+    CHECK(refusal("{\"edits\":[]}\0{"s) != "");
+    CHECK(refusal("{\"edits\":[],\"edits\":[]}").find("\"edits\" twice") != std::string::npos);
+    CHECK(refusal(with_handle("{\"vertex\":0,\"vertex\":1,\"move\":[1,1]}")).find("\"vertex\" twice") !=
+          std::string::npos);
+}

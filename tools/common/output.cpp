@@ -2,6 +2,7 @@
 
 #include <cctype>
 #include <filesystem>
+#include <set>
 #include <system_error>
 
 #include "libcore/base/error.h"
@@ -34,6 +35,16 @@ void check_distinct(const std::vector<std::string>& inputs, const std::vector<st
             if (fs::equivalent(input, output, error))
                 throw Error(ErrorCode::kUsage, cat(output, ": would replace the input ", input));
         }
+    }
+}
+
+void check_separate(const std::vector<std::string>& outputs) {
+    std::set<fs::path> seen;
+    for (const std::string& output : outputs) {
+        std::error_code error;  // of what cannot be resolved; writing it will say why
+        const fs::path path = fs::weakly_canonical(fs::absolute(output), error);
+        if (!error && !seen.insert(path).second)
+            throw Error(ErrorCode::kUsage, cat(output, ": is named for two outputs"));
     }
 }
 
