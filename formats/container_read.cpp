@@ -52,7 +52,7 @@ View cut(View buffer, const ByteRange& range) {
 template <typename T>
 void copy_to(std::vector<T>& out, View bytes) {
     out.resize(bytes.size() / sizeof(T));
-    std::memcpy(out.data(), bytes.data(), bytes.size());
+    if (!out.empty()) std::memcpy(out.data(), bytes.data(), out.size() * sizeof(T));
 }
 
 StoredMesh load_mesh(const AssetLevel& level, View buffer, Findings& findings) {
