@@ -1,5 +1,4 @@
 // imgmesh-segment: a container in, labelled regions out.
-#include <filesystem>
 #include <ostream>
 
 #include "formats/atomic_file.h"
