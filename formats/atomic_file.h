@@ -10,9 +10,10 @@ namespace imgmesh {
 
 /// A file being written under a temporary name in the target's folder. commit() flushes it to disk and
 /// renames it to `path`; destruction without commit() removes it. A run that is killed leaves at most the
-/// temporary file, never a partial `path`. Throws Error(kIo) with the system's reason when the folder cannot
-/// be written or the disk is full, and where `path` is something else than a regular file (a device, a
-/// folder). A symbolic link is followed: the file behind it is replaced, not the link.
+/// temporary file, never a partial `path`; a later run that writes to the folder removes it
+/// (stale_temporaries.h). Throws Error(kIo) with the system's reason when the folder cannot be written or the
+/// disk is full, and where `path` is something else than a regular file (a device, a folder). A symbolic link
+/// is followed: the file behind it is replaced, not the link.
 class AtomicFile {
   public:
     /// `overwrite` false: throws Error(kIo) where `path` exists, here and again at commit().
@@ -38,6 +39,7 @@ class AtomicFile {
     std::string path_;    ///< as given: for messages
     std::string target_;  ///< what is renamed to: `path_` with symbolic links followed
     std::string temporary_path_;
+    int claim_ = -1;  ///< a descriptor that holds the claim to the temporary file
     bool overwrite_;
     bool kept_ = false;
 };

@@ -13,6 +13,7 @@
 #include "libcore/build/presets.h"
 #include "libcore/image/color.h"
 #include "libcore/metrics/metrics.h"
+#include "tools/build_contradictions.h"
 #include "tools/common/channel_list.h"
 #include "tools/common/names.h"
 #include "tools/common/options.h"
@@ -121,15 +122,11 @@ void add_options(CLI::App& app, Options& o) {
                "Error that collapses are ordered and placed by (default flattened)");
     add_choice(app, "--solver", o.params.solver, solver_choices(),
                "How a quadric's least point is found; closed is the fast one (default closed)");
-    CLI::Option* const geometry =
-        add_number(app, "--geometry-weight", o.params.geometry_weight, {0, kNoLimit, true},
-                   cat("Weight of geometry in the quadrics (default ", params.geometry_weight, ")"));
+    add_number(app, "--geometry-weight", o.params.geometry_weight, {0, kNoLimit, true},
+               cat("Weight of geometry in the quadrics (default ", params.geometry_weight, ")"));
     add_number(app, "--color-weight", o.params.color_weight, {0, kNoLimit, true},
                cat("Weight of colour in the quadrics (default ", params.color_weight, ")"));
-    app.final_callback([&o, geometry] {
-        if (geometry->count() > 0 && o.params.metric == Metric::kHoppe)
-            throw Error(ErrorCode::kUsage, "--geometry-weight: the metric hoppe has no geometry to weigh");
-    });
+    app.final_callback([&] { check_contradictions(app, o.params); });
     add_count(app, "--smoothing", o.params.smoothing, {0, kMaxSmoothing},
               "Passes of smoothing before gradients are taken (default by density for flattened, else 0)");
     add_choice<bool, bool>(

@@ -107,7 +107,9 @@ class Info(CliCase):
         (self.folder / "deep.gltf").write_text("[" * 100000)
         self.assertEqual(self.verdict("deep.gltf")["code"], "json.depth")
         (self.folder / "words.gltf").write_text("words")
-        self.assertEqual(self.verdict("words.gltf")["code"], "json.syntax")
+        verdict = self.verdict("words.gltf")
+        self.assertEqual(verdict["code"], "json.syntax")
+        self.assertTrue(verdict["message"].startswith("parse error at line 1, column 1"), verdict)
 
     def test_companion_files(self):
         exr, binary = (self.folder / "g.exr").read_bytes(), (self.folder / "g.bin").read_bytes()

@@ -1,0 +1,184 @@
+#!/usr/bin/python3
+"""viewers_test.py BIN NODE CHROMIUM FOLDER: three.js and Babylon.js in headless Chromium show containers as they are
+meant, by the pages of docs/engines. FOLDER gets the containers and the screenshots.
+
+The expected picture is drawn here, from the container without Draco: a viewer interpolates COLOR_0 in linear light
+over each triangle. A screenshot has ZOOM x ZOOM pixels for one of the picture, so none lies on its edge.
+"""
+import collections
+import dataclasses
+import json
+import pathlib
+import subprocess
+import sys
+import time
+
+import numpy as np
+from PIL import Image, ImageDraw
+
+from read_container import read_accessor, read_gltf
+
+HERE = pathlib.Path(__file__).resolve().parent
+PAGES = HERE.parents[1] / "docs" / "engines"
+DATA = HERE.parent / "data"
+VIEWERS = ("three", "babylon")
+ZOOM = 2
+MIN_PSNR = 40.0
+# Upside down or mirrored the photograph must be far from the expectation, or the comparison would tell nothing.
+MAX_PSNR_TURNED = 25.0
+# Samples this near to the mesh's outline may fall on either side of it [pixels].
+OUTLINE_MARGIN = 0.02
+
+
+@dataclasses.dataclass
+class Expected:
+    colour: np.ndarray  # linear RGB of every sample, height x width x 3
+    inside: np.ndarray  # in the mesh, away from its outline
+    outside: np.ndarray  # not in the mesh, away from its outline
+
+
+def srgb_codes(linear):
+    linear = np.clip(linear, 0, 1)
+    return np.round(255 * np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * linear ** (1 / 2.4) - 0.055))
+
+
+def samples_near(points, width, height, margin=0.0):
+    """The block of samples around some points: slices, and the samples' x and y."""
+    low = np.ceil(ZOOM * (points.min(axis=0) + 0.5 - margin) - 0.5).astype(int)
+    high = np.floor(ZOOM * (points.max(axis=0) + 0.5 + margin) - 0.5).astype(int)
+    x = np.arange(max(low[0], 0), min(high[0], ZOOM * width - 1) + 1)
+    y = np.arange(max(low[1], 0), min(high[1], ZOOM * height - 1) + 1)
+    block = np.ix_(y, x)
+    return block, (x[None, :] + 0.5) / ZOOM - 0.5, (y[:, None] + 0.5) / ZOOM - 0.5
+
+
+def mesh_of(path):
+    """Level 0 in pixels: positions, faces, linear colours, width and height of the picture."""
+    document, binary, _ = read_gltf(path)
+    image = document["extensions"]["IMGMESH_pixel_map"]["image"]
+    (primitive,) = document["meshes"][document["nodes"][0]["mesh"]]["primitives"]
+    attributes = primitive["attributes"]
+    position = read_accessor(document, binary, attributes["POSITION"])[:, :2] * [1, -1]
+    faces = read_accessor(document, binary, primitive["indices"]).reshape(-1, 3)
+    colour = read_accessor(document, binary, attributes["COLOR_0"])[:, :3] / 65535
+    return position, faces, colour, image["width"], image["height"]
+
+
+def expected_of(path):
+    position, faces, vertex_colour, width, height = mesh_of(path)
+    shape = (ZOOM * height, ZOOM * width)
+    colour, covered, near = np.zeros((*shape, 3)), np.zeros(shape, bool), np.zeros(shape, bool)
+    for face in faces:
+        (ax, ay), (bx, by), (cx, cy) = p = position[face]
+        area = (bx - ax) * (cy - ay) - (by - ay) * (cx - ax)
+        block, x, y = samples_near(p, width, height)
+        u = ((x - ax) * (cy - ay) - (y - ay) * (cx - ax)) / area
+        v = ((bx - ax) * (y - ay) - (by - ay) * (x - ax)) / area
+        inside = (u >= 0) & (v >= 0) & (u + v <= 1)
+        weights = np.stack([1 - u - v, u, v], axis=-1)
+        colour[block] = np.where(inside[..., None], weights @ vertex_colour[face], colour[block])
+        covered[block] |= inside
+    # Edges by place, not by number: vertices may coincide.
+    edges = collections.Counter()
+    for face in faces:
+        for i in range(3):
+            edges[frozenset(tuple(position[face[j % 3]]) for j in (i, i + 1))] += 1
+    for edge in (np.array(list(edge)) for edge, count in edges.items() if count == 1):
+        block, x, y = samples_near(edge, width, height, OUTLINE_MARGIN)
+        along = edge[1] - edge[0]
+        t = np.clip(((x - edge[0][0]) * along[0] + (y - edge[0][1]) * along[1]) / (along @ along), 0, 1)
+        near[block] |= np.hypot(x - edge[0][0] - t * along[0], y - edge[0][1] - t * along[1]) < OUTLINE_MARGIN
+    return Expected(colour, covered & ~near, ~covered & ~near)
+
+
+def psnr(codes, expected, where):
+    error = np.mean((codes[where] - expected[where]) ** 2)
+    return 10 * np.log10(255 ** 2 / error) if error > 0 else np.inf
+
+
+def compare(path, expected, is_photograph):
+    """The PSNR of a screenshot, and what is wrong with it."""
+    shot = Image.open(path).convert("RGBA")  # without a transparent pixel it comes as RGB
+    if shot.size != expected.inside.shape[::-1]:
+        return 0.0, [f"the screenshot has {shot.size} pixels"]
+    codes = np.asarray(shot, float)
+    alpha = codes[..., 3]
+    want = srgb_codes(expected.colour)
+    problems = []
+    for missed, text in ((expected.inside & (alpha != 255), "inside the mesh are not drawn"),
+                         (expected.outside & (alpha != 0), "outside the mesh are drawn")):
+        if missed.any():
+            problems.append(f"{missed.sum()} samples {text}")
+    reached = psnr(codes[..., :3], want, expected.inside)
+    if not reached >= MIN_PSNR:
+        problems.append(f"PSNR {reached:.1f} dB, expected {MIN_PSNR:.0f}")
+    for name, turned in (("upside down", codes[::-1]), ("mirrored", codes[:, ::-1])):
+        if is_photograph and psnr(turned[..., :3], want, expected.inside) > MAX_PSNR_TURNED:
+            problems.append(f"{name} it would do as well")
+    return reached, problems
+
+
+def make_pictures(folder):
+    photograph = Image.open(DATA / "kodim23.png").crop((70, 80, 262, 208))
+    photograph.save(folder / "photograph.png")
+    # A ring with an island, cut out along soft alpha; and any shape by a mask.
+    alpha = Image.new("L", (4 * photograph.width, 4 * photograph.height), 0)
+    draw = ImageDraw.Draw(alpha)
+    for fill, box in ((255, (140, 20, 620, 490)), (0, (280, 130, 500, 360)), (255, (340, 190, 430, 300))):
+        draw.ellipse(box, fill=fill)
+    mask = alpha.resize(photograph.size, Image.LANCZOS)
+    soft = photograph.copy()
+    soft.putalpha(mask)
+    soft.save(folder / "alpha.png")
+    mask.transpose(Image.FLIP_LEFT_RIGHT).save(folder / "mask.png")
+    Image.new("RGB", (1, 1), (200, 100, 50)).save(folder / "one.png")
+
+
+@dataclasses.dataclass
+class Case:
+    file: str
+    plain: str  # the same without Draco
+    is_photograph: bool = False
+
+
+def make_cases(bin_folder, folder):
+    def run(tool, *arguments):
+        subprocess.run([bin_folder / tool, *arguments, "-q"], cwd=folder, check=True)
+
+    cases = []
+    for name, picture, options in (("draco", "photograph.png", ()), ("alpha", "alpha.png", ()), ("1x1", "one.png", ()),
+                                   ("cut-out", "photograph.png", ("--mask", "mask.png"))):
+        run("imgmesh-build", picture, "-o", f"{name}.glb", "--density", "2", *options)
+        run("imgmesh-convert", f"{name}.glb", "-o", f"{name}-plain.glb", "--draco", "none")
+        cases.append(Case(f"{name}.glb", f"{name}-plain.glb", name != "1x1"))
+    for draco, name in (("edgebreaker", "draco"), ("none", "plain"), ("sequential", "sequential")):
+        run("imgmesh-convert", "draco.glb", "-o", f"{name}.gltf", "--draco", draco)
+        cases.append(Case(f"{name}.gltf", "draco-plain.glb", True))
+    cases.append(Case("draco-plain.glb", "draco-plain.glb", True))
+    return cases
+
+
+def main():
+    bin_folder, node, chromium, folder = (pathlib.Path(argument) for argument in sys.argv[1:5])
+    folder.mkdir(parents=True, exist_ok=True)
+    started = time.monotonic()
+    make_pictures(folder)
+    cases = make_cases(bin_folder.resolve(), folder)
+    jobs = [{"page": f"{viewer}.html", "file": case.file, "zoom": ZOOM, "output": f"{case.file}-{viewer}.png"}
+            for viewer in VIEWERS for case in cases]
+    (folder / "jobs.json").write_text(json.dumps(jobs))
+    draw = [node, HERE / "draw_viewers.mjs", chromium, PAGES, folder, folder / "jobs.json"]
+    subprocess.run(draw, check=True, timeout=300)
+    failed = False
+    for case in cases:
+        expected = expected_of(folder / case.plain)
+        for viewer in VIEWERS:
+            reached, problems = compare(folder / f"{case.file}-{viewer}.png", expected, case.is_photograph)
+            failed |= bool(problems)
+            print(f"{viewer:8} {case.file:18} {reached:5.1f} dB", *problems, sep="  ")
+    print(f"{len(jobs)} screenshots, {time.monotonic() - started:.1f} s")
+    return failed
+
+
+if __name__ == "__main__":
+    sys.exit(main())
