@@ -68,8 +68,8 @@ void check_finite(const std::string& path, const Image& image) {
                width = static_cast<std::size_t>(image.width);
     const std::size_t pixel = index / channels;
     throw Error(ErrorCode::kBadFile,
-                cat(path, ": channel ", image.channel_names[index % channels], " of pixel (", pixel % width,
-                    ", ", pixel / width, ") is not a finite number"));
+                cat(path, ": channel ", printable(image.channel_names[index % channels]), " of pixel (",
+                    pixel % width, ", ", pixel / width, ") is not a finite number"));
 }
 
 DecodedPicture decode(const std::string& path, bool any_primaries, const ImageLimits& limits) {
@@ -90,6 +90,12 @@ DecodedPicture decode(const std::string& path, bool any_primaries, const ImageLi
 }
 
 }  // namespace
+
+std::string printable(std::string name) {
+    for (char& c : name)
+        if (static_cast<unsigned char>(c) < 0x20 || c == 0x7F) c = '?';
+    return name;
+}
 
 std::string one_line(const std::string& message) {
     constexpr std::size_t kMaxLength = 300;

@@ -37,6 +37,9 @@ DecodedPicture decode_exr(const std::string& path, std::span<std::uint8_t> bytes
 std::vector<std::uint8_t> encode_exr(const Image& image, SampleType type);
 std::vector<std::uint8_t> encode_webp(const Image& image);
 
+/// A name from a file as messages quote it: '?' for each control character.
+std::string printable(std::string name);
+
 /// A library's message as one line without control characters.
 std::string one_line(const std::string& message);
 
