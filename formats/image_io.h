@@ -1,5 +1,5 @@
-// Pictures from and to files: EXR through OpenEXR, WebP through libwebp, the rest through OpenImageIO. Target
-// imgmesh_pictures.
+// Pictures from and to files: PNG, EXR and WebP through their own libraries, the rest through OpenImageIO,
+// which is loaded when it is first needed (oiio_module.h). Target imgmesh_pictures.
 #pragma once
 
 #include <cstdint>

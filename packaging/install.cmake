@@ -1,5 +1,4 @@
 # cmake --install: the tools, the libraries as a package for find_package(imgmesh), schemas, manuals; cpack: a .deb.
-include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
 set(_tools imgmesh-build imgmesh-reconstruct imgmesh-info imgmesh-compare imgmesh-convert imgmesh-warp imgmesh-segment)
@@ -10,6 +9,7 @@ foreach(_library IN LISTS _libraries)
   set_target_properties(${_library} PROPERTIES EXPORT_NAME ${_name})
 endforeach()
 install(TARGETS ${_libraries} EXPORT imgmesh-targets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+install(TARGETS imgmesh_oiio LIBRARY DESTINATION ${IMGMESH_MODULE_DIR})
 set(_package ${CMAKE_INSTALL_LIBDIR}/cmake/imgmesh)
 install(EXPORT imgmesh-targets NAMESPACE imgmesh:: DESTINATION ${_package})
 configure_file(packaging/imgmesh-config.cmake.in packaging/imgmesh-config.cmake @ONLY)

