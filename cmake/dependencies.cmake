@@ -20,5 +20,7 @@ foreach(_dir IN LISTS _dirs)
 endforeach()
 set_target_properties(OpenImageIO::OpenImageIO PROPERTIES INTERFACE_INCLUDE_DIRECTORIES "${_existing}")
 
+find_package(PNG REQUIRED)
 find_package(PkgConfig REQUIRED)
 pkg_check_modules(WebP REQUIRED IMPORTED_TARGET libwebp libwebpdemux)
+pkg_check_modules(Deflate REQUIRED IMPORTED_TARGET libdeflate)

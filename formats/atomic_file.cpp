@@ -15,6 +15,7 @@
 #include <system_error>
 #include <utility>
 
+#include "formats/stale_temporaries.h"
 #include "libcore/base/error.h"
 
 namespace imgmesh {
@@ -115,18 +116,20 @@ void flush_folder(const std::string& target) {
     if (dir.fd >= 0) ::fsync(dir.fd);
 }
 
-// Not mkstemp(), which makes files that nobody else can read whatever the umask says.
+// Not mkstemp(), which makes files that nobody else can read whatever the umask says. The descriptor is the
+// claim to the file, and to be kept as long as its name is a temporary one.
 int create_temporary(const std::string& target, std::string& name) {
     static std::atomic<unsigned> counter = 0;
     const std::filesystem::path path(target);
     for (;;) {
         const std::string base =
-            cat(".imgmesh-", ::getpid(), "-", counter.fetch_add(1), path.extension().string());
+            cat(kTemporaryPrefix, ::getpid(), "-", counter.fetch_add(1), path.extension().string());
         name = (path.parent_path() / base).string();
         register_temporary(name.c_str());  // before it exists, so that a signal finds it whenever it does
         const int fd = ::open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-        if (fd >= 0) return fd;
-        const int error = errno;
+        if (fd >= 0 && claim_temporary(fd, name)) return fd;
+        const int error = fd >= 0 ? EEXIST : errno;
+        if (fd >= 0) ::close(fd);
         forget_temporary(name.c_str());
         errno = error;
         if (error != EEXIST) return fd;  // a name in use was left by a killed run with our number
@@ -137,25 +140,29 @@ int create_temporary(const std::string& target, std::string& name) {
 
 AtomicFile::AtomicFile(std::string path, bool overwrite)
     : path_(std::move(path)), target_(resolve_target(path_, overwrite)), overwrite_(overwrite) {
-    const Descriptor file(create_temporary(target_, temporary_path_));
-    if (file.fd < 0) fail(path_, "cannot write", errno);
+    remove_stale_temporaries(std::filesystem::path(target_).parent_path().string());
+    claim_ = create_temporary(target_, temporary_path_);
+    if (claim_ < 0) fail(path_, "cannot write", errno);
 }
 
 AtomicFile::~AtomicFile() {
-    if (kept_) return;
-    ::unlink(temporary_path_.c_str());
-    forget_temporary(temporary_path_.c_str());
+    if (!kept_) {
+        ::unlink(temporary_path_.c_str());
+        forget_temporary(temporary_path_.c_str());
+    }
+    ::close(claim_);
 }
 
-void AtomicFile::write(std::span<const std::uint8_t> bytes) {
+void AtomicFile::write_parts(std::span<const std::span<const std::uint8_t>> parts) {
     const Descriptor file(::open(temporary_path_.c_str(), O_WRONLY | O_TRUNC | O_CLOEXEC));
     if (file.fd < 0) fail(path_, "cannot write", errno);
-    while (!bytes.empty()) {
-        const ssize_t n = ::write(file.fd, bytes.data(), bytes.size());
-        if (n < 0 && errno == EINTR) continue;
-        if (n < 0) fail(path_, "cannot write", errno);
-        bytes = bytes.subspan(static_cast<std::size_t>(n));
-    }
+    for (std::span<const std::uint8_t> bytes : parts)
+        while (!bytes.empty()) {
+            const ssize_t n = ::write(file.fd, bytes.data(), bytes.size());
+            if (n < 0 && errno == EINTR) continue;
+            if (n < 0) fail(path_, "cannot write", errno);
+            bytes = bytes.subspan(static_cast<std::size_t>(n));
+        }
 }
 
 void AtomicFile::commit() {

@@ -10,9 +10,10 @@ namespace imgmesh {
 
 /// A file being written under a temporary name in the target's folder. commit() flushes it to disk and
 /// renames it to `path`; destruction without commit() removes it. A run that is killed leaves at most the
-/// temporary file, never a partial `path`. Throws Error(kIo) with the system's reason when the folder cannot
-/// be written or the disk is full, and where `path` is something else than a regular file (a device, a
-/// folder). A symbolic link is followed: the file behind it is replaced, not the link.
+/// temporary file, never a partial `path`; a later run that writes to the folder removes it
+/// (stale_temporaries.h). Throws Error(kIo) with the system's reason when the folder cannot be written or the
+/// disk is full, and where `path` is something else than a regular file (a device, a folder). A symbolic link
+/// is followed: the file behind it is replaced, not the link.
 class AtomicFile {
   public:
     /// `overwrite` false: throws Error(kIo) where `path` exists, here and again at commit().
@@ -24,7 +25,9 @@ class AtomicFile {
     /// Where to write. Libraries that want a file name get this one; it ends with the extension of `path`.
     const std::string& temporary_path() const { return temporary_path_; }
     /// Replaces the temporary file's content.
-    void write(std::span<const std::uint8_t> bytes);
+    void write(std::span<const std::uint8_t> bytes) { write_parts({&bytes, 1}); }
+    /// The same, one part behind the other.
+    void write_parts(std::span<const std::span<const std::uint8_t>> parts);
     void commit();
     /// As commit(), but until keep() destruction removes the file, now under its own name, and so do signals
     /// as long as `before` is not committed: for a file that is of no use until `before`, which lives longer,
@@ -38,6 +41,7 @@ class AtomicFile {
     std::string path_;    ///< as given: for messages
     std::string target_;  ///< what is renamed to: `path_` with symbolic links followed
     std::string temporary_path_;
+    int claim_ = -1;  ///< a descriptor that holds the claim to the temporary file
     bool overwrite_;
     bool kept_ = false;
 };

@@ -5,9 +5,10 @@
 #include <initializer_list>
 #include <limits>
 #include <nlohmann/json.hpp>
-#include <set>
 
 #include "formats/atomic_file.h"
+#include "formats/findings.h"
+#include "formats/json_parse.h"
 #include "libcore/base/error.h"
 
 namespace imgmesh {
@@ -173,29 +174,19 @@ WarpEdit edit(const Node& node) {
 }
 
 json parse(std::string_view text, const std::string& name, const EditLimits& limits) {
-    if (text.find('\0') != std::string_view::npos)  // which the parser takes for the end
-        throw Error(ErrorCode::kBadFile, cat(name, ": no JSON: a byte of value 0"));
-    std::vector<std::set<std::string>> members;  // of the objects around
-    const auto guard = [&](int depth, json::parse_event_t event, json& parsed) {
-        if (event == json::parse_event_t::object_start) members.emplace_back();
-        if (event == json::parse_event_t::object_end) members.pop_back();
-        if (event == json::parse_event_t::key && !members.back().insert(parsed.get<std::string>()).second)
-            throw Error(ErrorCode::kBadFile,
-                        cat(name, ": a member \"", parsed.get<std::string>(), "\" twice"));
-        if (depth > limits.max_json_depth)
-            throw Error(ErrorCode::kBadFile,
-                        cat(name, ": the JSON is nested deeper than ", limits.max_json_depth));
-        return true;
-    };
+    Findings findings = Findings::collecting();
+    json document;
+    std::string refusal;
     try {
-        return json::parse(text.begin(), text.end(), guard);
-    } catch (const json::exception& error) {
-        // "[json.exception.parse_error.101] parse error at line 1, column 2: ..."
-        std::string what = error.what();
-        if (const auto end = what.find("] "); what.starts_with('[') && end != std::string::npos)
-            what.erase(0, end + 2);
-        throw Error(ErrorCode::kBadFile, cat(name, ": no JSON: ", what));
+        document = parse_json(text, limits.max_json_depth, findings);
+        // A member that is there twice warns of a container; here one of the two would be lost.
+        for (const Issue& issue : findings.issues())
+            if (issue.finding->code == std::string_view("json.duplicate")) refusal = issue.text;
+    } catch (const FindingError& error) {
+        refusal = cat(error.code() == "json.syntax" ? "no JSON: " : "", error.what());
     }
+    if (!refusal.empty()) throw Error(ErrorCode::kBadFile, cat(name, ": ", refusal));
+    return document;
 }
 
 }  // namespace

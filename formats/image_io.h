@@ -1,10 +1,11 @@
-// Pictures from and to files: EXR through OpenEXR, WebP through libwebp, the rest through OpenImageIO. Target
-// imgmesh_pictures.
+// Pictures from and to files: PNG, EXR and WebP through their own libraries, the rest through OpenImageIO,
+// which is loaded when it is first needed (oiio_module.h). Target imgmesh_pictures.
 #pragma once
 
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "libcore/image/image.h"
 
@@ -50,6 +51,10 @@ struct WriteImageOptions {
 /// sample type asked for, channels other than grey or colour, transparency (an opaque alpha is left out),
 /// WebP's and JPEG's size; kIo where the file cannot be written.
 void write_image(const std::string& path, const Image& image, const WriteImageOptions& options = {});
+
+/// What write_image would write into a file of that name, which is not looked at beyond its extension.
+std::vector<std::uint8_t> encode_image(const std::string& path, const Image& image,
+                                       std::optional<SampleType> sample_type = {});
 
 /// Whether write_image knows this path's extension.
 bool can_write_image(const std::string& path);

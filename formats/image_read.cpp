@@ -1,4 +1,4 @@
-// read_image: the file's bytes, a look at them, one of three decoders, and what all pictures have in common.
+// read_image: the file's bytes, a look at them, one of the decoders, and what all pictures have in common.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -68,8 +68,8 @@ void check_finite(const std::string& path, const Image& image) {
                width = static_cast<std::size_t>(image.width);
     const std::size_t pixel = index / channels;
     throw Error(ErrorCode::kBadFile,
-                cat(path, ": channel ", image.channel_names[index % channels], " of pixel (", pixel % width,
-                    ", ", pixel / width, ") is not a finite number"));
+                cat(path, ": channel ", printable(image.channel_names[index % channels]), " of pixel (",
+                    pixel % width, ", ", pixel / width, ") is not a finite number"));
 }
 
 DecodedPicture decode(const std::string& path, bool any_primaries, const ImageLimits& limits) {
@@ -84,28 +84,14 @@ DecodedPicture decode(const std::string& path, bool any_primaries, const ImageLi
             return decode_exr(path, bytes, limits, any_primaries);
         case PictureFormat::kWebp:
             return decode_webp(path, bytes, limits);
+        case PictureFormat::kPng:
+            return decode_png(path, bytes, claim, limits);
         default:
             return decode_with_oiio(path, bytes, claim, limits);
     }
 }
 
 }  // namespace
-
-std::string one_line(const std::string& message) {
-    constexpr std::size_t kMaxLength = 300;
-    std::string line;
-    for (const char c : message) {
-        const bool end = c == '\n' || c == '\r';
-        if (end && (line.empty() || line.back() == ' ')) continue;
-        if (end)
-            line += "; ";
-        else
-            line += static_cast<unsigned char>(c) < 0x20 || c == 0x7F ? '?' : c;
-    }
-    while (!line.empty() && (line.back() == ' ' || line.back() == ';' || line.back() == '.')) line.pop_back();
-    if (line.size() > kMaxLength) line = line.substr(0, kMaxLength) + "...";
-    return line.empty() ? "the library gives no reason" : line;
-}
 
 Image read_image(const std::string& path, std::optional<ColorSpace> color_space, const ImageLimits& limits) {
     DecodedPicture picture = decode(path, color_space.has_value(), limits);

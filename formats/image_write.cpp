@@ -1,8 +1,5 @@
 // write_image: the colour space and samples that the format can hold, its bytes in memory, then one atomic
 // write.
-#include <OpenImageIO/filesystem.h>
-#include <OpenImageIO/imageio.h>
-
 #include <algorithm>
 #include <cctype>
 #include <cmath>
@@ -14,7 +11,9 @@
 #include "formats/atomic_file.h"
 #include "formats/icc_profile.h"
 #include "formats/image_io.h"
+#include "formats/oiio_module.h"
 #include "formats/picture_decoders.h"
+#include "formats/sample_codes.h"
 #include "libcore/base/error.h"
 #include "libcore/image/color.h"
 
@@ -25,7 +24,7 @@ using enum SampleType;
 
 struct Format {
     std::string_view extension;
-    const char* writer;  ///< OpenImageIO's name; empty for EXR and WebP
+    const char* writer;  ///< OpenImageIO's name; empty for EXR, PNG and WebP
     std::vector<SampleType> types;
     bool alpha;
     bool icc;           ///< holds ICC profiles, and so integers of any colour space; without, they are sRGB
@@ -35,7 +34,7 @@ struct Format {
 
 const std::vector<Format>& formats() {
     static const std::vector<Format> kFormats = {
-        {".png", "png", {kUint8, kUint16}, true, true, false},
+        {".png", "", {kUint8, kUint16}, true, true, false},
         {".jpg", "jpeg", {kUint8}, false, true, false, 65500},
         {".jpeg", "jpeg", {kUint8}, false, true, false, 65500},
         {".tif", "tiff", {kUint8, kUint16, kFloat}, true, true, true},
@@ -59,6 +58,12 @@ const Format* find_format(const std::string& path) {
 
 bool holds(const Format& format, SampleType type) {
     return std::find(format.types.begin(), format.types.end(), type) != format.types.end();
+}
+
+Error unknown_format(const std::string& path) {
+    std::string list;
+    for (const Format& f : formats()) list += cat(list.empty() ? "" : ", ", f.extension);
+    return {ErrorCode::kUsage, cat(path, ": cannot write this kind of picture, expected one of ", list)};
 }
 
 const char* type_name(SampleType type) {
@@ -175,57 +180,25 @@ void check_shape(const std::string& path, const Format& format, const Image& ima
                     "; write .exr or .tif"));
 }
 
-template <typename T>
-std::vector<T> integers(const Image& image) {
-    constexpr float kMax = std::numeric_limits<T>::max();
-    std::vector<T> out;
-    out.reserve(image.data.size());
-    for (const float value : image.data)
-        out.push_back(static_cast<T>(std::lround(kMax * std::clamp(value, 0.0f, 1.0f))));
-    return out;
-}
-
 std::vector<std::uint8_t> encode_with_oiio(const std::string& path, const Format& format, const Image& image,
                                            SampleType type) {
-    const auto failed = [&](const std::string& reason) {
-        // All happens in memory: what the library refuses is what the format cannot hold.
-        return Error(ErrorCode::kUsage, cat(path, ": cannot be written: ", one_line(reason)));
-    };
-    const OIIO::TypeDesc stored = type == kUint8    ? OIIO::TypeUInt8
-                                  : type == kUint16 ? OIIO::TypeUInt16
-                                  : type == kHalf   ? OIIO::TypeHalf
-                                                    : OIIO::TypeFloat;
-    OIIO::ImageSpec spec(image.width, image.height, image.channels, stored);
-    spec.channelnames = image.channel_names;
-    spec.alpha_channel = image.channel("A");
-    spec.attribute("oiio:UnassociatedAlpha", 1);
-    spec.attribute("DateTime", "");  // TIFF's writer would note the time: not the same bytes twice
-    if (std::string_view(format.writer) == "jpeg") {
-        spec.attribute("Compression", "jpeg:95");
-        spec.attribute("jpeg:subsampling", "4:4:4");
-    }
-    // Not in TIFF, where it needs an EXIF directory, for which OpenImageIO cannot read its own memory back.
-    if (image.color_space == ColorSpace::kSrgb && std::string_view(format.writer) != "tiff")
-        spec.attribute("oiio:ColorSpace", "sRGB");
-    if (is_integer(type) && image.color_space != ColorSpace::kSrgb) {
-        const auto profile = icc_from_color_space(image.color_space);
-        spec.attribute("ICCProfile", OIIO::TypeDesc(OIIO::TypeDesc::UINT8, static_cast<int>(profile.size())),
-                       profile.data());
-    }
-
+    OiioTask task{format.writer,
+                  std::string(format.extension),
+                  image.width,
+                  image.height,
+                  image.channel_names,
+                  image.channel("A"),
+                  type,
+                  image.data.data(),
+                  image.color_space == ColorSpace::kSrgb,
+                  {}};
+    if (is_integer(type) && image.color_space != ColorSpace::kSrgb)
+        task.icc = icc_from_color_space(image.color_space);
     std::vector<std::uint8_t> bytes;
-    OIIO::Filesystem::IOVecOutput memory(bytes);
-    const std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create(format.writer);
-    if (!output)
-        throw Error(ErrorCode::kUnsupported, cat(path, ": OpenImageIO is built without ", format.writer));
-    output->set_ioproxy(&memory);
-    if (!output->open(cat("memory", format.extension), spec)) throw failed(output->geterror());
-    const bool written = type == kUint8 ? output->write_image(stored, integers<std::uint8_t>(image).data())
-                         : type == kUint16
-                             ? output->write_image(stored, integers<std::uint16_t>(image).data())
-                             : output->write_image(OIIO::TypeFloat, image.data.data());
-    if (!written || !output->close()) throw failed(output->geterror());
-    return bytes;
+    std::vector<std::uint16_t> words;
+    if (type == kUint8) task.samples = (bytes = codes8_from_floats(image.data)).data();
+    if (type == kUint16) task.samples = (words = codes16_from_floats(image.data)).data();
+    return oiio_module().encode(path, task);
 }
 
 }  // namespace
@@ -234,28 +207,28 @@ bool can_write_image(const std::string& path) {
     return find_format(path) != nullptr;
 }
 
-void write_image(const std::string& path, const Image& image, const WriteImageOptions& options) {
+std::vector<std::uint8_t> encode_image(const std::string& path, const Image& image,
+                                       std::optional<SampleType> sample_type) {
     const Format* format = find_format(path);
-    if (!format) {
-        std::string list;
-        for (const Format& f : formats()) list += cat(list.empty() ? "" : ", ", f.extension);
-        throw Error(ErrorCode::kUsage,
-                    cat(path, ": cannot write this kind of picture, expected one of ", list));
-    }
-    const SampleType type = choose_type(path, *format, image, options.sample_type);
+    if (!format) throw unknown_format(path);
+    const SampleType type = choose_type(path, *format, image, sample_type);
     check_shape(path, *format, image);
-    AtomicFile file(path, options.overwrite);  // before the work: where it cannot be written, all is in vain
-
     Image stored = without_alpha(path, *format, image);
     convert(stored, choose_space(*format, type, image));
-    if (format->extension == ".exr") {
-        multiply_alpha_in(stored);
-        file.write(encode_exr(stored, type));
-    } else if (format->extension == ".webp") {
-        file.write(encode_webp(stored));
-    } else {
-        file.write(encode_with_oiio(path, *format, stored, type));
-    }
+    if (format->extension == ".webp") return encode_webp(stored);
+    if (format->extension == ".png") return encode_png(stored, type);
+    if (format->extension != ".exr") return encode_with_oiio(path, *format, stored, type);
+    multiply_alpha_in(stored);
+    return encode_exr(stored, type);
+}
+
+void write_image(const std::string& path, const Image& image, const WriteImageOptions& options) {
+    const Format* format = find_format(path);
+    if (!format) throw unknown_format(path);
+    choose_type(path, *format, image, options.sample_type);
+    check_shape(path, *format, image);
+    AtomicFile file(path, options.overwrite);  // before the work: where it cannot be written, all is in vain
+    file.write(encode_image(path, image, options.sample_type));
     file.commit();
 }
 

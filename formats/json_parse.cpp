@@ -43,6 +43,8 @@ json parse_json(std::string_view text, int max_depth, Findings& findings) {
     if (text.size() > kMaxJsonBytes)
         refuse("limits.json", cat("JSON of ", text.size(), " bytes, at most ", kMaxJsonBytes));
     if (text.starts_with("\xEF\xBB\xBF")) findings.add("json.bom", "the JSON starts with a byte order mark");
+    // The parser takes it for the end, so that what follows would be read by others alone.
+    if (text.find('\0') != std::string_view::npos) refuse("json.syntax", "a byte of value 0");
     DuplicateFinder duplicates(findings);
     const auto guard = [&](int depth, json::parse_event_t event, json& parsed) {
         if (depth > max_depth) refuse("json.depth", cat("nested deeper than ", max_depth));
@@ -52,7 +54,11 @@ json parse_json(std::string_view text, int max_depth, Findings& findings) {
     try {
         return json::parse(text.begin(), text.end(), guard);
     } catch (const json::exception& error) {
-        refuse("json.syntax", error.what());
+        // "[json.exception.parse_error.101] parse error at line 1, column 2: ..."
+        std::string what = error.what();
+        if (const auto end = what.find("] "); what.starts_with('[') && end != std::string::npos)
+            what.erase(0, end + 2);
+        refuse("json.syntax", what);
     }
 }
 

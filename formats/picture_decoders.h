@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "formats/one_line.h"
 #include "formats/picture_probe.h"
 #include "libcore/image/image.h"
 
@@ -24,6 +25,8 @@ struct DecodedPicture {
 /// taken for the pixels; kUnsupported for what imgmesh has no use for.
 DecodedPicture decode_with_oiio(const std::string& path, std::span<const std::uint8_t> bytes,
                                 const PictureClaim& claim, const ImageLimits& limits);
+DecodedPicture decode_png(const std::string& path, std::span<const std::uint8_t> bytes,
+                          const PictureClaim& claim, const ImageLimits& limits);
 DecodedPicture decode_webp(const std::string& path, std::span<const std::uint8_t> bytes,
                            const ImageLimits& limits);
 /// `bytes` is changed (see exr_opaque.h). `any_primaries`: the caller knows the colour space, so
@@ -31,13 +34,11 @@ DecodedPicture decode_webp(const std::string& path, std::span<const std::uint8_t
 DecodedPicture decode_exr(const std::string& path, std::span<std::uint8_t> bytes, const ImageLimits& limits,
                           bool any_primaries);
 
-/// The bytes of an EXR or a WebP file. The picture is as it is to be stored: `image` linear with associated
-/// alpha for EXR and `type` kHalf or kFloat; sRGB, 8 bit and lossless, at most 16383
-/// pixels a side, for WebP.
+/// The bytes of a file. The picture is as it is to be stored: `image` linear with associated alpha for EXR
+/// and `type` kHalf or kFloat; sRGB, 8 bit and lossless, at most 16383 pixels a side, for WebP; one to four
+/// channels, in RGB of any colour space, for PNG and `type` kUint8 or kUint16.
 std::vector<std::uint8_t> encode_exr(const Image& image, SampleType type);
 std::vector<std::uint8_t> encode_webp(const Image& image);
-
-/// A library's message as one line without control characters.
-std::string one_line(const std::string& message);
+std::vector<std::uint8_t> encode_png(const Image& image, SampleType type);
 
 }  // namespace imgmesh

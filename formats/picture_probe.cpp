@@ -3,6 +3,8 @@
 // (T.800, A.5.1), HEIF (ISO/IEC 23008-12, `ispe`).
 #include "formats/picture_probe.h"
 
+#include <libdeflate.h>
+
 #include <algorithm>
 #include <array>
 #include <cctype>
@@ -50,20 +52,6 @@ std::optional<std::size_t> find(Bytes b, std::size_t from, std::string_view text
     return std::nullopt;
 }
 
-std::uint32_t png_crc(Bytes bytes) {
-    static const auto kTable = [] {
-        std::array<std::uint32_t, 256> table{};
-        for (std::uint32_t i = 0; i < 256; ++i) {
-            table[i] = i;
-            for (int bit = 0; bit < 8; ++bit) table[i] = table[i] >> 1 ^ (table[i] & 1 ? 0xEDB88320u : 0u);
-        }
-        return table;
-    }();
-    std::uint32_t crc = 0xFFFFFFFFu;
-    for (const std::uint8_t byte : bytes) crc = kTable[(crc ^ byte) & 0xFF] ^ crc >> 8;
-    return ~crc;
-}
-
 // libpng reports a broken file on stderr besides its error, and takes one without an end for whole; this walk
 // finds both first.
 void check_png(const std::string& path, Bytes b) {
@@ -73,7 +61,8 @@ void check_png(const std::string& path, Bytes b) {
         if (length > b.size() - at - 12)
             throw broken(path, cat("the PNG is truncated: a chunk of ", length, " bytes, ",
                                    b.size() - at - 12, " are left"));
-        if (png_crc(b.subspan(at + 4, std::size_t{length} + 4)) != big_endian(b, at + 8 + length, 4))
+        if (libdeflate_crc32(0, b.data() + at + 4, std::size_t{length} + 4) !=
+            big_endian(b, at + 8 + length, 4))
             throw broken(path, "the PNG is broken: a chunk's checksum is wrong");
         if (has(b, at + 4, "IEND")) return;
         at += std::size_t{length} + 12;

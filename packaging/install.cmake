@@ -1,5 +1,4 @@
 # cmake --install: the tools, the libraries as a package for find_package(imgmesh), schemas, manuals; cpack: a .deb.
-include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
 set(_tools imgmesh-build imgmesh-reconstruct imgmesh-info imgmesh-compare imgmesh-convert imgmesh-warp imgmesh-segment)
@@ -10,6 +9,7 @@ foreach(_library IN LISTS _libraries)
   set_target_properties(${_library} PROPERTIES EXPORT_NAME ${_name})
 endforeach()
 install(TARGETS ${_libraries} EXPORT imgmesh-targets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+install(TARGETS imgmesh_oiio LIBRARY DESTINATION ${IMGMESH_MODULE_DIR})
 set(_package ${CMAKE_INSTALL_LIBDIR}/cmake/imgmesh)
 install(EXPORT imgmesh-targets NAMESPACE imgmesh:: DESTINATION ${_package})
 configure_file(packaging/imgmesh-config.cmake.in packaging/imgmesh-config.cmake @ONLY)
@@ -34,10 +34,17 @@ endforeach()
 add_custom_command(OUTPUT ${_manuals}/stamp
   COMMAND ${IMGMESH_PYTHON3} ${PROJECT_SOURCE_DIR}/packaging/make_manuals.py ${_manuals} ${_programs}
   COMMAND ${CMAKE_COMMAND} -E touch ${_manuals}/stamp
-  DEPENDS ${_tools} packaging/make_manuals.py)
+  DEPENDS ${_tools} packaging/make_manuals.py packaging/completions.py)
 add_custom_target(manuals ALL DEPENDS ${_manuals}/stamp)
 install(DIRECTORY ${_manuals}/man1 DESTINATION ${CMAKE_INSTALL_MANDIR})
-install(DIRECTORY ${_manuals}/completions DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion)
+install(DIRECTORY ${_manuals}/bash/ DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions)
+install(DIRECTORY ${_manuals}/fish/ DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d)
+# Debian's zsh looks into another folder below /usr than all others do, and than itself does below /usr/local.
+install(CODE "set(_zsh site-functions)
+  if(CMAKE_INSTALL_PREFIX STREQUAL /usr)
+    set(_zsh vendor-completions)
+  endif()
+  file(INSTALL \"${_manuals}/zsh/\" DESTINATION \"\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_DATADIR}/zsh/\${_zsh}\")")
 
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME imgmesh)

@@ -16,7 +16,7 @@ SOURCES = {".h", ".hpp", ".cpp", ".inl"}
 VALUES = re.compile(r"libcore/(base/|image/|mesh/|param/pixel_map\.h$|param/mesh_image\.h$|warp/warp_edits\.h$)")
 # Libraries by the names of their headers.
 TBB = re.compile(r"(oneapi/)?tbb(/|\.h$)")
-FILE_LIBRARIES = re.compile(r"OpenEXR/|Imath/|Imf\w*\.h|OpenImageIO/|draco/|tiny_gltf|tinygltf|nlohmann/|webp/|json/")
+FILE_LIBRARIES = re.compile(r"OpenEXR/|Imath/|Imf\w*\.h|OpenImageIO/|png\.h$|libdeflate\.h$|draco/|tiny_gltf|tinygltf|nlohmann/|webp/|json/")
 COMMAND_LINE = re.compile(r"CLI/|CLI11")
 STREAMS = re.compile(r"(fstream|filesystem|cstdio|stdio\.h)$")
 
@@ -88,6 +88,8 @@ CASES = [
     ("libcore/mesh/a.cpp", "OpenEXR/ImfHeader.h", True),
     ("libcore/mesh/a.cpp", "OpenImageIO/imageio.h", True),
     ("libcore/mesh/a.cpp", "nlohmann/json.hpp", True),
+    ("libcore/mesh/a.cpp", "png.h", True),
+    ("libcore/mesh/a.cpp", "libdeflate.h", True),
     ("libcore/mesh/a.cpp", "fstream", True),
     ("libcore/mesh/a.cpp", "tbb/parallel_for.h", True),
     ("libcore/base/parallel.cpp", "tbb/parallel_for.h", False),

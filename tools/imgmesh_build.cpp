@@ -13,11 +13,13 @@
 #include "libcore/build/presets.h"
 #include "libcore/image/color.h"
 #include "libcore/metrics/metrics.h"
+#include "tools/build_contradictions.h"
 #include "tools/common/channel_list.h"
 #include "tools/common/names.h"
 #include "tools/common/options.h"
 #include "tools/common/output.h"
 #include "tools/common/text.h"
+#include "tools/common/texture_options.h"
 #include "tools/common/tool_main.h"
 
 namespace fs = std::filesystem;
@@ -34,6 +36,7 @@ struct Options {
     bool cut = true;  // along alpha
     std::string mask;
     double alpha_threshold = 0.5;
+    TextureOptions texture;
     ImageLimits limits;
 };
 
@@ -121,15 +124,11 @@ void add_options(CLI::App& app, Options& o) {
                "Error that collapses are ordered and placed by (default flattened)");
     add_choice(app, "--solver", o.params.solver, solver_choices(),
                "How a quadric's least point is found; closed is the fast one (default closed)");
-    CLI::Option* const geometry =
-        add_number(app, "--geometry-weight", o.params.geometry_weight, {0, kNoLimit, true},
-                   cat("Weight of geometry in the quadrics (default ", params.geometry_weight, ")"));
+    add_number(app, "--geometry-weight", o.params.geometry_weight, {0, kNoLimit, true},
+               cat("Weight of geometry in the quadrics (default ", params.geometry_weight, ")"));
     add_number(app, "--color-weight", o.params.color_weight, {0, kNoLimit, true},
                cat("Weight of colour in the quadrics (default ", params.color_weight, ")"));
-    app.final_callback([&o, geometry] {
-        if (geometry->count() > 0 && o.params.metric == Metric::kHoppe)
-            throw Error(ErrorCode::kUsage, "--geometry-weight: the metric hoppe has no geometry to weigh");
-    });
+    app.final_callback([&] { check_contradictions(app, o.params); });
     add_count(app, "--smoothing", o.params.smoothing, {0, kMaxSmoothing},
               "Passes of smoothing before gradients are taken (default by density for flattened, else 0)");
     add_choice<bool, bool>(
@@ -165,6 +164,7 @@ void add_options(CLI::App& app, Options& o) {
     add_choice(app, "--bary", o.params.bary, bary_choices(),
                "Precision of the pixel map (default half where the map stays one to one, else float)");
     add_choice(app, "--draco", o.draco, draco_choices(), "Mesh compression (default edgebreaker)");
+    add_texture_options(app, o.texture, "Put the picture on the meshes, for engines and viewers", false);
     add_choice(app, "--color-space", o.color_space, color_space_choices(),
                "Of the pictures' numbers, whatever their files say");
     add_count(app, "--max-pixels", o.limits.max_pixels, {1},
@@ -247,6 +247,16 @@ Report build_one(const Job& job, const Options& o, const Context& context, const
     const bool cut = o.cut && o.mask.empty();
     Mask mask = cut ? alpha_mask(image, static_cast<float>(o.alpha_threshold)) : read_mask(o);
     const double read_seconds = stage.lap();
+    ContainerOptions container;
+    container.draco = o.draco;
+    container.overwrite = context.overwrite;
+    if (o.texture.wanted) {
+        try {
+            container.texture.picture = encode_texture(image, mask, o.texture.type);
+        } catch (const Error& e) {
+            throw Error(e.code(), cat(job.input, ": ", e.what()));
+        }
+    }
     BuildResult result = build_named(job.input, image, o.params, progress, std::move(mask));
     result.mesh_image.generator = context.generator;
     if (result.mesh_image.source.has_mask) {
@@ -254,7 +264,8 @@ Report build_one(const Job& job, const Options& o, const Context& context, const
         result.mesh_image.parameters.emplace_back("alpha-threshold", o.alpha_threshold);
     }
     stage.lap();
-    write_container(job.output, result.mesh_image, {o.draco, context.overwrite});
+    if (o.texture.wanted) container.texture.coords = texture_coords(result.mesh_image);
+    write_container(job.output, result.mesh_image, container);
     const double write_seconds = stage.lap();
 
     // The figures are those of what a reader gets.

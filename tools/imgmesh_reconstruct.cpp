@@ -61,6 +61,8 @@ void check_options(const Options& o, bool svg) {
     if (plane && o.draw.scale != 1)
         throw Error(ErrorCode::kUsage, cat("--scale ", o.draw.scale, ": mode ", mode,
                                            " draws one pixel for one; expected gouraud, wire or flat"));
+    if (o.draw.mode == DrawMode::kVisits && o.level != 0)
+        throw Error(ErrorCode::kUsage, cat("--level ", o.level, ": mode visits is of level 0 alone"));
     if (svg && o.draw.mode != DrawMode::kWire && o.draw.mode != DrawMode::kFlat)
         throw Error(ErrorCode::kUsage,
                     cat(o.output, ": mode ", mode, " cannot be drawn as SVG; expected wire or flat"));

@@ -109,6 +109,20 @@ FeatureImage picture_of(const Options& o, const Level& level) {
     return luv_image(image, Range::kClipped);
 }
 
+// segment(), where what the command line asks for in vain is told in its own words.
+Segmentation segment_named(const Options& o, const Level& level, const FeatureImage& picture,
+                           const SegmentParams& params, const Progress& progress) {
+    try {
+        return segment(level, picture, params, progress);
+    } catch (const Error& e) {
+        if (e.code() != ErrorCode::kUsage) throw;
+        throw Error(e.code(), cat(o.params.superpixels ? "--superpixels: "
+                                  : o.params.segments  ? "--segments: "
+                                                       : "",
+                                  e.what()));
+    }
+}
+
 Report run(const Options& o, Context& context) {
     check_options(o);
     for (const std::string& output : outputs_of(o)) check_output(output, context.overwrite);
@@ -131,9 +145,9 @@ Report run(const Options& o, Context& context) {
     params.compactness = o.compactness.value_or(params.compactness);
     params.distance = o.distance.value_or(params.distance);
     const FeatureImage picture = picture_of(o, level);
-    const Segmentation result = segment(level, picture, params, [&](double f, std::string_view stage) {
-        context.progress(0.3 + 0.4 * f, stage);
-    });
+    const Segmentation result =
+        segment_named(o, level, picture, params,
+                      [&](double f, std::string_view stage) { context.progress(0.3 + 0.4 * f, stage); });
     const LabelImage& labels = result.labels;
     const std::vector<RegionFacts> facts = region_facts(labels, picture);
 

@@ -66,8 +66,12 @@ OutputSize parse_size(const std::string& name, const std::string& text) {
     if (cross == std::string::npos)
         throw Error(ErrorCode::kUsage, cat(name, " '", text, "': expected WIDTHxHEIGHT, as in 640x480"));
     const CountRange range{1, ImageLimits().max_side};
-    return {static_cast<int>(parse_count(name, text.substr(0, cross), range)),
-            static_cast<int>(parse_count(name, text.substr(cross + 1), range))};
+    const OutputSize size{static_cast<int>(parse_count(name, text.substr(0, cross), range)),
+                          static_cast<int>(parse_count(name, text.substr(cross + 1), range))};
+    if (std::int64_t{size.width} * size.height > ImageLimits().max_pixels)
+        throw Error(ErrorCode::kUsage, cat(name, " '", text, "': expected at most ", ImageLimits().max_pixels,
+                                           " pixels in all"));
+    return size;
 }
 
 void add_options(CLI::App& app, Options& o) {
@@ -212,7 +216,11 @@ Report run(const Options& o, Context& context) {
     if (is_container(o.output)) {
         MeshImage warped = warp_mesh_image(mesh_image, moves);
         warped.generator = context.generator;
-        write_container(o.output, warped, {container.facts.draco, context.overwrite});
+        ContainerOptions options;
+        options.draco = container.facts.draco;
+        options.overwrite = context.overwrite;
+        options.texture = container.texture;  // moves along: vertices keep their places in it
+        write_container(o.output, warped, options);
     } else if (!o.output.empty()) {
         const Image out = warp_image(*image, field, o.size);
         context.progress(0.8, "write");

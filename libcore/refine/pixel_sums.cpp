@@ -98,6 +98,21 @@ IMGMESH_INLINE CornerSums corner_sums_of(const PicturePlanes& picture, const Cor
     return sums;
 }
 
+IMGMESH_INLINE double squared_error_of(const PicturePlanes& picture, const Corner& a, const Corner& b,
+                                       const Corner& c) {
+    double sum = 0;
+    Float8 ee = {};
+    for_each_chunk(
+        picture, Plane(a, b, c), a, b, c,
+        [&](const Float8* e, const Float8&, float, const Int8&, int, int)
+            __attribute__((always_inline)) { ee += e[0] * e[0] + e[1] * e[1] + e[2] * e[2]; },
+        [&]() __attribute__((always_inline)) {
+            sum += total(ee);
+            ee = Float8{};
+        });
+    return sum;
+}
+
 IMGMESH_INLINE FaceSums face_sums_of(const PicturePlanes& picture, const Corner& a, const Corner& b,
                                      const Corner& c) {
     const Plane plane(a, b, c);
@@ -141,6 +156,10 @@ __attribute__((target("avx2"))) CornerSums corner_sums_avx2(const PicturePlanes&
                                                             const Corner& b, const Corner& c) {
     return corner_sums_of(picture, a, b, c);
 }
+__attribute__((target("avx2"))) double squared_error_avx2(const PicturePlanes& picture, const Corner& a,
+                                                          const Corner& b, const Corner& c) {
+    return squared_error_of(picture, a, b, c);
+}
 __attribute__((target("avx2"))) FaceSums face_sums_avx2(const PicturePlanes& picture, const Corner& a,
                                                         const Corner& b, const Corner& c) {
     return face_sums_of(picture, a, b, c);
@@ -170,6 +189,13 @@ CornerSums corner_sums(const PicturePlanes& picture, const Corner& a, const Corn
     if (has_avx2()) return corner_sums_avx2(picture, a, b, c);
 #endif
     return corner_sums_of(picture, a, b, c);
+}
+
+double squared_error(const PicturePlanes& picture, const Corner& a, const Corner& b, const Corner& c) {
+#if defined(__x86_64__)
+    if (has_avx2()) return squared_error_avx2(picture, a, b, c);
+#endif
+    return squared_error_of(picture, a, b, c);
 }
 
 FaceSums face_sums(const PicturePlanes& picture, const Corner& a, const Corner& b, const Corner& c) {

@@ -42,6 +42,8 @@ struct FaceSums {
 /// Of the face (a, b, c), counter-clockwise on screen, drawn with colours interpolated linearly; pixels as
 /// for_each_span shares them out. Positions on kPositionStep. Same bits on every processor.
 CornerSums corner_sums(const PicturePlanes& picture, const Corner& a, const Corner& b, const Corner& c);
+/// CornerSums::ee alone, to the bit.
+double squared_error(const PicturePlanes& picture, const Corner& a, const Corner& b, const Corner& c);
 FaceSums face_sums(const PicturePlanes& picture, const Corner& a, const Corner& b, const Corner& c);
 
 /// The pixel of the face with the largest |e|^2, the first of several; (-1, -1) for a face without pixels.

@@ -42,7 +42,7 @@ struct RefineReport {
 /// picture  what to draw, in the space of mesh.feature; pixels outside the mesh do not count,
 ///          nor do those outside `mask`, which is empty() or of the picture's size
 ///
-/// Source: docs/decisions/0012-refinement.md. Deterministic; one thread.
+/// Source: docs/decisions/0012-refinement.md. Same result for any number of threads.
 RefineReport refine(BaseMesh& mesh, const FeatureImage& picture, const RefineParams& params,
                     const Progress& progress = {}, const Mask& mask = {});
 

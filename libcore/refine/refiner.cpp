@@ -4,6 +4,8 @@
 #include <cmath>
 
 #include "libcore/image/color.h"
+#include "libcore/refine/for_each_id.h"
+#include "libcore/refine/vertex_classes.h"
 
 namespace imgmesh {
 
@@ -47,7 +49,7 @@ bool Refiner::better(const Cost& now, const Cost& before) const {
 }
 
 double Refiner::face_error(const Face& face) const {
-    return corner_sums(picture_, corner(face[0]), corner(face[1]), corner(face[2])).ee;
+    return squared_error(picture_, corner(face[0]), corner(face[1]), corner(face[2]));
 }
 
 Refiner::Cost Refiner::cost_of(const Star& star) const {
@@ -65,37 +67,41 @@ Refiner::Cost Refiner::cost_of(const Star& star) const {
 // colours; the faces' errors follow from the same sums.
 void Refiner::fit_colors() {
     std::vector<FaceSums> sums(mesh_.faces.size());
-    for (Id f = 0; f < mesh_.faces.size(); ++f)
-        if (mesh_.live_face(f)) {
-            const auto [a, b, c] = mesh_.faces[f];
-            sums[f] = face_sums(picture_, corner(a), corner(b), corner(c));
-        }
+    for_each_id(mesh_.faces.size(), [&](Id f) {
+        if (!mesh_.live_face(f)) return;
+        const auto [a, b, c] = mesh_.faces[f];
+        sums[f] = face_sums(picture_, corner(a), corner(b), corner(c));
+    });
+    forget();
     const std::vector<Vec3f> before = mesh_.color;
     std::vector<Vec3d> change(mesh_.position.size(), Vec3d::Zero());
     constexpr int kPasses = 6;
     // A vertex that no pixel touches stays as it is.
     constexpr double kPull = 1e-3;
-    Star star;
-    for (int pass = 0; pass < kPasses; ++pass)
-        for (Id v = 0; v < mesh_.position.size(); ++v) {
-            if (!mesh_.star(v, star)) continue;
-            double diagonal = kPull;
-            Vec3d rhs = kPull * change[v];
-            for (int k = 0; k < star.size; ++k) {
-                const Id f = star.face[static_cast<std::size_t>(k)];
-                const std::size_t i = star.corner[static_cast<std::size_t>(k)];
-                diagonal += sums[f].ww[i][i];
-                rhs -= sums[f].we[i];
-                for (const std::size_t j : {(i + 1) % 3, (i + 2) % 3})
-                    rhs -= sums[f].ww[i][j] * change[mesh_.faces[f][j]];
-            }
-            const Vec3f best = before[v] + (rhs / diagonal).cast<float>(), next = allowed(best);
-            if ((next - best).squaredNorm() >= (mesh_.color[v] - best).squaredNorm()) continue;
-            mesh_.color[v] = next;
-            change[v] = (next - before[v]).cast<double>();
+    const auto improve = [&](Id v) {
+        Star star;
+        if (!mesh_.star(v, star)) return;
+        double diagonal = kPull;
+        Vec3d rhs = kPull * change[v];
+        for (int k = 0; k < star.size; ++k) {
+            const Id f = star.face[static_cast<std::size_t>(k)];
+            const std::size_t i = star.corner[static_cast<std::size_t>(k)];
+            diagonal += sums[f].ww[i][i];
+            rhs -= sums[f].we[i];
+            for (const std::size_t j : {(i + 1) % 3, (i + 2) % 3})
+                rhs -= sums[f].ww[i][j] * change[mesh_.faces[f][j]];
         }
-    for (Id f = 0; f < mesh_.faces.size(); ++f) {
-        if (!mesh_.live_face(f)) continue;
+        const Vec3f best = before[v] + (rhs / diagonal).cast<float>(), next = allowed(best);
+        if ((next - best).squaredNorm() >= (mesh_.color[v] - best).squaredNorm()) return;
+        mesh_.color[v] = next;
+        change[v] = (next - before[v]).cast<double>();
+    };
+    const std::vector<std::vector<Id>> classes = vertex_classes(mesh_.faces, mesh_.position.size());
+    for (int pass = 0; pass < kPasses; ++pass)
+        for (const std::vector<Id>& members : classes)
+            for_each_id(members.size(), [&](Id k) { improve(members[k]); });
+    for_each_id(mesh_.faces.size(), [&](Id f) {
+        if (!mesh_.live_face(f)) return;
         double e = sums[f].ee;
         for (std::size_t i = 0; i < 3; ++i) {
             const Vec3d& di = change[mesh_.faces[f][i]];
@@ -103,7 +109,7 @@ void Refiner::fit_colors() {
             for (std::size_t j = 0; j < 3; ++j) e += sums[f].ww[i][j] * di.dot(change[mesh_.faces[f][j]]);
         }
         error_[f] = std::max(0.0, e);
-    }
+    });
 }
 
 bool Refiner::place(const Star& star, const Vec2f& position, const Vec3f& color, double least_q,
@@ -223,13 +229,14 @@ bool Refiner::move_vertex(Id v) {
 }
 
 std::int64_t Refiner::move_vertices() {
-    std::int64_t moves = 0;
-    for (Id v = 0; v < mesh_.position.size(); ++v)
-        if (mesh_.live_vertex(v)) moves += move_vertex(v);
-    return moves;
+    forget();
+    std::vector<std::uint8_t> moved(mesh_.position.size(), false);
+    for (const std::vector<Id>& members : vertex_classes(mesh_.faces, mesh_.position.size()))
+        for_each_id(members.size(), [&](Id k) { moved[members[k]] = move_vertex(members[k]); });
+    return std::count(moved.begin(), moved.end(), true);
 }
 
-bool Refiner::flip_if_better(Id f, int i) {
+bool Refiner::flip_is_better(Id f, int i, double& first, double& second) const {
     const auto n = static_cast<std::size_t>(i);
     const Id g = mesh_.across[f][n];
     const Id p = mesh_.faces[f][n], a = mesh_.faces[f][(n + 1) % 3], b = mesh_.faces[f][(n + 2) % 3];
@@ -242,21 +249,48 @@ bool Refiner::flip_if_better(Id f, int i) {
     before.error = error_[f] + error_[g];
     add_shape(before, mesh_.position[p], mesh_.position[a], mesh_.position[b]);
     add_shape(before, mesh_.position[q], mesh_.position[b], mesh_.position[a]);
-    const double first = face_error({p, a, q}), second = face_error({q, b, p});
+    first = face_error({p, a, q});
+    second = face_error({q, b, p});
     after.error = first + second;
-    if (!better(after, before)) return false;
+    return better(after, before);
+}
+
+bool Refiner::flip_if_better(Id f, int i) {
+    double first = 0, second = 0;
+    if (!flip_is_better(f, i, first, second)) return false;
+    const Id g = mesh_.across[f][static_cast<std::size_t>(i)];
     mesh_.flip(f, i);
     error_[f] = first;
     error_[g] = second;
+    changed(f);
+    changed(g);
     return true;
 }
 
 std::int64_t Refiner::flip_edges() {
+    const auto other = [&](Id f, int i) {
+        const Id g = mesh_.live_face(f) ? mesh_.across[f][static_cast<std::size_t>(i)] : kNone;
+        return g != kNone && f < g ? g : kNone;
+    };
+    // What each flip would do is found on all threads, and holds for pairs of faces that no flip before has
+    // changed: the outcome is that of one edge after the other.
+    std::vector<std::array<bool, 3>> worthwhile(mesh_.faces.size());
+    for_each_id(mesh_.faces.size(), [&](Id f) {
+        double first = 0, second = 0;
+        for (int i = 0; i < 3; ++i)
+            worthwhile[f][static_cast<std::size_t>(i)] =
+                other(f, i) != kNone && flip_is_better(f, i, first, second);
+    });
+    std::vector<bool> flipped(mesh_.faces.size(), false);
     std::int64_t flips = 0;
     for (Id f = 0; f < mesh_.faces.size(); ++f)
         for (int i = 0; i < 3; ++i) {
-            const Id g = mesh_.live_face(f) ? mesh_.across[f][static_cast<std::size_t>(i)] : kNone;
-            if (g != kNone && f < g) flips += flip_if_better(f, i);
+            const Id g = other(f, i);
+            if (g == kNone || !(worthwhile[f][static_cast<std::size_t>(i)] || flipped[f] || flipped[g]))
+                continue;
+            if (!flip_if_better(f, i)) continue;
+            flipped[f] = flipped[g] = true;
+            ++flips;
         }
     return flips;
 }

@@ -24,6 +24,20 @@ class Refiner {
     /// More vertices where they gain most, all steps, then as many fewer where they cost least, and all steps
     /// again: taken back as a whole unless the error has fallen.
     bool exchange(double share);
+    /// The steps of an exchange inside the mesh: as many as `most`, none next to another; how many they were.
+    std::int64_t insert_best(std::int64_t most);
+    std::int64_t remove_cheapest(std::int64_t most);
+
+    struct Removal {
+        Id v, into;
+        double cost;
+        bool border;  ///< v is one of a side
+        bool operator==(const Removal&) const = default;
+    };
+    /// The best of each vertex that can go, in order of cost. Those near which nothing has changed since the
+    /// last call are remembered, until forget().
+    std::vector<Removal> removals();
+    void forget();
 
   private:
     // What a star or a pair of faces costs: squared error, and the worst and the summed shape.
@@ -51,14 +65,10 @@ class Refiner {
                Placement& out) const;
     Vec2f newton_step(const Star& star, Id v) const;
     bool move_vertex(Id v);
+    bool flip_is_better(Id f, int i, double& first, double& second) const;  // errors of f and across
     bool flip_if_better(Id f, int i);
     void set(const Star& star, Id v, const Placement& placement);
 
-    struct Removal {
-        Id v, into;
-        double cost;
-        bool border;  // v is one of a side
-    };
     struct Insertion {
         Id face;
         int edge;  // opposite this corner, or -1 for the inside
@@ -68,12 +78,12 @@ class Refiner {
         bool border;  // on an edge of one face
     };
     Id across(const Insertion& insertion) const;  // the other face that it divides, or kNone
-    void relocate(const std::vector<Removal>& removals, const std::vector<Insertion>& insertions, bool border,
-                  std::vector<bool>& touched, std::vector<Id>& fresh);
-    std::vector<Removal> removals() const;
+    void relocate(std::size_t most, const std::vector<Removal>& removals,
+                  const std::vector<Insertion>& insertions, bool border, std::vector<bool>& touched,
+                  std::vector<Id>& fresh);
+    void changed(const Star& star);  // what was known of its vertices holds no more
+    void changed(Id f);
     std::vector<Insertion> insertions() const;
-    std::int64_t insert_best(std::int64_t most);
-    std::int64_t remove_cheapest(std::int64_t most);
     Removal best_removal(Id v) const;
     Insertion best_insertion(Id f) const;
     void try_insertion(Id f, int edge, const Vec2f& position, Insertion& best) const;
@@ -85,7 +95,10 @@ class Refiner {
     RefineParams params_;
     RefineMesh mesh_;
     std::vector<double> error_;  // of each face
-    double shape_unit_ = 0;      // squared error that a shape cost of 1 weighs as much as
+    // The best removal of each vertex, and whether nothing that it depends on has changed since.
+    std::vector<Removal> removal_;
+    std::vector<std::uint8_t> removal_holds_;
+    double shape_unit_ = 0;  // squared error that a shape cost of 1 weighs as much as
 };
 
 }  // namespace imgmesh

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "libcore/refine/for_each_id.h"
 #include "libcore/refine/refiner.h"
 
 namespace imgmesh {
@@ -16,12 +17,20 @@ Refiner::Removal Refiner::best_removal(Id v) const {
     const auto other = [&](std::size_t k, unsigned step) {
         return mesh_.faces[star.face[k]][(star.corner[k] + step) % 3];
     };
-    const std::size_t neighbors = size + (star.closed ? 0 : 1);
-    for (std::size_t n = 0; n < neighbors; ++n) {
-        const Id u = n < size ? other(n, 1) : other(size - 1, 2);
+    // Those of the most similar colour first: what costs more than the best so far need not be summed up.
+    std::array<std::pair<float, Id>, Star::kMost> neighbors;
+    std::size_t count = 0;
+    const auto add = [&](Id u) { neighbors[count++] = {(mesh_.color[u] - mesh_.color[v]).squaredNorm(), u}; };
+    if (star.closed) {
+        for (std::size_t n = 0; n < size; ++n) add(other(n, 1));
+    } else {
         // A vertex of a side goes along its side only.
-        if (!star.closed && n != 0 && n != size) continue;
-        if (!star.closed && (mesh_.fixed[u] & mesh_.fixed[v]) != mesh_.fixed[v]) continue;
+        for (const Id u : {other(0, 1), other(size - 1, 2)})
+            if ((mesh_.fixed[u] & mesh_.fixed[v]) == mesh_.fixed[v]) add(u);
+    }
+    std::sort(neighbors.begin(), neighbors.begin() + static_cast<std::ptrdiff_t>(count));
+    for (std::size_t n = 0; n < count; ++n) {
+        const Id u = neighbors[n].second;
         Cost after;
         for (std::size_t k = 0; k < size && after.legal; ++k)
             if (other(k, 1) != u && other(k, 2) != u)
@@ -116,9 +125,21 @@ Refiner::Insertion Refiner::best_insertion(Id f) const {
     return best;
 }
 
+void Refiner::changed(const Star& star) {
+    for (std::size_t k = 0; k < static_cast<std::size_t>(star.size); ++k) changed(star.face[k]);
+}
+void Refiner::changed(Id f) {
+    for (const Id v : mesh_.faces[f])
+        if (v < removal_holds_.size()) removal_holds_[v] = false;
+}
+void Refiner::forget() {
+    removal_holds_.assign(mesh_.position.size(), false);
+}
+
 void Refiner::remove(const Removal& removal) {
     Star star;
     mesh_.star(removal.v, star);
+    changed(star);
     mesh_.collapse(star, removal.v, removal.into);
     for (std::size_t k = 0; k < static_cast<std::size_t>(star.size); ++k)
         error_[star.face[k]] = mesh_.live_face(star.face[k]) ? face_error(mesh_.faces[star.face[k]]) : 0;
@@ -131,6 +152,7 @@ Id Refiner::insert(const Insertion& insertion) {
     error_.resize(mesh_.faces.size(), 0.0);
     Star star;
     mesh_.star(v, star);
+    changed(star);
     for (std::size_t k = 0; k < static_cast<std::size_t>(star.size); ++k)
         error_[star.face[k]] = face_error(mesh_.faces[star.face[k]]);
     return v;
@@ -141,10 +163,17 @@ Id Refiner::across(const Insertion& insertion) const {
                               : mesh_.across[insertion.face][static_cast<std::size_t>(insertion.edge)];
 }
 
-std::vector<Refiner::Removal> Refiner::removals() const {
+std::vector<Refiner::Removal> Refiner::removals() {
+    const std::size_t vertices = mesh_.position.size();
+    removal_.resize(vertices, {});
+    removal_holds_.resize(vertices, false);
+    for_each_id(vertices, [&](Id v) {
+        if (!removal_holds_[v]) removal_[v] = best_removal(v);
+        removal_holds_[v] = true;
+    });
     std::vector<Removal> all;
-    for (Id v = 0; v < mesh_.position.size(); ++v)
-        if (const Removal removal = best_removal(v); removal.into != kNone) all.push_back(removal);
+    std::copy_if(removal_.begin(), removal_.end(), std::back_inserter(all),
+                 [](const Removal& removal) { return removal.into != kNone; });
     std::sort(all.begin(), all.end(), [](const Removal& a, const Removal& b) {
         return a.cost != b.cost ? a.cost < b.cost : a.v < b.v;
     });
@@ -152,17 +181,16 @@ std::vector<Refiner::Removal> Refiner::removals() const {
 }
 
 std::vector<Refiner::Insertion> Refiner::insertions() const {
-    std::vector<Insertion> all;
-    for (Id f = 0; f < mesh_.faces.size(); ++f)
-        if (const Insertion insertion = best_insertion(f); insertion.gain > 0) all.push_back(insertion);
+    std::vector<Insertion> all(mesh_.faces.size());
+    for_each_id(all.size(), [&](Id f) { all[f] = best_insertion(f); });
+    std::erase_if(all, [](const Insertion& insertion) { return !(insertion.gain > 0); });
     std::sort(all.begin(), all.end(), [](const Insertion& a, const Insertion& b) {
         return a.gain != b.gain ? a.gain > b.gain : a.face < b.face;
     });
     return all;
 }
 
-// As many as `most` of the best inside the mesh, none next to another. What is known of a face or a vertex
-// holds only until something near it changes.
+// What is known of a face or a vertex holds only until something near it changes.
 std::int64_t Refiner::insert_best(std::int64_t most) {
     std::vector<bool> touched(mesh_.faces.size(), false);
     std::int64_t done = 0;
@@ -223,25 +251,27 @@ bool Refiner::exchange(double share) {
     if (left == 0 && total_error() < before) return true;
     mesh_ = mesh;
     error_ = error;
+    forget();
     return false;
 }
 
 std::int64_t Refiner::relocate() {
+    const auto most =
+        static_cast<std::size_t>(std::ceil(params_.relocations * static_cast<double>(mesh_.vertex_count())));
     const std::vector<Removal> removals = this->removals();
     const std::vector<Insertion> insertions = this->insertions();
     // What is known of a face or a vertex holds only until something near it changes.
     std::vector<bool> touched(mesh_.faces.size(), false);
     std::vector<Id> fresh;
     // Inner vertices are exchanged for inner ones: the number of faces stays.
-    for (const bool border : {false, true}) relocate(removals, insertions, border, touched, fresh);
+    for (const bool border : {false, true}) relocate(most, removals, insertions, border, touched, fresh);
     for (const Id v : fresh) move_vertex(v);
     return static_cast<std::int64_t>(fresh.size());
 }
 
-void Refiner::relocate(const std::vector<Removal>& removals, const std::vector<Insertion>& insertions,
-                       bool border, std::vector<bool>& touched, std::vector<Id>& fresh) {
-    const auto most =
-        static_cast<std::size_t>(std::ceil(params_.relocations * static_cast<double>(mesh_.vertex_count())));
+void Refiner::relocate(std::size_t most, const std::vector<Removal>& removals,
+                       const std::vector<Insertion>& insertions, bool border, std::vector<bool>& touched,
+                       std::vector<Id>& fresh) {
     Star star;
     std::size_t next_removal = 0;
     for (const Insertion& insertion : insertions) {

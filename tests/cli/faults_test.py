@@ -1,4 +1,5 @@
 """Faults while a container is replaced: whatever happens, the old one or the new one stands there, whole."""
+import fcntl
 import os
 import pathlib
 import resource
@@ -64,6 +65,37 @@ class Faults(CliCase):
             self.assertEqual(self.picture(name), old[name])
             self.assertLess(switched, 6, "never killed before the end")
         self.assertEqual(self.picture("alone/c.gltf"), new["c.gltf"])
+
+    def test_what_killed_runs_left_goes_later(self):
+        """Temporary files that nobody holds and that are an hour old; nothing else of that name."""
+        before = set(self.files())
+        for attempt in range(20):  # until one is killed while its temporary file stands there
+            process = self.start("c.glb")
+            while process.poll() is None and set(os.listdir(self.folder)) <= before | {"alone"}:
+                pass
+            process.send_signal(signal.SIGKILL)
+            process.wait(60)
+            left = [f for f in os.listdir(self.folder) if f.startswith(".imgmesh-")]
+            if left:
+                break
+        self.assertEqual(len(left), 1)
+        young, held = f".imgmesh-{os.getpid()}-0.glb", ".imgmesh-7-0.glb"
+        others = [".imgmesh-notes", ".imgmesh-7-.glb", ".imgmesh-7-1glb", ".imgmesh--1.glb", "imgmesh-7-1.glb"]
+        for name in (young, held, ".imgmesh-7-1", *others):
+            (self.folder / name).write_text("x")
+        (self.folder / ".imgmesh-7-2.glb").mkdir()
+        os.symlink("c.glb", self.folder / ".imgmesh-7-3.glb")
+        for name in os.listdir(self.folder):
+            if name not in (young, *left):
+                os.utime(self.folder / name, (1, time.time() - 3700), follow_symlinks=False)
+        with open(self.folder / held, "r+b") as file:
+            fcntl.flock(file, fcntl.LOCK_EX)
+            self.run_ok("imgmesh-build", "old.png", "-o", "c.glb", "-q")
+            kept = {young, held, *others, *left, ".imgmesh-7-2.glb", ".imgmesh-7-3.glb"}
+            self.assertEqual({f for f in os.listdir(self.folder) if "imgmesh-" in f}, kept)
+        os.utime(self.folder / left[0], (1, time.time() - 3700))
+        self.run_ok("imgmesh-reconstruct", "c.glb", "-o", "c.png", "-q")
+        self.assertEqual({f for f in os.listdir(self.folder) if "imgmesh-" in f}, kept - {held, *left})
 
     def test_replacing_leaves_one_set_of_files(self):
         for picture in ("new.png", "old.png", "new.png", "new.png"):

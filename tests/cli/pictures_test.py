@@ -1,4 +1,6 @@
 """imgmesh-build on every size and kind of picture: a sound container, and the picture comes back."""
+import os
+
 import numpy as np
 
 import picture_files
@@ -253,6 +255,29 @@ class Pictures(CliCase):
         self.assertEqual(sizes, sorted(sizes))
         np.testing.assert_array_equal(pictures[0], pictures[1])
         np.testing.assert_array_equal(pictures[0], pictures[2])
+
+    def loaded(self, tool, *args):
+        """The shared libraries that a run asks the dynamic linker for."""
+        self.run_ok(tool, *args, env=os.environ | {"LD_DEBUG": "libs", "LD_DEBUG_OUTPUT": str(self.folder / "linker")})
+        logs = list(self.folder.glob("linker.*"))
+        text = "".join(log.read_text() for log in logs)
+        for log in logs:
+            log.unlink()
+        self.assertIn("libOpenEXR", text)  # the log is one
+        return text
+
+    def test_the_picture_library_is_loaded_for_its_formats_alone(self):
+        """It would cost 0.2 s at every start."""
+        picture_files.png(self.folder / "a.png", picture_files.ramp(20, 16))
+        for tool, *args in (("imgmesh-build", "a.png", "-o", "a.glb"), ("imgmesh-info", "a.glb"),
+                            ("imgmesh-reconstruct", "a.glb", "-o", "b.png"),
+                            ("imgmesh-reconstruct", "a.glb", "-o", "b.exr"), ("imgmesh-build", "b.exr", "-o", "b.glb"),
+                            ("imgmesh-reconstruct", "a.glb", "-o", "b.webp"), ("imgmesh-convert", "a.glb", "-o", "b.gltf"),
+                            ("imgmesh-segment", "a.glb", "-o", "l.png"), ("imgmesh-compare", "a.png", "a.glb")):
+            with self.subTest(args):
+                self.assertNotIn("OpenImageIO", self.loaded(tool, *args))
+        self.assertIn("libOpenImageIO", self.loaded("imgmesh-reconstruct", "a.glb", "-o", "b.tif"))
+        self.assertIn("libOpenImageIO", self.loaded("imgmesh-build", "b.tif", "-o", "c.glb"))
 
 
 if __name__ == "__main__":

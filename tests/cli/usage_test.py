@@ -88,9 +88,34 @@ class Usage(CliCase):
             self.assert_error("imgmesh-build", ["in.png", "-o", "out.glb", "--density", "5", option, "10"], 2,
                               "--density", option)
 
-    def test_hoppes_metric_has_no_geometry(self):
-        self.assert_error("imgmesh-build", ["in.png", "-o", "out.glb", "--metric", "hoppe", "--geometry-weight", "2"],
-                          2, "--geometry-weight", "hoppe")
+    def test_contradictions_are_told_as_typed(self):
+        """Before any work: the picture is not there."""
+        for words in (("--metric hoppe", "--geometry-weight 2"), ("--map tracked", "--refine 3"),
+                      ("--map tracked", "--preset best"), ("--map relaxed", "--projection-color-weight 0"),
+                      ("--map trivial", "--map-smoothness 3"), ("--rms 3", "--map tracked"), ("--rms 3", "--visits"),
+                      ("--colors quadric", "--refine 2"), ("--colors quadric", "--preset fem"),
+                      ("--colors quadric", "--objective rgb"), ("--geometry-weight 1e8", "--color-weight 1e-8")):
+            args = [word for pair in words for word in pair.split()]
+            shown = words[:1] if "--color-weight 1e-8" in words else words
+            self.assert_error("imgmesh-build", ["none.png", "-o", "out.glb", *args], 2,
+                              *(w.removesuffix(" 2") if "--geometry" in w else w for w in shown))
+        self.assert_error("imgmesh-build", ["none.png", "-o", "out.glb", "--preset", "best", "--map", "tracked"], 2,
+                          "--refine 0")
+        for words in ("--level-faces 8,9", "--level-errors 9,8"):
+            self.assert_error("imgmesh-build", ["none.png", "-o", "out.glb", *words.split()], 2, words)
+        (self.folder / "c.toml").write_text('map = "tracked"\nrefine = 2\n')
+        self.assert_error("imgmesh-build", ["none.png", "-o", "out.glb", "--config", "c.toml"], 2, "--map tracked",
+                          "--refine 2")
+        # What only seems to contradict goes on, to the picture that is not there.
+        for words in ("--preset best --map tracked --refine 0", "--preset fem --colors quadric --refine 0 --objective luv",
+                      "--map trivial --projection-color-weight 0", "--level-errors 8,9"):
+            self.assert_error("imgmesh-build", ["none.png", "-o", "out.glb", *words.split()], 3, "none.png")
+
+    def test_what_a_picture_or_container_cannot_have(self):
+        self.assert_error("imgmesh-warp", ["in.glb", "--image", "in.png", "-o", "o.png", "--retarget", "60000x60000"], 2,
+                          "--retarget", "60000x60000", "pixels")
+        self.assert_error("imgmesh-reconstruct", ["in.glb", "-o", "o.png", "--mode", "visits", "--level", "1"], 2,
+                          "--level 1", "visits")
 
     def test_output_names(self):
         self.assert_error("imgmesh-build", ["in.png", "-o", "out.png"], 2, "out.png", ".glb")

@@ -9,6 +9,7 @@
 #include "libcore/metrics/metrics.h"
 #include "libcore/param/trivial_map.h"
 #include "libcore/refine/refine.h"
+#include "libcore/refine/refiner.h"
 #include "tests/support/meshes.h"
 #include "tests/support/sample_masks.h"
 #include "tests/support/sample_pictures.h"
@@ -183,13 +184,14 @@ TEST_CASE("refine: limits on shape and area hold, and shape weighs against error
     CHECK(largest(refined()) <= params.max_face_area);
 }
 
-TEST_CASE("refine: the same bytes every time, in the range of colours asked for") {
-    FeatureImage feature = sample_feature(Kind::kNoise, 50, 40);
+TEST_CASE("refine: the same bytes for any number of threads, in the range of colours asked for") {
+    FeatureImage feature = sample_feature(Kind::kNoise, 120, 90);
     for (float& f : feature.data) f = std::abs(f) / 100;
     RefineParams params;
     params.rounds = 4;
+    params.exchange = 0.2;
     params.range = ColorRange::kUnit;
-    const BaseMesh start = collapsed(feature, 60);
+    const BaseMesh start = collapsed(feature, 500);
     BaseMesh first = start, second = start;
     refine(first, feature, params);
     const ThreadLimit one(1);
@@ -198,6 +200,37 @@ TEST_CASE("refine: the same bytes every time, in the range of colours asked for"
     CHECK(first.feature == second.feature);
     CHECK(first.faces == second.faces);
     for (const float f : first.feature) CHECK((f >= 0 && f <= 1));
+}
+
+// What is remembered of vertices must be what a fresh look tells, whatever has changed in between.
+TEST_CASE("refine: remembered removals are those that are found anew") {
+    const FeatureImage feature = sample_feature(Kind::kDisc, 90, 70);
+    RefineParams params;
+    params.shape_weight = 0.2;
+    const PicturePlanes planes(feature);
+    Refiner refiner(collapsed(feature, 300), planes, params);
+    const auto check = [&](const char* after) {
+        INFO(std::string(after));
+        const std::vector<Refiner::Removal> remembered = refiner.removals();
+        refiner.forget();
+        CHECK(remembered.size() > 100);
+        CHECK(remembered == refiner.removals());
+    };
+    check("the start");
+    REQUIRE(refiner.relocate() > 0);
+    check("relocations");
+    REQUIRE(refiner.flip_edges() > 0);
+    check("flips");
+    REQUIRE(refiner.remove_cheapest(20) == 20);
+    check("removals");
+    REQUIRE(refiner.insert_best(20) == 20);
+    check("insertions");
+    REQUIRE(refiner.move_vertices() > 0);
+    check("moves");
+    refiner.fit_colors();
+    check("new colours");
+    refiner.exchange(0.2);
+    check("an exchange");
 }
 
 // Pixels outside the mask have no say, the outline stays where it is, and the map stays one to one.

@@ -9,6 +9,7 @@
 #include "libcore/refine/face_spans.h"
 #include "libcore/refine/pixel_sums.h"
 #include "libcore/refine/refine_mesh.h"
+#include "libcore/refine/vertex_classes.h"
 #include "tests/support/meshes.h"
 #include "tests/support/sample_pictures.h"
 
@@ -65,6 +66,34 @@ void check_sound(const RefineMesh& mesh, double area) {
 }
 
 }  // namespace
+
+// Vertices of one class are moved at the same time, so none may see another.
+TEST_CASE("vertex classes: every vertex that has a face is in one, and no face has two of a class") {
+    for (std::uint32_t seed = 0; seed < 5; ++seed) {
+        BaseMesh mesh = jittered_grid(0, 0, 60, 40, 20, 13, seed);
+        for (std::size_t f = 0; f < 40; ++f) mesh.faces[f] = {kNone, kNone, kNone};
+        std::vector<int> faces_of(mesh.vertex_count(), 0);
+        for (const Face& face : mesh.faces)
+            for (const Id v : face)
+                if (face[0] != kNone) ++faces_of[v];
+        const auto classes = vertex_classes(mesh.faces, mesh.vertex_count());
+        CHECK(classes.size() <= 9);
+        std::vector<Id> class_of(mesh.vertex_count(), kNone);
+        for (Id c = 0; c < classes.size(); ++c)
+            for (const Id v : classes[c]) {
+                CHECK(class_of[v] == kNone);
+                class_of[v] = c;
+            }
+        for (Id v = 0; v < mesh.vertex_count(); ++v) CHECK((class_of[v] != kNone) == (faces_of[v] > 0));
+        for (const auto& [a, b, c] : mesh.faces)
+            if (a != kNone)
+                CHECK(
+                    (class_of[a] != class_of[b] && class_of[b] != class_of[c] && class_of[c] != class_of[a]));
+    }
+    // One face, and nothing at all.
+    CHECK(vertex_classes(std::vector<Face>{{0, 1, 2}}, 3).size() == 3);
+    CHECK(vertex_classes({}, 0).empty());
+}
 
 // Grids whose vertices lie on pixel centres, lines through centres, slivers: each pixel counts exactly once.
 TEST_CASE("spans: the faces of a mesh share out all pixels") {
@@ -123,6 +152,7 @@ TEST_CASE("sums over the pixels of a face") {
                 });
             const FaceSums got = face_sums(planes, corner[0], corner[1], corner[2]);
             const CornerSums one = corner_sums(planes, corner[0], corner[1], corner[2]);
+            CHECK(squared_error(planes, corner[0], corner[1], corner[2]) == one.ee);
             const double scale = 1 + std::sqrt(want.ee);
             CHECK(got.ee == doctest::Approx(want.ee).epsilon(1e-5));
             CHECK(one.ee == doctest::Approx(want.ee).epsilon(1e-5));

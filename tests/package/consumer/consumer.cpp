@@ -1,7 +1,10 @@
-// A program of somebody else: a picture made on the spot, its container written, read and drawn.
+// A program of somebody else: a picture made on the spot, its container written, read and drawn,
+// and the drawing as a file that needs the installed module.
 #include <iostream>
+#include <string>
 
 #include "formats/container.h"
+#include "formats/image_io.h"
 #include "libcore/build/build.h"
 #include "libcore/recon/draw.h"
 
@@ -16,7 +19,10 @@ int main(int argc, char** argv) {
     imgmesh::write_container(argv[1], imgmesh::build_mesh_image(image, params, {}).mesh_image);
     const imgmesh::Container read = imgmesh::read_container(argv[1]);
     const imgmesh::Image drawn = imgmesh::draw(read.mesh_image, 0, {});
+    const std::string picture = std::string(argv[1]) + ".tif";
+    imgmesh::write_image(picture, drawn);
+    const bool same = imgmesh::read_image(picture).width == drawn.width;
     std::cout << read.mesh_image.levels[0].mesh.faces.size() << " faces, " << drawn.width << "x"
               << drawn.height << '\n';
-    return drawn.width == 32 && drawn.height == 24 ? 0 : 1;
+    return same && drawn.width == 32 && drawn.height == 24 ? 0 : 1;
 }

@@ -1,0 +1,124 @@
+#include "libcore/image/texture_image.h"
+
+#include <algorithm>
+#include <cassert>
+
+#include "libcore/base/error.h"
+#include "libcore/base/parallel.h"
+#include "libcore/image/color.h"
+
+namespace imgmesh {
+namespace {
+
+// How far colours spread out of the mask [pixels]: drawn at an eighth of its size, a texture still mixes
+// pixels inside with these alone.
+constexpr int kSpread = 8;
+constexpr int kGrainRows = 16;
+
+std::array<int, 3> color_channels(const Image& image) {
+    const int grey = image.channel("Y");
+    const std::array<int, 3> rgb = {image.channel("R"), image.channel("G"), image.channel("B")};
+    if (*std::min_element(rgb.begin(), rgb.end()) >= 0) return rgb;
+    if (grey < 0) throw Error(ErrorCode::kUnsupported, "a texture needs channels R, G and B, or Y");
+    return {grey, grey, grey};
+}
+
+constexpr std::uint8_t kClear = 0, kColored = 1, kNext = 2;  // what a pixel is; kNext: of the ring to come
+
+class Spread {
+  public:
+    Spread(Image& out, const Mask& mask) : out_(out), state_(mask.inside) {
+        for (std::uint8_t& state : state_) state = state ? kColored : kClear;
+    }
+
+    // Ring by ring, each from those before alone: no order of pixels counts.
+    void run() {
+        std::vector<std::size_t> ring;
+        for (std::size_t i = 0; i < state_.size(); ++i) {
+            bool touches = false;
+            if (state_[i] == kClear) around(i, [&](std::size_t n) { touches |= state_[n] == kColored; });
+            if (touches) ring.push_back(i);
+        }
+        for (int k = 0; k < kSpread && !ring.empty(); ++k) {
+            for (const std::size_t i : ring) state_[i] = kNext;
+            for (const std::size_t i : ring) mix(i);
+            for (const std::size_t i : ring) state_[i] = kColored;
+            std::vector<std::size_t> next;
+            for (const std::size_t i : ring)
+                around(i, [&](std::size_t n) {
+                    if (state_[n] != kClear) return;
+                    state_[n] = kNext;
+                    next.push_back(n);
+                });
+            ring = std::move(next);
+        }
+        for (const std::size_t i : ring) state_[i] = kClear;
+    }
+
+    bool reached(std::size_t i) const { return state_[i] == kColored; }
+
+  private:
+    // Calls visit(j) for the pixels around pixel i, and for itself.
+    template <typename Visit>
+    void around(std::size_t i, Visit&& visit) const {
+        const auto width = static_cast<std::size_t>(out_.width),
+                   height = static_cast<std::size_t>(out_.height);
+        const std::size_t x = i % width, y = i / width;
+        for (std::size_t v = y == 0 ? 0 : y - 1; v <= std::min(y + 1, height - 1); ++v)
+            for (std::size_t u = x == 0 ? 0 : x - 1; u <= std::min(x + 1, width - 1); ++u)
+                visit(v * width + u);
+    }
+
+    // The mean colour of the neighbours that have one; there are some.
+    void mix(std::size_t i) {
+        Vec3f sum(0, 0, 0);
+        float count = 0;
+        around(i, [&](std::size_t n) {
+            if (state_[n] != kColored) return;
+            sum += Eigen::Map<const Vec3f>(out_.data.data() + 4 * n);
+            ++count;
+        });
+        Eigen::Map<Vec3f>(out_.data.data() + 4 * i) = sum / count;
+    }
+
+    Image& out_;
+    std::vector<std::uint8_t> state_;
+};
+
+void spread_colors(Image& out, const Mask& mask) {
+    Spread spread(out, mask);
+    spread.run();
+    Vec3d sum(0, 0, 0);
+    for (std::size_t i = 0; i < mask.inside.size(); ++i)
+        if (mask.inside[i]) sum += Eigen::Map<const Vec3f>(out.data.data() + 4 * i).cast<double>();
+    const Vec3f mean = (sum / static_cast<double>(std::max<std::int64_t>(mask.count(), 1))).cast<float>();
+    for (std::size_t i = 0; i < mask.inside.size(); ++i)
+        if (!spread.reached(i)) Eigen::Map<Vec3f>(out.data.data() + 4 * i) = mean;
+}
+
+}  // namespace
+
+Image texture_image(const Image& image, const Mask& mask) {
+    assert(mask.empty() || mask.inside.size() == image.pixel_count());
+    const std::array<int, 3> rgb = color_channels(image);
+    Image out = make_image(image.width, image.height, mask.empty() ? 3 : 4);
+    const auto from_step = static_cast<std::size_t>(image.channels);
+    const auto to_step = static_cast<std::size_t>(out.channels);
+    parallel_blocks(0, image.height, kGrainRows, [&](int first, int last) {
+        const auto width = static_cast<std::size_t>(image.width);
+        for (std::size_t i = static_cast<std::size_t>(first) * width;
+             i < static_cast<std::size_t>(last) * width; ++i) {
+            const float* from = image.data.data() + i * from_step;
+            float* to = out.data.data() + i * to_step;
+            Vec3f color(from[rgb[0]], from[rgb[1]], from[rgb[2]]);
+            if (image.color_space != ColorSpace::kSrgb)
+                color = encoded_from_linear(ColorSpace::kSrgb, linear_from_encoded(image.color_space, color));
+            Eigen::Map<Vec3f>{to} = color.cwiseMax(0.0f).cwiseMin(1.0f);
+            if (!mask.empty()) to[3] = mask.contains(i) ? 1.0f : 0.0f;
+        }
+    });
+    if (!mask.empty()) spread_colors(out, mask);
+    return out;
+}
+
+}  // namespace imgmesh

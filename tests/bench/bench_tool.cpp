@@ -1,0 +1,140 @@
+// What ./run bench needs of C++: pictures of any size, the stages of a build in one process, and the side of
+// the comparison with other simplifiers that is ours.
+//
+//     bench-tool mosaic SIDE OUT.png PICTURE...    SIDE x SIDE pixels: the pictures side by side, mirrored in
+//     turn bench-tool stages PICTURE FOLDER PRESET DENSITY THREADS REPEATS   JSON: a row for every stage
+//     bench-tool features PICTURE OUT              what a simplifier gets (raw_files.h)
+//     bench-tool measure FEATURES MESH             JSON: the error of the mesh that it gives back
+#include <cstdio>
+#include <cstdlib>
+#include <functional>
+#include <iostream>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "formats/image_io.h"
+#include "libcore/base/error.h"
+#include "libcore/base/parallel.h"
+#include "libcore/build/presets.h"
+#include "libcore/image/feature_space.h"
+#include "libcore/metrics/metrics.h"
+#include "libcore/param/fit_colors.h"
+#include "libcore/param/trivial_map.h"
+#include "tests/bench/bench_stages.h"
+#include "tests/bench/raw_files.h"
+
+using namespace imgmesh;
+using namespace imgmesh::bench;
+using Arguments = std::vector<std::string>;
+using Json = nlohmann::ordered_json;
+
+namespace {
+
+int number(const std::string& text, int least, int most) {
+    char* end = nullptr;
+    const long value = std::strtol(text.c_str(), &end, 10);
+    if (text.empty() || *end != '\0' || value < least || value > most)
+        throw Error(ErrorCode::kUsage, cat("'", text, "': expected a number from ", least, " to ", most));
+    return static_cast<int>(value);
+}
+
+// Tiles repeat only every 2 x 2 pictures, and neighbours meet at equal colours: no seam to waste vertices on.
+int mirrored(int at, int size) {
+    const int within = at % (2 * size);
+    return within < size ? within : 2 * size - 1 - within;
+}
+
+int mosaic(const Arguments& a) {
+    const int side = number(a.at(0), 1, 16384);
+    std::vector<Image> pictures;
+    for (std::size_t i = 2; i < a.size(); ++i) {
+        pictures.push_back(read_image(a[i]));
+        if (pictures.back().channels != 3 || pictures.back().width != pictures.front().width ||
+            pictures.back().height != pictures.front().height)
+            throw Error(ErrorCode::kUsage, cat(a[i], ": expected RGB pictures of one size"));
+    }
+    if (pictures.empty()) throw Error(ErrorCode::kUsage, "mosaic: expected a picture");
+    const int width = pictures.front().width, height = pictures.front().height;
+    Image out = make_image(side, side, 3);
+    for (int y = 0; y < side; ++y)
+        for (int x = 0; x < side; ++x) {
+            const auto which = static_cast<std::size_t>(x / width + y / height) % pictures.size();
+            const float* from = pictures[which].pixel(mirrored(x, width), mirrored(y, height));
+            std::copy_n(from, 3, out.pixel(x, y));
+        }
+    write_image(a.at(1), out);
+    return 0;
+}
+
+BuildParams params_of(const std::string& preset, const std::string& density) {
+    const std::map<std::string, Preset> presets = {{"fast", Preset::kFast},
+                                                   {"default", Preset::kDefault},
+                                                   {"best", Preset::kBest},
+                                                   {"fem", Preset::kFem}};
+    const auto at = presets.find(preset);
+    if (at == presets.end()) throw Error(ErrorCode::kUsage, cat("'", preset, "' is no preset"));
+    BuildParams params = preset_params(at->second);
+    params.stop.density = std::strtod(density.c_str(), nullptr);
+    return params;
+}
+
+int stages(const Arguments& a) {
+    const ThreadLimit limit(number(a.at(4), 1, 1024));
+    Json rows = Json::array();
+    for (const StageRow& row :
+         measure_stages(a.at(0), a.at(1), params_of(a.at(2), a.at(3)), number(a.at(5), 1, 1000))) {
+        rows.push_back({{"stage", row.stage},
+                        {"user_seconds", row.usage.user_seconds},
+                        {"system_seconds", row.usage.system_seconds},
+                        {"wall_seconds", row.usage.wall_seconds},
+                        {"peak_mib", row.usage.peak_mib}});
+        if (row.rms >= 0) rows.back()["rms"] = row.rms;
+    }
+    std::cout << rows.dump(2) << '\n';
+    return 0;
+}
+
+int features(const Arguments& a) {
+    const Image image = read_image(a.at(0));
+    write_features(a.at(1), extract_features(image, feature_space(image, {})));
+    return 0;
+}
+
+int measure(const Arguments& a) {
+    const FeatureImage feature = read_features(a.at(0));
+    BaseMesh mesh = read_mesh(a.at(1));
+    const PixelMap map = trivial_map(mesh, feature.width, feature.height);
+    const auto uncovered = std::count_if(map.coords.begin(), map.coords.end(),
+                                         [](const PixelCoord& c) { return c.face == kNone; });
+    Json out = {{"vertices", mesh.vertex_count()},
+                {"faces", mesh.faces.size()},
+                {"uncovered_pixels", uncovered},
+                {"gouraud_rms", map_rms(mesh, map, feature)}};
+    fit_colors(mesh, feature, {{&map, 1}}, {});
+    out["refitted_rms"] = map_rms(mesh, map, feature);
+    std::cout << out.dump(2) << '\n';
+    return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    const std::map<std::string, std::function<int(const Arguments&)>> commands = {
+        {"mosaic", mosaic}, {"stages", stages}, {"features", features}, {"measure", measure}};
+    const auto at = argc > 1 ? commands.find(argv[1]) : commands.end();
+    if (at == commands.end()) {
+        std::fputs("usage: bench-tool mosaic | stages | features | measure ARGUMENTS\n", stderr);
+        return 2;
+    }
+    try {
+        return at->second(Arguments(argv + 2, argv + argc));
+    } catch (const Error& e) {
+        std::fprintf(stderr, "bench-tool: error: %s\n", e.what());
+        return static_cast<int>(e.code());
+    } catch (const std::out_of_range&) {
+        std::fprintf(stderr, "bench-tool: error: %s: too few arguments\n", argv[1]);
+        return 2;
+    }
+}

@@ -1,0 +1,76 @@
+#include "tools/build_contradictions.h"
+
+#include <initializer_list>
+#include <string>
+
+#include "libcore/base/error.h"
+#include "libcore/build/params.h"
+
+namespace imgmesh {
+namespace {
+
+// "--refine 6" of the first of the options that was given; "" of none.
+std::string typed(const CLI::App& app, std::initializer_list<const char*> names) {
+    for (const char* name : names) {
+        const CLI::Option* option = app.get_option(name);
+        if (option->count() == 0) continue;
+        return option->get_expected_min() == 0 ? name : cat(name, ' ', option->results().front());
+    }
+    return "";
+}
+
+// Whose rounds are meant: those of --refine, or else of the preset.
+std::string typed_rounds(const CLI::App& app, std::int64_t rounds) {
+    const std::string refine = typed(app, {"--refine"});
+    return refine.empty()
+               ? cat(typed(app, {"--preset"}), " (", rounds, " rounds of refinement, --refine 0 for none)")
+               : refine;
+}
+
+[[noreturn]] void refuse(const std::string& one, const std::string& other, const std::string& why) {
+    throw Error(ErrorCode::kUsage, cat(one, " and ", other, ": ", why));
+}
+
+}  // namespace
+
+void check_contradictions(const CLI::App& app, const BuildParams& p) {
+    const std::string map = typed(app, {"--map"});
+    const std::string projection = typed(app, {"--projection-color-weight", "--map-smoothness"});
+    const std::int64_t rounds = p.refine.value_or(0);
+
+    if (p.metric == Metric::kHoppe && app.get_option("--geometry-weight")->count() > 0)
+        refuse("--geometry-weight", "--metric hoppe", "that metric has no geometry to weigh");
+    if (p.projection_color_weight == 0.0 && p.map.value_or(MapKind::kTrivial) != MapKind::kTrivial)
+        refuse(map, projection, "a weight of 0 is the trivial map");
+    if (p.projection_color_weight.value_or(0) > 0 && p.map == MapKind::kTrivial)
+        refuse(map, projection, "the trivial map follows no colour");
+    if (map_kind(p) == MapKind::kTracked && rounds > 0)
+        refuse(map, typed_rounds(app, rounds), "a tracked map follows the collapse alone");
+    if (p.stop.rms && map_kind(p) == MapKind::kTracked)
+        refuse(typed(app, {"--rms"}), map,
+               "the RMS is searched over several meshes, a tracked map follows the collapse to one");
+    if (p.stop.rms && p.visits)
+        refuse(typed(app, {"--rms"}), "--visits",
+               "the RMS is searched over several meshes, visits are those of the collapse to one");
+    const std::string colors = typed(app, {"--colors"});
+    if (p.quadric_colors && rounds > 0)
+        refuse(colors, typed_rounds(app, rounds), "refinement fits colours of its own");
+    if (p.quadric_colors && p.objective == Objective::kRgb)
+        refuse(colors, typed(app, {"--objective", "--preset"}), "that objective fits colours of its own");
+    const double lambda = p.geometry_weight / p.color_weight;
+    if (!(lambda >= 1e-9 && lambda <= 1e9))
+        throw Error(ErrorCode::kUsage,
+                    cat(typed(app, {"--geometry-weight", "--color-weight"}),
+                        ": geometry weight / color weight is ", lambda, ", expected 1e-9 to 1e9"));
+    try {
+        BuildParams levels;
+        levels.levels = p.levels;
+        check_params(levels);
+    } catch (const Error& e) {
+        throw Error(e.code(),
+                    cat(typed(app, {"--level-faces", "--level-errors", "--levels"}), ": ", e.what()));
+    }
+    check_params(p);
+}
+
+}  // namespace imgmesh
