@@ -18,7 +18,7 @@ double area2(const Vec2d& a, const Vec2d& b, const Vec2d& c) {
 }
 
 // Triangles and steps of the grid row between pixel rows y and y + 1. A position that is not finite makes
-// every comparison with it false, so that its triangles and steps do not count.
+// every comparison with it false, so that its triangles and steps do not count. q.max_jump is squared here.
 void measure_row(const std::vector<Vec2d>& image, int width, int height, int y, MapQuality& q) {
     const auto at = [&](int x, int row) -> const Vec2d& {
         return image[static_cast<std::size_t>(row) * static_cast<std::size_t>(width) + std::size_t(x)];
@@ -29,7 +29,7 @@ void measure_row(const std::vector<Vec2d>& image, int width, int height, int y, 
         if (area < q.min_area2) q.min_area2 = area;
     };
     const auto step = [&](const Vec2d& a, const Vec2d& b) {
-        const double jump = (a - b).norm();
+        const double jump = (a - b).squaredNorm();
         if (jump > q.max_jump) q.max_jump = jump;
     };
     for (int x = 0; x < width; ++x) {
@@ -45,10 +45,11 @@ void measure_row(const std::vector<Vec2d>& image, int width, int height, int y, 
     }
 }
 
+// The pixels of row y. q.mean_displacement is a sum here, over `mapped` pixels.
 void measure_pixels(const BaseMesh& mesh, const PixelMap& map, const std::vector<Vec2d>& image, bool has_mask,
-                    MapQuality& q) {
-    std::int64_t mapped = 0;
-    for (std::size_t i = 0; i < map.coords.size(); ++i) {
+                    int y, MapQuality& q, std::int64_t& mapped) {
+    const auto width = static_cast<std::size_t>(map.width), begin = static_cast<std::size_t>(y) * width;
+    for (std::size_t i = begin; i < begin + width; ++i) {
         const PixelCoord& c = map.coords[i];
         if (has_mask && c.face == kNone) continue;
         ++q.pixels;
@@ -58,14 +59,12 @@ void measure_pixels(const BaseMesh& mesh, const PixelMap& map, const std::vector
         }
         // Infinite weights fail one of the three as well: u + v <= 1 bounds what u, v >= 0 leaves open.
         if (!(c.u >= 0 && c.v >= 0 && double(c.u) + double(c.v) <= 1)) ++q.outside_simplex;
-        const auto w = static_cast<std::size_t>(map.width);
-        const double distance = (image[i] - Vec2d(double(i % w), double(i / w))).norm();
+        const double distance = (image[i] - Vec2d(double(i - begin), double(y))).norm();
         if (!std::isfinite(distance)) continue;
         ++mapped;
         q.mean_displacement += distance;
         q.max_displacement = std::max(q.max_displacement, distance);
     }
-    if (mapped > 0) q.mean_displacement /= double(mapped);
 }
 
 }  // namespace
@@ -88,11 +87,36 @@ std::vector<Vec2d> mapped_positions(const BaseMesh& mesh, const PixelMap& map) {
 
 MapQuality map_quality(const BaseMesh& mesh, const PixelMap& map, bool has_mask) {
     const std::vector<Vec2d> image = mapped_positions(mesh, map);
+    struct Part {
+        MapQuality q;
+        std::int64_t mapped = 0;
+    };
+    std::vector<Part> parts(static_cast<std::size_t>((map.height + kGrainRows - 1) / kGrainRows));
+    parallel_blocks(0, map.height, kGrainRows, [&](int first, int last) {
+        Part& part = parts[static_cast<std::size_t>(first / kGrainRows)];
+        part.q.min_area2 = std::numeric_limits<double>::infinity();
+        for (int y = first; y < last; ++y) {
+            measure_row(image, map.width, map.height, y, part.q);
+            measure_pixels(mesh, map, image, has_mask, y, part.q, part.mapped);
+        }
+    });
     MapQuality q;
+    std::int64_t mapped = 0;
     q.min_area2 = std::numeric_limits<double>::infinity();
-    for (int y = 0; y < map.height; ++y) measure_row(image, map.width, map.height, y, q);
+    for (const Part& part : parts) {
+        q.pixels += part.q.pixels;
+        q.unmapped += part.q.unmapped;
+        q.outside_simplex += part.q.outside_simplex;
+        q.flipped_triangles += part.q.flipped_triangles;
+        q.min_area2 = std::min(q.min_area2, part.q.min_area2);
+        q.max_jump = std::max(q.max_jump, part.q.max_jump);
+        q.mean_displacement += part.q.mean_displacement;
+        q.max_displacement = std::max(q.max_displacement, part.q.max_displacement);
+        mapped += part.mapped;
+    }
     if (std::isinf(q.min_area2)) q.min_area2 = 1;
-    measure_pixels(mesh, map, image, has_mask, q);
+    q.max_jump = std::sqrt(q.max_jump);
+    if (mapped > 0) q.mean_displacement /= double(mapped);
     return q;
 }
 

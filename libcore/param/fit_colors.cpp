@@ -1,9 +1,12 @@
 #include "libcore/param/fit_colors.h"
 
 #include <algorithm>
+#include <optional>
 #include <vector>
 
+#include "libcore/base/parallel.h"
 #include "libcore/image/channel_count.h"
+#include "libcore/mesh/vertex_classes.h"
 
 namespace imgmesh {
 namespace {
@@ -21,41 +24,80 @@ void set_color(BaseMesh& mesh, Id v, const Vec3f& color) {
     std::copy(color.data(), color.data() + 3, mesh.feature_of(v));
 }
 
-// What the pixels of one face say about its three corners: sums of w w' and of w feature'. Room for C
-// features.
+// What the pixels of one face say about its three corners: for each a row of sums of w w' and, behind them,
+// of w feature'. Room for C features.
 template <int C>
 struct FaceSums {
-    double gram[3][3] = {};
-    double rhs[3][C] = {};
+    double row[3][3 + C] = {};
+
+    double gram(std::size_t a, std::size_t b) const { return row[a][b]; }
+    double rhs(std::size_t a, int c) const { return row[a][3 + c]; }
+    void add(const FaceSums& other) {
+        for (int a = 0; a < 3; ++a)
+            for (int k = 0; k < 3 + C; ++k) row[a][k] += other.row[a][k];
+    }
 };
 
 // Of C features exactly where C is 3, so that the usual case has loops of fixed length; else of up to C.
 template <int C>
-int feature_count(const BaseMesh& mesh) {
-    if constexpr (C == 3)
-        return 3;
-    else
-        return mesh.channels;
+int feature_count(int channels) {
+    return C == 3 ? 3 : channels;
 }
+
+// The sums over some of the pixels, of the faces from `first` on.
+template <int C>
+struct PartialSums {
+    Id first = 0;
+    std::vector<FaceSums<C>> sums;
+
+    PartialSums() = default;
+    PartialSums(const FeatureImage& feature, const std::vector<FitTerm>& terms, std::size_t begin,
+                std::size_t end) {
+        const int features = feature_count<C>(feature.channels);
+        Id least = kNone, most = 0;
+        for (const FitTerm& term : terms)
+            for (std::size_t i = begin; i < end; ++i)
+                if (const Id face = term.map->coords[i].face; face != kNone) {
+                    least = std::min(least, face);
+                    most = std::max(most, face);
+                }
+        if (least == kNone) return;
+        first = least;
+        sums.resize(most - least + 1);
+        for (const FitTerm& term : terms)
+            for (std::size_t i = begin; i < end; ++i) {
+                const PixelCoord& coord = term.map->coords[i];
+                if (coord.face == kNone) continue;
+                double values[3 + C] = {1.0 - coord.u - coord.v, coord.u, coord.v};
+                const float* f = feature.pixel(i);
+                for (int c = 0; c < features; ++c) values[3 + c] = f[c];
+                FaceSums<C>& sum = sums[coord.face - first];
+                for (int a = 0; a < 3; ++a) {
+                    const double w = term.weight * values[a];
+                    for (int k = 0; k < 3 + features; ++k) sum.row[a][k] += w * values[k];
+                }
+            }
+    }
+    bool holds(std::size_t face) const { return face >= first && face - first < sums.size(); }
+};
 
 template <int C>
 std::vector<FaceSums<C>> sum_over_pixels(const BaseMesh& mesh, const FeatureImage& feature,
                                          const std::vector<FitTerm>& terms) {
-    const int features = feature_count<C>(mesh);
+    // Each part has sums of its own, of at most all faces, so there are only as many parts as pay in memory.
+    constexpr std::size_t kParts = 8;
+    const std::size_t pixels = feature.pixel_count();
+    PartialSums<C> parts[kParts];
+    parallel_blocks(0, kParts, 1, [&](int begin, int) {
+        const auto part = static_cast<std::size_t>(begin);
+        parts[part] = PartialSums<C>(feature, terms, part * pixels / kParts, (part + 1) * pixels / kParts);
+    });
     std::vector<FaceSums<C>> sums(mesh.faces.size());
-    for (const FitTerm& term : terms)
-        for (std::size_t i = 0; i < term.map->coords.size(); ++i) {
-            const PixelCoord& coord = term.map->coords[i];
-            if (coord.face == kNone) continue;
-            const double w[3] = {1.0 - coord.u - coord.v, coord.u, coord.v};
-            FaceSums<C>& sum = sums[coord.face];
-            const float* f = feature.pixel(i);
-            for (int a = 0; a < 3; ++a) {
-                const double wa = term.weight * w[a];
-                for (int b = 0; b < 3; ++b) sum.gram[a][b] += wa * w[b];
-                for (int c = 0; c < features; ++c) sum.rhs[a][c] += wa * f[c];
-            }
-        }
+    parallel_blocks(0, static_cast<int>(sums.size()), 4096, [&](int begin, int end) {
+        for (auto f = static_cast<std::size_t>(begin); f < static_cast<std::size_t>(end); ++f)
+            for (const PartialSums<C>& part : parts)
+                if (part.holds(f)) sums[f].add(part.sums[f - part.first]);
+    });
     return sums;
 }
 
@@ -78,43 +120,98 @@ CornersOfVertices corners_of_vertices(const BaseMesh& mesh) {
     return out;
 }
 
+// The normal equations of one vertex: diagonal x - sum of links = rhs.
+template <int C>
+struct VertexSystem {
+    Id vertex;
+    double diagonal;
+    double rhs[C];
+    std::size_t first_link;
+};
+struct Link {
+    Id other;
+    float weight;
+};
+
+// The equations of some vertices, in the order of `members`, so that each pass reads them from begin to end.
+template <int C>
+struct ClassSystem {
+    std::vector<VertexSystem<C>> vertices;
+    std::vector<Link> links;
+
+    ClassSystem(const BaseMesh& mesh, const std::vector<FaceSums<C>>& sums, const CornersOfVertices& corners,
+                const std::vector<Id>& members) {
+        const int features = feature_count<C>(mesh.channels);
+        vertices.reserve(members.size() + 1);
+        for (const Id v : members) {
+            VertexSystem<C>& system = vertices.emplace_back(VertexSystem<C>{v, 0, {}, links.size()});
+            for (std::size_t k = corners.first[v]; k < corners.first[v + 1]; ++k) {
+                const FaceSums<C>& sum = sums[corners.corner[k] / 3];
+                const Face& face = mesh.faces[corners.corner[k] / 3];
+                const std::size_t a = corners.corner[k] % 3;
+                system.diagonal += sum.gram(a, a);
+                for (int c = 0; c < features; ++c) system.rhs[c] += sum.rhs(a, c);
+                for (const std::size_t b : {(a + 1) % 3, (a + 2) % 3})
+                    links.push_back({face[b], static_cast<float>(sum.gram(a, b))});
+            }
+        }
+        vertices.push_back({kNone, 0, {}, links.size()});
+    }
+};
+
 template <int C>
 void fit(BaseMesh& mesh, const FeatureImage& feature, const std::vector<FitTerm>& terms,
          const FeatureSpace& space) {
-    const int features = feature_count<C>(mesh);
-    const std::vector<FaceSums<C>> sums = sum_over_pixels<C>(mesh, feature, terms);
-    const CornersOfVertices corners = corners_of_vertices(mesh);
+    const int features = feature_count<C>(mesh.channels);
+    constexpr int kGrain = 512;
+    // Class by class, as no two of a class share a face: each sees the same neighbours from any thread.
+    const std::vector<std::vector<Id>> classes = vertex_classes(mesh.faces, mesh.vertex_count());
+    std::vector<std::optional<ClassSystem<C>>> systems(classes.size());
+    {
+        const std::vector<FaceSums<C>> sums = sum_over_pixels<C>(mesh, feature, terms);
+        const CornersOfVertices corners = corners_of_vertices(mesh);
+        parallel_blocks(0, static_cast<int>(classes.size()), 1, [&](int n, int) {
+            const auto k = static_cast<std::size_t>(n);
+            systems[k].emplace(mesh, sums, corners, classes[k]);
+        });
+    }
     // A vertex that only pixels with tiny weights touch would be free to run away: pull it weakly to where it
     // is.
     constexpr double kPull = 1e-3;
     // The normal equations are those of a mass matrix: each pass shrinks an error to a third or less. More
     // than 6 passes change the RMS in the fourth digit.
     constexpr int kPasses = 6;
-    for (Id v = 0; space.color && v < mesh.vertex_count(); ++v)
-        set_color(mesh, v, limited(Vec3f(mesh.feature_of(v)), space));
-    for (int pass = 0; pass < kPasses; ++pass) {
-        for (Id v = 0; v < mesh.vertex_count(); ++v) {
-            double diagonal = kPull, rhs[C];
-            for (int c = 0; c < features; ++c) rhs[c] = kPull * mesh.feature_of(v)[c];
-            for (std::size_t k = corners.first[v]; k < corners.first[v + 1]; ++k) {
-                const FaceSums<C>& sum = sums[corners.corner[k] / 3];
-                const Face& face = mesh.faces[corners.corner[k] / 3];
-                const std::size_t a = corners.corner[k] % 3;
-                diagonal += sum.gram[a][a];
-                for (int c = 0; c < features; ++c) rhs[c] += sum.rhs[a][c];
-                for (const std::size_t b : {(a + 1) % 3, (a + 2) % 3})
-                    for (int c = 0; c < features; ++c) rhs[c] -= sum.gram[a][b] * mesh.feature_of(face[b])[c];
-            }
-            int c = 0;
-            if (space.color) {
-                const Vec3f color(mesh.feature_of(v)), best = (Vec3d(rhs) / diagonal).cast<float>(),
-                                                       next = limited(best, space);
-                if ((next - best).squaredNorm() < (color - best).squaredNorm()) set_color(mesh, v, next);
-                c = 3;
-            }
-            for (; c < features; ++c) mesh.feature_of(v)[c] = static_cast<float>(rhs[c] / diagonal);
+    if (space.color)
+        parallel_blocks(0, static_cast<int>(mesh.vertex_count()), kGrain, [&](int begin, int end) {
+            for (Id v = static_cast<Id>(begin); v < static_cast<Id>(end); ++v)
+                set_color(mesh, v, limited(Vec3f(mesh.feature_of(v)), space));
+        });
+    const auto improve = [&](const ClassSystem<C>& all, std::size_t n) {
+        const VertexSystem<C>& system = all.vertices[n];
+        float* own = mesh.feature_of(system.vertex);
+        const double diagonal = system.diagonal + kPull;
+        double rhs[C];
+        for (int c = 0; c < features; ++c) rhs[c] = system.rhs[c] + kPull * own[c];
+        for (std::size_t k = system.first_link; k < all.vertices[n + 1].first_link; ++k) {
+            const float* other = mesh.feature_of(all.links[k].other);
+            for (int c = 0; c < features; ++c) rhs[c] -= double{all.links[k].weight} * other[c];
         }
-    }
+        int c = 0;
+        if (space.color) {
+            const Vec3f color(own), best = (Vec3d(rhs) / diagonal).cast<float>(), next = limited(best, space);
+            if ((next - best).squaredNorm() < (color - best).squaredNorm())
+                set_color(mesh, system.vertex, next);
+            c = 3;
+        }
+        for (; c < features; ++c) own[c] = static_cast<float>(rhs[c] / diagonal);
+    };
+    for (int pass = 0; pass < kPasses; ++pass)
+        for (const std::optional<ClassSystem<C>>& system : systems)
+            parallel_blocks(0, static_cast<int>(system->vertices.size()) - 1, kGrain,
+                            [&](int begin, int end) {
+                                for (int n = begin; n < end; ++n)
+                                    improve(*system, static_cast<std::size_t>(n));
+                            });
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "libcore/base/error.h"
+#include "libcore/base/parallel.h"
 #include "libcore/image/color.h"
 #include "libcore/param/fit_colors.h"
 #include "libcore/param/relax.h"
@@ -18,14 +19,16 @@ namespace {
 PixelMap unrounded_map(const MovingPixels& pixels, const std::vector<FaceField>& fields) {
     PixelMap map{pixels.width, pixels.height, std::vector<PixelCoord>(pixels.face.size()),
                  WeightPrecision::kFloat};
-    for (int y = 0; y < map.height; ++y)
-        for (int x = 0; x < map.width; ++x) {
-            const Vec2f p = pixels.image_of(x, y);
-            const Id face = pixels.face[pixels.index(x, y)];
-            if (face == kNone) continue;
-            map.coords[pixels.index(x, y)] = {face, fields[face].u(p.x(), p.y()),
-                                              fields[face].v(p.x(), p.y())};
-        }
+    parallel_blocks(0, map.height, 16, [&](int first, int last) {
+        for (int y = first; y < last; ++y)
+            for (int x = 0; x < map.width; ++x) {
+                const Vec2f p = pixels.image_of(x, y);
+                const Id face = pixels.face[pixels.index(x, y)];
+                if (face == kNone) continue;
+                map.coords[pixels.index(x, y)] = {face, fields[face].u(p.x(), p.y()),
+                                                  fields[face].v(p.x(), p.y())};
+            }
+    });
     return map;
 }
 

@@ -5,7 +5,7 @@
 
 #include "libcore/image/color.h"
 #include "libcore/refine/for_each_id.h"
-#include "libcore/refine/vertex_classes.h"
+#include "libcore/mesh/vertex_classes.h"
 
 namespace imgmesh {
 

@@ -9,7 +9,7 @@
 #include "libcore/refine/face_spans.h"
 #include "libcore/refine/pixel_sums.h"
 #include "libcore/refine/refine_mesh.h"
-#include "libcore/refine/vertex_classes.h"
+#include "libcore/mesh/vertex_classes.h"
 #include "tests/support/meshes.h"
 #include "tests/support/sample_pictures.h"
 

@@ -1,4 +1,4 @@
-#include "libcore/refine/vertex_classes.h"
+#include "libcore/mesh/vertex_classes.h"
 
 #include <algorithm>
 
