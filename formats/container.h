@@ -10,6 +10,16 @@
 
 namespace imgmesh {
 
+/// A picture that viewers put on the meshes, instead of the vertices' colours.
+struct Texture {
+    std::vector<std::uint8_t> picture;  ///< a PNG or JPEG file in sRGB; empty for no texture
+    /// Where in it the vertices of each level are: from (0, 0), the corner of the top-left pixel, to (1, 1)
+    std::vector<std::vector<Vec2f>> coords;
+};
+
+/// Texture::coords with every vertex at its own place: ((x + 0.5) / W, (y + 0.5) / H).
+std::vector<std::vector<Vec2f>> texture_coords(const MeshImage& mesh_image);
+
 enum class DracoMode { kEdgebreaker, kSequential, kOff };
 
 struct ContainerOptions {
@@ -17,7 +27,8 @@ struct ContainerOptions {
     bool overwrite = true;  ///< replace what stands at the path; other files are never replaced
     /// files that stay although the .gltf that is replaced refers to them: those that were read
     std::vector<std::string> keep = {};
-    bool layers = true;  ///< false: the meshes alone, a plain glTF asset that read_container refuses
+    bool layers = true;    ///< false: the meshes alone, a plain glTF asset that read_container refuses
+    Texture texture = {};  ///< with the coordinates of all vertices of all levels
 };
 
 /// Writes `mesh_image`; the extension of `path` (.glb or .gltf) decides the spelling.
@@ -53,11 +64,13 @@ struct ContainerFacts {
     std::uint64_t total_bytes = 0;   ///< all files together
     std::uint64_t mesh_bytes = 0;    ///< meshes as stored, compressed
     std::uint64_t layer_bytes = 0;   ///< the EXR
+    std::uint64_t texture_bytes = 0;
 };
 
 struct Container {
     MeshImage mesh_image;
     ContainerFacts facts;
+    Texture texture;  ///< as it is stored; not looked into
 };
 
 /// Reads and checks a container: topology hash, ranges, simplex, limits; URIs stay in the container's folder.

@@ -10,6 +10,7 @@
 #include "formats/glb.h"
 #include "formats/gltf_asset.h"
 #include "formats/gltf_names.h"
+#include "formats/gltf_texture.h"
 #include "formats/mesh_advice.h"
 #include "formats/validate.h"
 #include "libcore/base/error.h"
@@ -64,10 +65,12 @@ StoredMesh load_mesh(const AssetLevel& level, View buffer, Findings& findings) {
     copy_to(mesh.color, cut(buffer, level.colors));
     copy_to(mesh.light, cut(buffer, level.light));
     for (const ByteRange& bytes : level.channels) copy_to(mesh.channels.emplace_back(), cut(buffer, bytes));
+    copy_to(mesh.texcoord, cut(buffer, level.texcoords));
     return mesh;
 }
 
-BaseMesh load_level(const AssetLevel& level, const SourceInfo& source, View buffer, Findings& findings) {
+BaseMesh load_level(const AssetLevel& level, const SourceInfo& source, View buffer, Findings& findings,
+                    std::vector<Vec2f>& coords) {
     const StoredMesh mesh = load_mesh(level, buffer, findings);
     const std::string topology = topology_hash(mesh);
     if (topology != level.topology)
@@ -75,6 +78,7 @@ BaseMesh load_level(const AssetLevel& level, const SourceInfo& source, View buff
                                           level.topology));
     const std::size_t before = findings.errors();
     BaseMesh base = base_from_stored(mesh, findings);
+    for (const auto& [u, v] : mesh.texcoord) coords.emplace_back(u, v);
     if (findings.collects() && findings.errors() == before) advise_on_mesh(mesh, level, source, findings);
     return base;
 }
@@ -92,7 +96,7 @@ std::vector<LayerPart> load_layers(const Asset& asset, View bytes, Findings& fin
 void add_level_facts(const Asset& asset, View buffer, ContainerFacts& facts) {
     for (const AssetLevel& level : asset.levels) {
         for (const ByteRange& bytes :
-             {level.draco, level.indices, level.positions, level.colors, level.light})
+             {level.draco, level.indices, level.positions, level.colors, level.light, level.texcoords})
             facts.mesh_bytes += bytes.length;
         for (const ByteRange& bytes : level.channels) facts.mesh_bytes += bytes.length;
     }
@@ -101,13 +105,15 @@ void add_level_facts(const Asset& asset, View buffer, ContainerFacts& facts) {
 
 // All levels whose meshes and parts can be looked at.
 void read_levels(const Asset& asset, View buffer, std::vector<LayerPart>& parts, Findings& findings,
-                 MeshImage& image) {
+                 MeshImage& image, std::vector<std::vector<Vec2f>>& coords) {
     for (std::size_t k = 0; k < asset.levels.size(); ++k) {
         const AssetLevel& level = asset.levels[k];
         BaseMesh mesh;
+        coords.emplace_back();
         if (level.is_sound)
-            findings.attempt(asset.places[k].pointer,
-                             [&] { mesh = load_level(level, asset.source, buffer, findings); });
+            findings.attempt(asset.places[k].pointer, [&] {
+                mesh = load_level(level, asset.source, buffer, findings, coords.back());
+            });
         if (k >= parts.size()) continue;
         image.levels.push_back({std::move(mesh), std::move(parts[k].map), level.error});
         if (level.is_sound && !parts[k].topology.empty() && parts[k].topology != level.topology)
@@ -116,6 +122,23 @@ void read_levels(const Asset& asset, View buffer, std::vector<LayerPart>& parts,
                              ", the mesh has ", level.topology),
                          at_part(parts[k].name));
     }
+}
+
+// A texture of which a level has no coordinates is for no viewer to show.
+void read_texture(const Asset& asset, View buffer, Findings& findings, Container& container) {
+    Texture& texture = container.texture;
+    const View picture = cut(buffer, asset.texture);
+    const std::string type = picture_type(picture);
+    if (type != asset.texture_type)
+        findings.add("texture.data", cat("the texture is no file of type ", asset.texture_type),
+                     at_pointer("/images"));
+    if (type.empty() || !std::all_of(asset.levels.begin(), asset.levels.end(),
+                                     [](const AssetLevel& level) { return level.has_texcoords; })) {
+        texture.coords.clear();
+        return;
+    }
+    texture.picture.assign(picture.begin(), picture.end());
+    container.facts.texture_bytes = picture.size();
 }
 
 Container read(const std::string& path, const ContainerLimits& limits, Findings& findings) {
@@ -158,8 +181,9 @@ Container read(const std::string& path, const ContainerLimits& limits, Findings&
         return container;
     if (!is_whole) return container;
     MeshImage& image = container.mesh_image;
-    read_levels(asset, buffer, parts, findings, image);
+    read_levels(asset, buffer, parts, findings, image, container.texture.coords);
     if (findings.errors() > 0) return container;
+    read_texture(asset, buffer, findings, container);
     add_level_facts(asset, buffer, container.facts);
     image.visits = std::move(parts[0].visits);
     image.source = std::move(asset.source);

@@ -1,8 +1,10 @@
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <span>
 
 #include "formats/atomic_file.h"
 #include "formats/companion_file.h"
@@ -10,6 +12,7 @@
 #include "formats/exr_layers.h"
 #include "formats/glb.h"
 #include "formats/gltf_asset.h"
+#include "formats/gltf_texture.h"
 #include "libcore/base/error.h"
 
 namespace imgmesh {
@@ -17,7 +20,7 @@ namespace {
 
 constexpr const char* kVersion = "1.0";
 
-void check_writable(const MeshImage& image) {
+void check_writable(const MeshImage& image, const Texture& texture) {
     const SourceInfo& source = image.source;
     const auto pixels = static_cast<std::size_t>(source.width) * static_cast<std::size_t>(source.height);
     bool fits = source.width >= 1 && source.height >= 1 &&
@@ -28,6 +31,11 @@ void check_writable(const MeshImage& image) {
                level.map.coords.size() == pixels;
         for (const PixelCoord& c : level.map.coords)
             fits = fits && (c.face == kNone ? source.has_mask : c.face < level.mesh.faces.size());
+    }
+    if (!texture.picture.empty()) {
+        fits = fits && !picture_type(texture.picture).empty() && texture.coords.size() == image.levels.size();
+        for (std::size_t k = 0; fits && k < image.levels.size(); ++k)
+            fits = texture.coords[k].size() == image.levels[k].mesh.vertex_count();
     }
     if (!fits)
         throw Error(ErrorCode::kInternal, "cannot store the mesh image: its parts do not fit each other");
@@ -43,11 +51,14 @@ ByteRange append(std::vector<std::uint8_t>& buffer, const std::vector<T>& values
     return range;
 }
 
-// Stores the mesh of `level` in `buffer` and rewrites `map` for the mesh that a reader will get.
-AssetLevel store_level(const Level& level, const StoredLayout& layout, DracoMode mode,
-                       std::vector<std::uint8_t>& buffer, PixelMap& map) {
+// Stores the mesh of `level` in `buffer` and rewrites `map` for the mesh that a reader will get. `coords`:
+// of its texture; empty for none.
+AssetLevel store_level(const Level& level, const StoredLayout& layout, std::span<const Vec2f> coords,
+                       DracoMode mode, std::vector<std::uint8_t>& buffer, PixelMap& map) {
     StoredMesh mesh = stored_from_base(level.mesh, layout);
+    for (const Vec2f& c : coords) mesh.texcoord.push_back({c.x(), c.y()});
     AssetLevel out;
+    out.has_texcoords = !coords.empty();
     if (mode == DracoMode::kOff) {
         out.indices = append(buffer, mesh.faces);
         out.positions = append(buffer, mesh.position);
@@ -55,6 +66,7 @@ AssetLevel store_level(const Level& level, const StoredLayout& layout, DracoMode
         if (layout.light) out.light = append(buffer, mesh.light);
         for (const std::vector<float>& channel : mesh.channels)
             out.channels.push_back(append(buffer, channel));
+        if (out.has_texcoords) out.texcoords = append(buffer, mesh.texcoord);
     } else {
         DracoMesh draco = encode_draco_mesh(mesh, mode);
         out.is_draco = true;
@@ -85,12 +97,18 @@ Spelling spelling_of(const std::string& path) {
     throw Error(ErrorCode::kUsage, cat(path, ": a container's name ends with .glb or .gltf"));
 }
 
-void write_glb(const std::string& path, Asset& asset, std::vector<std::uint8_t> buffer,
+// The layers are most of the file: they are written from where they are.
+void write_glb(const std::string& path, Asset& asset, const std::vector<std::uint8_t>& buffer,
                const std::vector<std::uint8_t>& layers, bool overwrite) {
     AtomicFile file(path, overwrite);
-    if (asset.has_layers) asset.layers = append(buffer, layers);
-    asset.buffer_length = buffer.size();
-    file.write(pack_glb(json_from_asset(asset), buffer));
+    constexpr std::array<std::uint8_t, 3> kZeros = {};
+    const std::size_t padding = (4 - layers.size() % 4) % 4;
+    if (asset.has_layers) asset.layers = {buffer.size(), layers.size()};
+    asset.buffer_length = buffer.size() + layers.size() + padding;
+    const std::vector<std::uint8_t> head = glb_head(json_from_asset(asset), asset.buffer_length);
+    const std::array<std::span<const std::uint8_t>, 4> parts = {head, buffer, layers,
+                                                                std::span(kZeros).first(padding)};
+    file.write_parts(parts);
     file.commit();
 }
 
@@ -126,6 +144,18 @@ void write_gltf(const std::string& path, Asset& asset, const std::vector<std::ui
 
 }  // namespace
 
+std::vector<std::vector<Vec2f>> texture_coords(const MeshImage& mesh_image) {
+    const Vec2f size(static_cast<float>(mesh_image.source.width),
+                     static_cast<float>(mesh_image.source.height));
+    std::vector<std::vector<Vec2f>> coords;
+    for (const Level& level : mesh_image.levels) {
+        std::vector<Vec2f>& of_level = coords.emplace_back();
+        for (const Vec2f& p : level.mesh.position)
+            of_level.emplace_back((p + Vec2f(0.5f, 0.5f)).cwiseQuotient(size));
+    }
+    return coords;
+}
+
 std::vector<std::string> container_files(const std::string& path) {
     if (spelling_of(path) == Spelling::kGlb) return {path};
     const std::string stem = std::filesystem::path(path).replace_extension().string();
@@ -134,7 +164,7 @@ std::vector<std::string> container_files(const std::string& path) {
 
 void write_container(const std::string& path, const MeshImage& mesh_image, const ContainerOptions& options) {
     const Spelling spelling = spelling_of(path);
-    check_writable(mesh_image);
+    check_writable(mesh_image, options.texture);
     Asset asset;
     asset.version = kVersion;
     asset.source = mesh_image.source;
@@ -142,18 +172,25 @@ void write_container(const std::string& path, const MeshImage& mesh_image, const
     asset.parameters = mesh_image.parameters;
     std::vector<std::uint8_t> buffer;
     std::vector<LayerPart> parts;
+    const Texture& texture = options.texture;
     for (const Level& level : mesh_image.levels) {
         parts.push_back({level_name(parts.size()), level.map, {}, {}});
+        std::span<const Vec2f> coords;
+        if (!texture.picture.empty()) coords = texture.coords[asset.levels.size()];
         asset.levels.push_back(
-            store_level(level, layout_of(asset.source), options.draco, buffer, parts.back().map));
+            store_level(level, layout_of(asset.source), coords, options.draco, buffer, parts.back().map));
         parts.back().topology = asset.levels.back().topology;
     }
     parts.front().visits = mesh_image.visits;
+    if (!texture.picture.empty()) {
+        asset.texture_type = picture_type(texture.picture);
+        asset.texture = append(buffer, texture.picture);
+    }
     asset.has_layers = options.layers;
     const std::vector<std::uint8_t> layers =
         options.layers ? encode_exr_layers(parts) : std::vector<std::uint8_t>();
     if (spelling == Spelling::kGlb)
-        write_glb(path, asset, std::move(buffer), layers, options.overwrite);
+        write_glb(path, asset, buffer, layers, options.overwrite);
     else
         write_gltf(path, asset, buffer, layers, options);
 }

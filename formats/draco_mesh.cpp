@@ -115,7 +115,8 @@ bool is_attribute(const draco::PointAttribute& a, draco::GeometryAttribute::Type
 }
 
 int attribute_count(const DracoAttributeIds& ids) {
-    return 1 + ids.color.has_value() + ids.light.has_value() + static_cast<int>(ids.channels.size());
+    return 1 + ids.color.has_value() + ids.light.has_value() + ids.texcoord.has_value() +
+           static_cast<int>(ids.channels.size());
 }
 
 // A Draco decoder that looks at the attributes' shapes before it takes memory for their values: a few bytes
@@ -135,11 +136,12 @@ class GuardedDecoder : public Decoder {
             const draco::PointAttribute& a = *cloud.attribute(i);
             if (!is_attribute<float, 3>(a, draco::GeometryAttribute::POSITION) &&
                 !is_attribute<std::uint16_t, 4>(a, draco::GeometryAttribute::COLOR) &&
+                !is_attribute<float, 2>(a, draco::GeometryAttribute::TEX_COORD) &&
                 !is_attribute<float, 3>(a, draco::GeometryAttribute::GENERIC) &&
                 !is_attribute<float, 1>(a, draco::GeometryAttribute::GENERIC))
                 refuse("draco.attributes",
-                       "expected a float POSITION of three and a uint16 COLOR of four components, other "
-                       "attributes floats of one or three");
+                       "expected a float POSITION of three, a uint16 COLOR of four and a float TEX_COORD of "
+                       "two components, other attributes floats of one or three");
         }
         return Decoder::DecodeAllAttributes();
     }
@@ -199,6 +201,7 @@ StoredMesh decode(std::span<const std::uint8_t> bytes, const DracoAttributeIds& 
         std::vector<float>& channel = out.channels.emplace_back();
         for (const auto& [value] : values) channel.push_back(value);
     }
+    if (ids.texcoord) copy_values(*mesh, *ids.texcoord, draco::GeometryAttribute::TEX_COORD, out.texcoord);
     out.faces.resize(mesh->num_faces());
     for (std::uint32_t f = 0; f < mesh->num_faces(); ++f) {
         const draco::Mesh::Face& face = mesh->face(draco::FaceIndex(f));
@@ -222,6 +225,7 @@ DracoAttributeIds draco_ids(const StoredLayout& layout) {
     if (layout.color) ids.color = next++;
     if (layout.light) ids.light = next++;
     for (std::size_t c = 0; c < layout.channels; ++c) ids.channels.push_back(next++);
+    if (layout.texture) ids.texcoord = next++;
     return ids;
 }
 
@@ -249,6 +253,10 @@ DracoMesh encode_draco_mesh(const StoredMesh& mesh, DracoMode mode) {
         for (const float value : mesh.channels[c]) values.push_back({value});
         add(draco::DT_FLOAT32, ids.channels[c], values);
     }
+
+    if (ids.texcoord)
+        add_attribute(out, draco::GeometryAttribute::TEX_COORD, draco::DT_FLOAT32, false, *ids.texcoord,
+                      mesh.texcoord);
 
     draco::ExpertEncoder encoder(out);
     encoder.SetEncodingMethod(mode == DracoMode::kEdgebreaker ? draco::MESH_EDGEBREAKER_ENCODING

@@ -18,6 +18,7 @@ struct DracoAttributeIds {
     std::uint32_t position = 0;
     std::optional<std::uint32_t> color = 1, light = {};
     std::vector<std::uint32_t> channels = {};
+    std::optional<std::uint32_t> texcoord = {};
     bool operator==(const DracoAttributeIds&) const = default;
 };
 /// Those that encode_draco_mesh gives to the attributes of such a mesh.

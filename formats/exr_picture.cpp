@@ -81,10 +81,11 @@ SampleType check_channels(const std::string& path, const Imf::ChannelList& chann
     for (auto it = channels.begin(); it != channels.end(); ++it) {
         const Imf::Channel& channel = it.channel();
         if (channel.type == Imf::UINT)
-            throw Error(ErrorCode::kUnsupported,
-                        cat(path, ": channel ", it.name(), " holds integers, expected half or float"));
+            throw Error(ErrorCode::kUnsupported, cat(path, ": channel ", printable(it.name()),
+                                                     " holds integers, expected half or float"));
         if (channel.xSampling != 1 || channel.ySampling != 1)
-            throw Error(ErrorCode::kUnsupported, cat(path, ": channel ", it.name(), " is subsampled"));
+            throw Error(ErrorCode::kUnsupported,
+                        cat(path, ": channel ", printable(it.name()), " is subsampled"));
         if (channel.type == Imf::FLOAT) type = SampleType::kFloat;
     }
     return type;

@@ -8,6 +8,7 @@
 
 #include "formats/findings.h"
 #include "formats/gltf_names.h"
+#include "formats/gltf_texture.h"
 #include "formats/json_members.h"
 #include "libcore/base/error.h"
 
@@ -109,6 +110,7 @@ void advise_on_level(const json& document, const Asset& asset, std::size_t k, Fi
         if (name != "POSITION" && name != "COLOR_0" && name != "TEXCOORD_0" && !name.starts_with('_'))
             findings.add("gltf.foreign", cat("attribute ", name, " is not read"),
                          at_pointer(at_mesh + "/primitives/0/attributes/" + pointer_token(name)));
+    advise_on_texture(document, asset, k, findings);
     if (k == 0) return;
     const AssetLevel &finer = asset.levels[k - 1], &level = asset.levels[k];
     if (finer.is_sound && (level.faces > finer.faces || level.error < finer.error))

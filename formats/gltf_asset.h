@@ -35,6 +35,8 @@ struct AssetLevel {
     ByteRange indices, positions, colors;  ///< else: uint32, 3 float32, 4 uint16, tightly packed
     ByteRange light = {};                  ///< 3 float32
     std::vector<ByteRange> channels = {};  ///< float32
+    ByteRange texcoords = {};              ///< 2 float32
+    bool has_texcoords = false;
     bool is_sound = true;  ///< false only for a validator: all but the node's index is unknown
     bool operator==(const AssetLevel&) const = default;
 };
@@ -56,6 +58,9 @@ struct Asset {
     std::string buffer_name;  ///< the file beside; empty for a .glb's binary chunk
     ByteRange layers;         ///< the EXR in the buffer, where `layers_name` is empty
     std::string layers_name;  ///< or its file beside
+
+    ByteRange texture;         ///< the picture on the meshes, in the buffer
+    std::string texture_type;  ///< its mimeType; empty for no texture
 
     std::vector<LevelPlace> places;  ///< of the levels, as read
     // What a validator may go on with; always true for a reader. A writer leaves IMGMESH_pixel_map out where

@@ -7,6 +7,9 @@ inline constexpr const char* kPixelMap = "IMGMESH_pixel_map";
 inline constexpr const char* kDraco = "KHR_draco_mesh_compression";
 inline constexpr const char* kUnlit = "KHR_materials_unlit";
 inline constexpr const char* kLod = "MSFT_lod";
+/// The vertices' colours where viewers show a texture instead, which they would multiply by COLOR_0.
+inline constexpr const char* kHiddenColor = "_COLOR";
+inline constexpr const char* kTexcoord = "TEXCOORD_0";
 /// The attribute of linear RGB where light above 1 counts.
 inline constexpr const char* kLight = "_LIGHT";
 inline constexpr const char* kLayersMimeType = "image/x-exr";

@@ -13,6 +13,7 @@
 #include "formats/gltf_advice.h"
 #include "formats/gltf_asset.h"
 #include "formats/gltf_names.h"
+#include "formats/gltf_texture.h"
 #include "formats/json_members.h"
 #include "formats/json_parse.h"
 #include "libcore/base/error.h"
@@ -109,6 +110,8 @@ constexpr Element kIndices = {"indices", TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT, T
                               4};
 constexpr Element kPositions = {"POSITION", TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_VEC3, false, 12};
 constexpr Element kColors = {"COLOR_0", TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT, TINYGLTF_TYPE_VEC4, true, 8};
+constexpr Element kHiddenColors = {kHiddenColor, kColors.component, kColors.type, true, kColors.bytes};
+constexpr Element kTexcoords = {kTexcoord, TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_VEC2, false, 8};
 constexpr Element kLights = {kLight, TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_VEC3, false, 12};
 
 const tinygltf::Accessor& checked_accessor(const tinygltf::Model& model, std::uint64_t index,
@@ -159,16 +162,21 @@ struct FeatureAttribute {
 };
 
 std::vector<FeatureAttribute> feature_attributes(const StoredLayout& layout,
-                                                 const std::vector<std::string>& names, AssetLevel& level) {
+                                                 const std::vector<std::string>& names,
+                                                 const tinygltf::Primitive& primitive, AssetLevel& level) {
     level.ids = draco_ids(layout);
     level.channels.resize(names.size());
+    level.has_texcoords = layout.texture;
     std::vector<FeatureAttribute> out;
-    if (layout.color) out.push_back({kColors, &*level.ids.color, &level.colors});
+    const bool hidden =
+        primitive.attributes.contains(kHiddenColor) && !primitive.attributes.contains("COLOR_0");
+    if (layout.color) out.push_back({hidden ? kHiddenColors : kColors, &*level.ids.color, &level.colors});
     if (layout.light) out.push_back({kLights, &*level.ids.light, &level.light});
     for (std::size_t c = 0; c < names.size(); ++c)
         out.push_back({{names[c].c_str(), TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_SCALAR, false, 4},
                        &level.ids.channels[c],
                        &level.channels[c]});
+    if (layout.texture) out.push_back({kTexcoords, &*level.ids.texcoord, &level.texcoords});
     return out;
 }
 
@@ -190,7 +198,11 @@ void read_primitive(const json& document, const tinygltf::Model& model, int mesh
     const auto& positions =
         checked_accessor(model, attribute_index(primitive, "POSITION"), kPositions, level.vertices);
     const std::vector<std::string> names = channel_attributes(asset.source);
-    const std::vector<FeatureAttribute> features = feature_attributes(layout_of(asset.source), names, level);
+    const json* extensions = find(source, "extensions");
+    const json* draco = extensions ? find(*extensions, kDraco) : nullptr;
+    StoredLayout layout = layout_of(asset.source);
+    layout.texture = primitive.attributes.contains(kTexcoord);
+    const std::vector<FeatureAttribute> features = feature_attributes(layout, names, primitive, level);
     for (const FeatureAttribute& feature : features)
         checked_accessor(model, attribute_index(primitive, feature.element.name), feature.element,
                          level.vertices);
@@ -200,8 +212,6 @@ void read_primitive(const json& document, const tinygltf::Model& model, int mesh
         level.low[i] = static_cast<float>(positions.minValues[i]);
         level.high[i] = static_cast<float>(positions.maxValues[i]);
     }
-    const json* extensions = find(source, "extensions");
-    const json* draco = extensions ? find(*extensions, kDraco) : nullptr;
     if (draco) {
         const json& attributes = member(*draco, "attributes", "gltf.structure");
         const auto id = [&](const char* name) {
@@ -249,6 +259,12 @@ void read_levels(const json& document, const tinygltf::Model& model, const Conta
             level = read_level_member(*extension(node), asset.source, limits);
         }) && findings.attempt(mesh < 0 ? at_node : at_mesh, [&] {
             read_primitive(document, model, mesh, asset, level);
+        });
+        level.is_sound = level.is_sound && findings.attempt(at_mesh, [&] {
+            const auto texture = texture_view(document, static_cast<std::uint64_t>(mesh));
+            if (!texture || k > 0) return;
+            asset.texture = view_range(model, texture->view, asset.buffer_length);
+            asset.texture_type = texture->type;
         });
         asset.levels.push_back(std::move(level));
         asset.places.push_back({node, static_cast<std::uint64_t>(std::max(mesh, 0)), at_mesh});

@@ -10,6 +10,7 @@
 #include "formats/file_uri.h"
 #include "formats/gltf_asset.h"
 #include "formats/gltf_names.h"
+#include "formats/gltf_texture.h"
 #include "libcore/base/error.h"
 #include "libcore/image/color.h"
 
@@ -70,7 +71,8 @@ tinygltf::Mesh level_mesh(tinygltf::Model& model, const AssetLevel& level, const
     accessors[static_cast<std::size_t>(position)].minValues.assign(level.low.begin(), level.low.end());
     accessors[static_cast<std::size_t>(position)].maxValues.assign(level.high.begin(), level.high.end());
     primitive.attributes = {{"POSITION", position}};
-    const StoredLayout layout = layout_of(source);
+    StoredLayout layout = layout_of(source);
+    layout.texture = level.has_texcoords;
     const DracoAttributeIds ids = draco_ids(layout);
     Value::Object attributes = {{"POSITION", Value(static_cast<int>(ids.position))}};
     const auto add = [&](const std::string& name, int component, int type, const ByteRange& bytes,
@@ -80,7 +82,8 @@ tinygltf::Mesh level_mesh(tinygltf::Model& model, const AssetLevel& level, const
         attributes[name] = Value(static_cast<int>(id));
     };
     if (layout.color) {
-        add("COLOR_0", TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT, TINYGLTF_TYPE_VEC4, level.colors, *ids.color);
+        add(layout.texture ? kHiddenColor : "COLOR_0", TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT,
+            TINYGLTF_TYPE_VEC4, level.colors, *ids.color);
         accessors.back().normalized = true;
     }
     if (layout.light) add(kLight, TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_VEC3, level.light, *ids.light);
@@ -88,6 +91,9 @@ tinygltf::Mesh level_mesh(tinygltf::Model& model, const AssetLevel& level, const
     for (std::size_t c = 0; c < names.size(); ++c)
         add(names[c], TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_SCALAR,
             level.is_draco ? ByteRange() : level.channels[c], ids.channels[c]);
+    if (layout.texture)
+        add(kTexcoord, TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_VEC2, level.texcoords,
+            ids.texcoord.value_or(0));
     if (level.is_draco) {
         primitive.extensions[kDraco] =
             Value(Value::Object{{"bufferView", Value(add_view(model, level.draco, 0))},
@@ -185,6 +191,7 @@ std::string json_from_asset(const Asset& asset) {
     tinygltf::Model model = gltf_model(asset);
     const int layers_view =
         asset.has_layers && asset.layers_name.empty() ? add_view(model, asset.layers, 0) : -1;
+    const int texture_view = asset.texture_type.empty() ? -1 : add_view(model, asset.texture, 0);
     std::ostringstream text;
     tinygltf::TinyGLTF().WriteGltfSceneToStream(&model, text, /*prettyPrint=*/false, /*writeBinary=*/false);
 
@@ -192,6 +199,7 @@ std::string json_from_asset(const Asset& asset) {
     json buffer = {{"byteLength", asset.buffer_length}};
     if (!asset.buffer_name.empty()) buffer["uri"] = uri_from_name(asset.buffer_name);
     document["buffers"] = json::array({std::move(buffer)});
+    if (texture_view >= 0) add_texture(document, texture_view, asset.texture_type, asset.source.has_mask);
     if (asset.has_layers) document["extensions"][kPixelMap] = root_extension(asset, layers_view);
     for (std::size_t k = 0; k < asset.levels.size() && asset.has_layers; ++k) {
         const AssetLevel& level = asset.levels[k];

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "libcore/image/image.h"
 
@@ -50,6 +51,10 @@ struct WriteImageOptions {
 /// sample type asked for, channels other than grey or colour, transparency (an opaque alpha is left out),
 /// WebP's and JPEG's size; kIo where the file cannot be written.
 void write_image(const std::string& path, const Image& image, const WriteImageOptions& options = {});
+
+/// What write_image would write into a file of that name, which is not looked at beyond its extension.
+std::vector<std::uint8_t> encode_image(const std::string& path, const Image& image,
+                                       std::optional<SampleType> sample_type = {});
 
 /// Whether write_image knows this path's extension.
 bool can_write_image(const std::string& path);

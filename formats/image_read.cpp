@@ -68,8 +68,8 @@ void check_finite(const std::string& path, const Image& image) {
                width = static_cast<std::size_t>(image.width);
     const std::size_t pixel = index / channels;
     throw Error(ErrorCode::kBadFile,
-                cat(path, ": channel ", image.channel_names[index % channels], " of pixel (", pixel % width,
-                    ", ", pixel / width, ") is not a finite number"));
+                cat(path, ": channel ", printable(image.channel_names[index % channels]), " of pixel (",
+                    pixel % width, ", ", pixel / width, ") is not a finite number"));
 }
 
 DecodedPicture decode(const std::string& path, bool any_primaries, const ImageLimits& limits) {

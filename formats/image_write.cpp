@@ -60,6 +60,12 @@ bool holds(const Format& format, SampleType type) {
     return std::find(format.types.begin(), format.types.end(), type) != format.types.end();
 }
 
+Error unknown_format(const std::string& path) {
+    std::string list;
+    for (const Format& f : formats()) list += cat(list.empty() ? "" : ", ", f.extension);
+    return {ErrorCode::kUsage, cat(path, ": cannot write this kind of picture, expected one of ", list)};
+}
+
 const char* type_name(SampleType type) {
     switch (type) {
         case kUint8:
@@ -201,30 +207,28 @@ bool can_write_image(const std::string& path) {
     return find_format(path) != nullptr;
 }
 
-void write_image(const std::string& path, const Image& image, const WriteImageOptions& options) {
+std::vector<std::uint8_t> encode_image(const std::string& path, const Image& image,
+                                       std::optional<SampleType> sample_type) {
     const Format* format = find_format(path);
-    if (!format) {
-        std::string list;
-        for (const Format& f : formats()) list += cat(list.empty() ? "" : ", ", f.extension);
-        throw Error(ErrorCode::kUsage,
-                    cat(path, ": cannot write this kind of picture, expected one of ", list));
-    }
-    const SampleType type = choose_type(path, *format, image, options.sample_type);
+    if (!format) throw unknown_format(path);
+    const SampleType type = choose_type(path, *format, image, sample_type);
     check_shape(path, *format, image);
-    AtomicFile file(path, options.overwrite);  // before the work: where it cannot be written, all is in vain
-
     Image stored = without_alpha(path, *format, image);
     convert(stored, choose_space(*format, type, image));
-    if (format->extension == ".exr") {
-        multiply_alpha_in(stored);
-        file.write(encode_exr(stored, type));
-    } else if (format->extension == ".webp") {
-        file.write(encode_webp(stored));
-    } else if (format->extension == ".png") {
-        file.write(encode_png(stored, type));
-    } else {
-        file.write(encode_with_oiio(path, *format, stored, type));
-    }
+    if (format->extension == ".webp") return encode_webp(stored);
+    if (format->extension == ".png") return encode_png(stored, type);
+    if (format->extension != ".exr") return encode_with_oiio(path, *format, stored, type);
+    multiply_alpha_in(stored);
+    return encode_exr(stored, type);
+}
+
+void write_image(const std::string& path, const Image& image, const WriteImageOptions& options) {
+    const Format* format = find_format(path);
+    if (!format) throw unknown_format(path);
+    choose_type(path, *format, image, options.sample_type);
+    check_shape(path, *format, image);
+    AtomicFile file(path, options.overwrite);  // before the work: where it cannot be written, all is in vain
+    file.write(encode_image(path, image, options.sample_type));
     file.commit();
 }
 

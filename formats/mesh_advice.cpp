@@ -31,6 +31,14 @@ void advise_on_vertices(const StoredMesh& mesh, const AssetLevel& level, const S
             outside.hit(
                 [&] { return std::pair(cat("vertex ", v, " is at (", p[0], ",", p[1], ")"), Place()); });
     }
+    Repeated off_texture(findings, "mesh.texcoord");
+    for (std::size_t v = 0; v < mesh.texcoord.size(); ++v) {
+        const auto& [x, y] = mesh.texcoord[v];
+        if (!(x >= 0 && x <= 1 && y >= 0 && y <= 1))
+            off_texture.hit([&, &x = x, &y = y] {
+                return std::pair(cat("vertex ", v, " is at (", x, ",", y, ") of the texture"), Place());
+            });
+    }
     if (low != level.low || high != level.high)
         findings.add("mesh.bounds",
                      cat("x from ", low[0], " to ", high[0], " and y from ", low[1], " to ", high[1],

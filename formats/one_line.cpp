@@ -18,4 +18,10 @@ std::string one_line(const std::string& message) {
     return line.empty() ? "the library gives no reason" : line;
 }
 
+std::string printable(std::string name) {
+    for (char& c : name)
+        if (static_cast<unsigned char>(c) < 0x20 || c == 0x7F) c = '?';
+    return name;
+}
+
 }  // namespace imgmesh

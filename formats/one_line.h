@@ -1,4 +1,4 @@
-// Messages of other libraries.
+// Messages of other libraries, and names from files, within one line.
 #pragma once
 
 #include <string>
@@ -7,5 +7,8 @@ namespace imgmesh {
 
 /// A library's message as one line without control characters.
 std::string one_line(const std::string& message);
+
+/// A name from a file as messages quote it: '?' for each control character.
+std::string printable(std::string name);
 
 }  // namespace imgmesh

@@ -18,6 +18,7 @@ struct StoredLayout {
     bool color = true;
     bool light = false;        ///< colours without an upper bound
     std::size_t channels = 0;  ///< channels beside the colour
+    bool texture = false;      ///< coordinates in a texture
     bool operator==(const StoredLayout&) const = default;
 };
 
@@ -29,8 +30,11 @@ struct StoredMesh {
     std::vector<Face> faces;
     std::vector<std::array<float, 3>> light;  ///< linear RGB; `color` is then what of it is within [0, 1]
     std::vector<std::vector<float>> channels;
+    std::vector<std::array<float, 2>> texcoord;  ///< of viewers alone
 
-    StoredLayout layout() const { return {!color.empty(), !light.empty(), channels.size()}; }
+    StoredLayout layout() const {
+        return {!color.empty(), !light.empty(), channels.size(), !texcoord.empty()};
+    }
 
     bool operator==(const StoredMesh&) const = default;
 };
@@ -40,7 +44,8 @@ struct StoredMesh {
 inline constexpr int kMaxCoordinate = 131072;
 
 /// L*u*v* features as linear colour, others as they are, y turned up. Throws Error(kInternal) for a mesh that
-/// a container cannot hold without loss: no faces, other features than `layout` has, an index out of range, a
+/// a container cannot hold without loss: no faces, other features than `layout` has (which are all but the
+/// texture), an index out of range, a
 /// position off kPositionStep, a face without area, a value that is not finite.
 StoredMesh stored_from_base(const BaseMesh& mesh, const StoredLayout& layout = {});
 /// The inverse. Errors: indices, positions, colours, channels or faces that are not as they must be; with

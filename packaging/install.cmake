@@ -34,10 +34,17 @@ endforeach()
 add_custom_command(OUTPUT ${_manuals}/stamp
   COMMAND ${IMGMESH_PYTHON3} ${PROJECT_SOURCE_DIR}/packaging/make_manuals.py ${_manuals} ${_programs}
   COMMAND ${CMAKE_COMMAND} -E touch ${_manuals}/stamp
-  DEPENDS ${_tools} packaging/make_manuals.py)
+  DEPENDS ${_tools} packaging/make_manuals.py packaging/completions.py)
 add_custom_target(manuals ALL DEPENDS ${_manuals}/stamp)
 install(DIRECTORY ${_manuals}/man1 DESTINATION ${CMAKE_INSTALL_MANDIR})
-install(DIRECTORY ${_manuals}/completions DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion)
+install(DIRECTORY ${_manuals}/bash/ DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions)
+install(DIRECTORY ${_manuals}/fish/ DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d)
+# Debian's zsh looks into another folder below /usr than all others do, and than itself does below /usr/local.
+install(CODE "set(_zsh site-functions)
+  if(CMAKE_INSTALL_PREFIX STREQUAL /usr)
+    set(_zsh vendor-completions)
+  endif()
+  file(INSTALL \"${_manuals}/zsh/\" DESTINATION \"\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_DATADIR}/zsh/\${_zsh}\")")
 
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME imgmesh)

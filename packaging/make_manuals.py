@@ -1,9 +1,13 @@
 #!/usr/bin/python3
-"""make_manuals.py OUT PROGRAM...: man pages (OUT/man1) and bash completions (OUT/completions) from --help."""
+"""make_manuals.py OUT PROGRAM...: man pages (OUT/man1) and completions of shells (OUT/bash, OUT/zsh,
+OUT/fish) from --help."""
 import pathlib
 import re
 import subprocess
 import sys
+
+sys.dont_write_bytecode = True
+import completions  # noqa: E402
 
 ESCAPES = {"\\": "\\e", "-": "\\-"}
 
@@ -44,30 +48,18 @@ def man_page(name, version, text):
     return "\n".join(lines) + "\n"
 
 
-def completion(name, text):
-    options = sorted(set(re.findall(r"--[a-z][a-z-]*", text)))
-    function = "_" + name.replace("-", "_")
-    return f"""{function}() {{
-    local word=${{COMP_WORDS[COMP_CWORD]}}
-    case $word in
-    -*) COMPREPLY=($(compgen -W "{' '.join(options)}" -- "$word")) ;;
-    *) compopt -o default ;;
-    esac
-}}
-complete -F {function} {name}
-"""
-
-
 def main():
     out = pathlib.Path(sys.argv[1])
-    for folder in ("man1", "completions"):
+    for folder in ("man1", "bash", "zsh", "fish"):
         (out / folder).mkdir(parents=True, exist_ok=True)
     for program in map(pathlib.Path, sys.argv[2:]):
         def output(option):
             return subprocess.run([program, option], capture_output=True, text=True, check=True).stdout
         text = output("--help").replace("{false}", "")  # what CLI11 shows of a flag's other name
         (out / "man1" / f"{program.name}.1").write_text(man_page(program.name, output("--version").strip(), text))
-        (out / "completions" / program.name).write_text(completion(program.name, text))
+        options = completions.options_of(sections(text)[2])
+        for path, completion in completions.SHELLS.items():
+            (out / path.format(program.name)).write_text(completion(program.name, options))
 
 
 if __name__ == "__main__":

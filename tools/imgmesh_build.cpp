@@ -19,6 +19,7 @@
 #include "tools/common/options.h"
 #include "tools/common/output.h"
 #include "tools/common/text.h"
+#include "tools/common/texture_options.h"
 #include "tools/common/tool_main.h"
 
 namespace fs = std::filesystem;
@@ -35,6 +36,7 @@ struct Options {
     bool cut = true;  // along alpha
     std::string mask;
     double alpha_threshold = 0.5;
+    TextureOptions texture;
     ImageLimits limits;
 };
 
@@ -162,6 +164,7 @@ void add_options(CLI::App& app, Options& o) {
     add_choice(app, "--bary", o.params.bary, bary_choices(),
                "Precision of the pixel map (default half where the map stays one to one, else float)");
     add_choice(app, "--draco", o.draco, draco_choices(), "Mesh compression (default edgebreaker)");
+    add_texture_options(app, o.texture, "Put the picture on the meshes, for engines and viewers", false);
     add_choice(app, "--color-space", o.color_space, color_space_choices(),
                "Of the pictures' numbers, whatever their files say");
     add_count(app, "--max-pixels", o.limits.max_pixels, {1},
@@ -244,6 +247,16 @@ Report build_one(const Job& job, const Options& o, const Context& context, const
     const bool cut = o.cut && o.mask.empty();
     Mask mask = cut ? alpha_mask(image, static_cast<float>(o.alpha_threshold)) : read_mask(o);
     const double read_seconds = stage.lap();
+    ContainerOptions container;
+    container.draco = o.draco;
+    container.overwrite = context.overwrite;
+    if (o.texture.wanted) {
+        try {
+            container.texture.picture = encode_texture(image, mask, o.texture.type);
+        } catch (const Error& e) {
+            throw Error(e.code(), cat(job.input, ": ", e.what()));
+        }
+    }
     BuildResult result = build_named(job.input, image, o.params, progress, std::move(mask));
     result.mesh_image.generator = context.generator;
     if (result.mesh_image.source.has_mask) {
@@ -251,7 +264,8 @@ Report build_one(const Job& job, const Options& o, const Context& context, const
         result.mesh_image.parameters.emplace_back("alpha-threshold", o.alpha_threshold);
     }
     stage.lap();
-    write_container(job.output, result.mesh_image, {o.draco, context.overwrite});
+    if (o.texture.wanted) container.texture.coords = texture_coords(result.mesh_image);
+    write_container(job.output, result.mesh_image, container);
     const double write_seconds = stage.lap();
 
     // The figures are those of what a reader gets.

@@ -14,6 +14,7 @@
 #include "tools/common/options.h"
 #include "tools/common/output.h"
 #include "tools/common/text.h"
+#include "tools/common/texture_options.h"
 #include "tools/common/tool_main.h"
 
 namespace fs = std::filesystem;
@@ -29,6 +30,7 @@ struct Options {
     std::optional<DracoMode> draco;
     std::vector<int> levels;
     bool no_layers = false;
+    TextureOptions texture;
     std::optional<int> level;
     std::optional<Shading> shading;
     std::string image;
@@ -50,6 +52,11 @@ void add_options(CLI::App& app, Options& o) {
         "Levels to keep, finest first, as 0,2 (default all); they are numbered anew");
     app.add_flag("--no-layers", o.no_layers,
                  "Write the meshes alone: a plain glTF asset that imgmesh cannot read");
+    add_texture_options(
+        app, o.texture,
+        "Put a picture on the meshes, for engines and viewers: that of --image, or else the reconstruction "
+        "(default: the input's texture, if it has one)",
+        true);
     add_value(
         app, "--level", "N",
         [&o](const std::string& text) {
@@ -61,7 +68,8 @@ void add_options(CLI::App& app, Options& o) {
                "Of an .svg's triangles (default flat)");
     add_value(
         app, "--image", "NAME", [&o](const std::string& text) { o.image = text; },
-        "The picture that a sprite's .json names (default the output's name in .png)");
+        "The picture that --texture puts on the meshes, or that a sprite's .json names (default the output's "
+        "name in .png)");
     add_container_limits(app, o.limits);
 }
 
@@ -86,10 +94,13 @@ void check_options(const Options& o) {
     only_for(o.draco.has_value(), "--draco", container, "container");
     only_for(!o.levels.empty(), "--levels", container, "container");
     only_for(o.no_layers, "--no-layers", container, "container");
+    only_for(o.texture.wanted.has_value(), "--texture", container, "container");
     if (container && o.level)
         throw Error(ErrorCode::kUsage, cat("--level: ", o.output, " keeps all levels; see --levels"));
     only_for(o.shading.has_value(), "--shading", extension == ".svg", "SVG");
-    only_for(!o.image.empty(), "--image", extension == ".json", "sprite's JSON");
+    if (container && !o.image.empty() && !o.texture.wanted.value_or(false))
+        throw Error(ErrorCode::kUsage, "--image: of use to a container only with --texture");
+    only_for(!o.image.empty(), "--image", container || extension == ".json", "container or sprite's JSON");
     for (std::size_t i = 1; i < o.levels.size(); ++i)
         if (o.levels[i] <= o.levels[i - 1])
             throw Error(ErrorCode::kUsage, cat("--levels: ", o.levels[i], " after ", o.levels[i - 1],
@@ -102,16 +113,49 @@ void check_level(const std::string& option, int level, const std::string& input,
                     cat(option, " ", level, ": ", input, " has levels 0 to ", m.levels.size() - 1));
 }
 
-void keep_levels(const Options& o, MeshImage& m) {
+void keep_levels(const Options& o, MeshImage& m, Texture& texture) {
     if (o.levels.empty()) return;
     std::vector<Level> kept;
+    std::vector<std::vector<Vec2f>> coords;
     for (const int k : o.levels) {
         check_level("--levels", k, o.input, m);
         kept.push_back(std::move(m.levels[static_cast<std::size_t>(k)]));
+        if (!texture.coords.empty()) coords.push_back(std::move(texture.coords[static_cast<std::size_t>(k)]));
     }
+    texture.coords = std::move(coords);
     // The visit map tells of the finest level's pixels, and goes with it.
     if (o.levels.front() != 0) m.visits.clear();
     m.levels = std::move(kept);
+}
+
+// What goes on the meshes; `kept` is what is there already.
+Texture chosen_texture(const Options& o, const MeshImage& m, Texture kept) {
+    if (!o.texture.wanted) return kept;
+    if (!*o.texture.wanted) return {};
+    const SourceInfo& source = m.source;
+    Image image;
+    if (o.image.empty()) {
+        if (split_names(source.channel_names).color.empty())
+            throw Error(ErrorCode::kUnsupported,
+                        cat("--texture: ", o.input, " has no colour; --image names a picture that has"));
+        image = draw(m, 0, {});
+    } else {
+        image = read_image(o.image);
+        if (image.width != source.width || image.height != source.height)
+            throw Error(ErrorCode::kBadFile,
+                        cat(o.image, ": has ", image.width, "x", image.height, " pixels, the picture of ",
+                            o.input, " has ", source.width, "x", source.height));
+    }
+    Mask mask;
+    if (source.has_mask) {
+        mask = {source.width, source.height, {}};
+        for (const PixelCoord& c : m.levels[0].map.coords) mask.inside.push_back(c.face != kNone);
+    }
+    try {
+        return {encode_texture(image, mask, o.texture.type), texture_coords(m)};
+    } catch (const Error& e) {
+        throw Error(e.code(), cat(o.image.empty() ? o.input : o.image, ": ", e.what()));
+    }
 }
 
 // Face ids as colours; no face is transparent.
@@ -164,12 +208,15 @@ Report run(const Options& o, Context& context) {
     Container container = read_container(o.input, o.limits);
     MeshImage& m = container.mesh_image;
     check_distinct(container.facts.files, {o.output});
+    if (o.texture.wanted.value_or(false) && !o.image.empty())
+        check_distinct({o.image}, container_files(o.output));
     const int level = o.level.value_or(0);
     check_level("--level", level, o.input, m);
     context.progress(0.5, "write");
+    ContainerOptions options;
     if (is_container(o)) {
-        keep_levels(o, m);
-        ContainerOptions options;
+        options.texture = chosen_texture(o, m, std::move(container.texture));
+        keep_levels(o, m, options.texture);
         options.draco = o.draco.value_or(container.facts.draco);
         options.overwrite = context.overwrite;
         options.keep = container.facts.files;
@@ -186,6 +233,7 @@ Report run(const Options& o, Context& context) {
             {"vertices", first.mesh.vertex_count()},
             {"faces", first.mesh.faces.size()},
             {"layers", is_container(o) && !o.no_layers},
+            {"texture", !options.texture.picture.empty()},
             {"bytes", fs::file_size(o.output)}};
 }
 
@@ -193,7 +241,8 @@ void print(const Report& report, std::ostream& out) {
     out << printable_line(report["input"].get<std::string>() + " -> " + report["output"].get<std::string>())
         << '\n';
     TextTable table;
-    table.add("levels", cat(report["levels"], report["layers"] ? ", with pixel maps" : ""));
+    table.add("levels", cat(report["levels"], report["layers"] ? ", with pixel maps" : "",
+                            report["texture"] ? ", with a texture" : ""));
     table.add("mesh", cat(report["vertices"], " vertices, ", report["faces"], " faces"));
     table.add("file", format_bytes(report["bytes"].get<std::uint64_t>()));
     table.print(out, 2);

@@ -90,7 +90,8 @@ Report facts_report(const Container& container) {
              {{"total", facts.total_bytes},
               {"meshes", facts.mesh_bytes},
               {"layers", facts.layer_bytes},
-              {"other", facts.total_bytes - facts.mesh_bytes - facts.layer_bytes}}},
+              {"texture", facts.texture_bytes},
+              {"other", facts.total_bytes - facts.mesh_bytes - facts.layer_bytes - facts.texture_bytes}}},
             {"levels", levels},
             {"build", build}};
 }
@@ -210,6 +211,7 @@ void print(const Report& report, std::ostream& out) {
     table.add("container", cat("version ", text("version"), ", Draco ", text("draco")));
     table.add("file", cat(bytes("total"), ": meshes ", bytes("meshes"), ", layers ", bytes("layers"),
                           ", other ", bytes("other")));
+    if (report["bytes"]["texture"] > 0) table.add("texture", bytes("texture"));
     table.add("built by", text("built_by"));
     for (const auto& [name, value] : report["build"].items()) table.add("  " + name, value.dump());
     table.print(out, 2);

@@ -216,7 +216,11 @@ Report run(const Options& o, Context& context) {
     if (is_container(o.output)) {
         MeshImage warped = warp_mesh_image(mesh_image, moves);
         warped.generator = context.generator;
-        write_container(o.output, warped, {container.facts.draco, context.overwrite});
+        ContainerOptions options;
+        options.draco = container.facts.draco;
+        options.overwrite = context.overwrite;
+        options.texture = container.texture;  // moves along: vertices keep their places in it
+        write_container(o.output, warped, options);
     } else if (!o.output.empty()) {
         const Image out = warp_image(*image, field, o.size);
         context.progress(0.8, "write");

@@ -99,6 +99,12 @@ void add_mesh_cases(std::map<std::string, Case>& cases) {
         m.color.push_back(m.color[0]);
         m.faces.push_back({1, 2, 4});
     });
+    cases["mesh.texcoord"] = Case();
+    cases["mesh.texcoord"].sample.add_texture();
+    cases["mesh.texcoord"].sample.meshes[0].texcoord[1] = {0.5f, NAN};
+    cases["texture.data"] = Case();
+    cases["texture.data"].sample.add_texture();
+    cases["texture.data"].sample.texture[1] = 'p';
     cases["mesh.outside"] = masked_case([](StoredMesh& m) { m.position[3][0] = 2.75f; });
     cases["mesh.area"] = mesh_case([](StoredMesh& m) { m.position[3][0] = 1.5f; });
 }

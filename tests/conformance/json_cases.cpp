@@ -123,6 +123,12 @@ void add_gltf_cases(std::map<std::string, Case>& cases) {
         3);
     cases["gltf.material"] = json_case([](json& d) { d["materials"][0]["doubleSided"] = false; });
     cases["gltf.transform"] = json_case([](json& d) { d["nodes"][0]["translation"] = {0, 0, 0}; });
+    cases["gltf.texture"] = json_case([](json& d) {
+        json& attributes = d["meshes"][0]["primitives"][0]["attributes"];
+        attributes["COLOR_0"] = attributes["_COLOR"];  // which viewers multiply the texture by
+        attributes.erase("_COLOR");
+    });
+    cases["gltf.texture"].sample.add_texture();
     cases["gltf.image"] = json_case([](json& d) {
         d["images"] = {{{"uri", "x.exr"}, {"mimeType", "image/x-exr"}}};
     });

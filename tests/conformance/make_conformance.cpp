@@ -58,6 +58,13 @@ int run(const fs::path& out) {
         mesh.channels = {{0, -1, 2, 1e30f}};
     }
     channels.write(out / "valid-channels-light", true);
+    for (const DracoMode mode : {DracoMode::kEdgebreaker, DracoMode::kOff})
+        for (const bool glb : {false, true}) {
+            Sample texture(2, mode);
+            texture.add_texture();
+            texture.write(
+                out / cat("valid-texture", mode == DracoMode::kOff ? "" : "-draco", glb ? "-glb" : ""), glb);
+        }
     Sample no_color;
     no_color.asset.source.channel_names = {"depth.Z"};
     no_color.meshes[0].color.clear();

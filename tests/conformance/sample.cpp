@@ -14,6 +14,7 @@
 
 #include "formats/draco_mesh.h"
 #include "formats/glb.h"
+#include "tests/support/small_pictures.h"
 
 namespace imgmesh::conformance {
 namespace {
@@ -40,12 +41,14 @@ AssetLevel store(const StoredMesh& mesh, DracoMode mode, double error, Bytes& bu
         level.light = append(buffer, mesh.light);
         for (const std::vector<float>& channel : mesh.channels)
             level.channels.push_back(append(buffer, channel));
+        level.texcoords = append(buffer, mesh.texcoord);
     } else {
         draco = encode_draco_mesh(mesh, mode);
         level.is_draco = true;
         level.draco = append(buffer, draco.bytes);
         stored = &draco.decoded;
     }
+    level.has_texcoords = !mesh.texcoord.empty();
     level.vertices = stored->position.size();
     level.faces = stored->faces.size();
     level.error = error;
@@ -128,6 +131,13 @@ Sample::Sample(int levels, DracoMode mode) {
     }
 }
 
+void Sample::add_texture() {
+    texture = red_png();
+    for (StoredMesh& mesh : meshes)
+        mesh.texcoord = {
+            {0.5f / 3, 0.5f / 3}, {0.5f / 3, 2.5f / 3}, {2.5f / 3, 2.5f / 3}, {2.5f / 3, 0.5f / 3}};
+}
+
 void Sample::write(const std::filesystem::path& folder, bool glb) const {
     std::filesystem::create_directories(folder);
     Asset a = asset;
@@ -136,6 +146,10 @@ void Sample::write(const std::filesystem::path& folder, bool glb) const {
     for (std::size_t k = 0; k < meshes.size(); ++k) {
         a.levels.push_back(store(meshes[k], modes[k], static_cast<double>(k), buffer));
         if (layers[k].topology.empty()) layers[k].topology = a.levels[k].topology;
+    }
+    if (!texture.empty()) {
+        a.texture_type = "image/png";
+        a.texture = append(buffer, texture);
     }
     Bytes exr_bytes;
     if (edit_exr) {

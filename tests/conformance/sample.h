@@ -38,6 +38,7 @@ struct Sample {
     std::vector<StoredMesh> meshes;
     std::vector<LayerPart> parts;
     std::vector<DracoMode> modes;
+    Bytes texture;  ///< empty for none
     // What is done to the result before it is written.
     std::function<void(Exr&)> edit_exr;  ///< of one level; its EXR is written by OpenEXR then
     std::function<void(json&)> edit_json;
@@ -45,6 +46,7 @@ struct Sample {
     std::function<void(Bytes&)> edit_bin, edit_layers, edit_glb;
 
     Sample(int levels = 1, DracoMode mode = DracoMode::kOff);
+    void add_texture();
     /// x.gltf, x.bin and x.exr, or x.glb, in a folder that is made.
     void write(const std::filesystem::path& folder, bool glb) const;
 };

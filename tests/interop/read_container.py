@@ -54,7 +54,7 @@ def read_accessor(document, binary, index):
     accessor = document["accessors"][index]
     view = document["bufferViews"][accessor["bufferView"]]
     dtype = {5123: "<u2", 5125: "<u4", 5126: "<f4"}[accessor["componentType"]]
-    width = {"SCALAR": 1, "VEC3": 3, "VEC4": 4}[accessor["type"]]
+    width = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4}[accessor["type"]]
     start = view.get("byteOffset", 0) + accessor.get("byteOffset", 0)
     return np.frombuffer(binary, dtype, accessor["count"] * width, start).reshape(-1, width)
 
@@ -85,7 +85,8 @@ def read_mesh(document, binary, node):
     if "_LIGHT" in primitive["attributes"]:
         colors = read_accessor(document, binary, primitive["attributes"]["_LIGHT"])
     else:
-        colors = read_accessor(document, binary, primitive["attributes"]["COLOR_0"])[:, :3] / 65535.0
+        name = "COLOR_0" if "COLOR_0" in primitive["attributes"] else "_COLOR"  # hidden where there is a texture
+        colors = read_accessor(document, binary, primitive["attributes"][name])[:, :3] / 65535.0
     names = document["extensions"][EXTENSION]["image"]["channels"]
     channels = {name: read_accessor(document, binary, primitive["attributes"][attribute])[:, 0]
                 for name, attribute in channel_attributes(names).items()}

@@ -9,6 +9,7 @@
 #include "formats/container.h"
 #include "formats/region_gltf.h"
 #include "tests/support/random_mesh_image.h"
+#include "tests/support/small_pictures.h"
 
 using namespace imgmesh;
 
@@ -44,7 +45,8 @@ void write_picture(const std::string& path, const MeshImage& image) {
     }
 }
 
-// The same with a depth, as "channels ...", and with light of up to 4 times what a display shows, as "light
+// The same with a texture, as "texture ..."; with a depth, as "channels ...", and with light of up to 4 times
+// what a display shows, as "light
 // ...": there the picture to expect is that of a quarter of the light.
 void write_with_channels(const std::filesystem::path& folder, const std::string& name, const MeshImage& image,
                          DracoMode mode) {
@@ -69,6 +71,10 @@ void write_with_channels(const std::filesystem::path& folder, const std::string&
             std::copy(luv.data(), luv.data() + 3, light.levels[k].mesh.feature_of(v));
         }
     }
+    ContainerOptions texture{mode, true};
+    texture.texture = {red_png(), texture_coords(image)};
+    write_container((folder / ("texture " + name + ".glb")).string(), image, texture);
+    write_container((folder / ("texture " + name + ".gltf")).string(), light, texture);
     write_container((folder / ("channels " + name + ".glb")).string(), channels, {mode, true});
     write_container((folder / ("light " + name + ".glb")).string(), light, {mode, true});
 }

@@ -6,9 +6,11 @@
 #include <map>
 
 #include "formats/atomic_file.h"
+#include "formats/validate.h"
 #include "libcore/base/error.h"
 #include "libcore/image/feature_space.h"
 #include "tests/support/random_mesh_image.h"
+#include "tests/support/small_pictures.h"
 #include "tests/support/temporary_folder.h"
 
 using namespace imgmesh;
@@ -192,6 +194,52 @@ TEST_CASE("container: faces that differ by a channel alone are told apart") {
     }
 }
 
+// Draco splits and reorders vertices; each keeps the coordinates that it has, which a warped mesh has not at
+// its place.
+TEST_CASE("container: a texture and its coordinates are read back to the bit, in every mode") {
+    const TemporaryFolder folder;
+    for (const bool light : {false, true})
+        for (const DracoMode mode : {DracoMode::kEdgebreaker, DracoMode::kSequential, DracoMode::kOff})
+            for (const char* name : {"x.glb", "x.gltf"}) {
+                INFO(light << int(mode) << name);
+                std::mt19937 random(3);
+                MeshImage image = random_mesh_image(23, 18, 3, WeightPrecision::kHalf, true, 7);
+                change_channels(image, true, light, {"Z"}, random);
+                ContainerOptions options{mode, true};
+                options.texture = {red_png(), texture_coords(image)};
+                // A function of the place, so that it can be told whatever the order.
+                const auto moved = [](const Vec2f& c) { return Vec2f(c.y() * c.y(), 1 - c.x()); };
+                for (auto& level : options.texture.coords)
+                    for (Vec2f& c : level) c = moved(c);
+                write_container(folder / name, image, options);
+                const Container back = read_container(folder / name);
+                check_same(image, back.mesh_image);
+                CHECK(back.texture.picture == red_png());
+                CHECK(back.facts.texture_bytes == red_png().size());
+                const auto places = texture_coords(back.mesh_image);
+                REQUIRE(back.texture.coords.size() == 3);
+                for (std::size_t k = 0; k < 3; ++k) {
+                    REQUIRE(back.texture.coords[k].size() == places[k].size());
+                    for (std::size_t v = 0; v < places[k].size(); ++v)
+                        CHECK(back.texture.coords[k][v] == moved(places[k][v]));
+                }
+                CHECK(validate_container(folder / name).empty());
+                // Without the texture it is as if there had never been one.
+                write_container(folder / name, back.mesh_image, {DracoMode::kOff, true});
+                CHECK(read_container(folder / name).texture.picture.empty());
+                check_same(image, read_container(folder / name).mesh_image);
+            }
+}
+
+TEST_CASE("container: a vertex's place in the texture is its pixel's") {
+    MeshImage image = random_mesh_image(23, 18, 1, WeightPrecision::kHalf, false, 7);
+    image.levels[0].mesh.position[0] = {0, 0};
+    image.levels[0].mesh.position[1] = {22, 8.5f};
+    const auto coords = texture_coords(image)[0];
+    CHECK(coords[0] == Vec2f(0.5f / 23, 0.5f / 18));  // the centre of the first pixel
+    CHECK(coords[1] == Vec2f(22.5f / 23, 0.5f));
+}
+
 TEST_CASE("container: .glb and .gltf turn into each other without loss, and writing is deterministic") {
     const TemporaryFolder folder;
     const MeshImage image = random_mesh_image(30, 20, 2, WeightPrecision::kHalf, true, 99);
@@ -292,4 +340,15 @@ TEST_CASE("container: the writer refuses parts that do not fit each other") {
     refused([](MeshImage& m) { m.levels[0].error = INFINITY; });
     refused([](MeshImage& m) { m.parameters.emplace_back("x", double(NAN)); });
     refused([](MeshImage& m) { m.parameters.emplace_back("generator", true); });
+    const MeshImage image = random_mesh_image(9, 9, 2, WeightPrecision::kHalf, true, 3);
+    const auto refused_texture = [&](const auto& change) {
+        ContainerOptions options;
+        options.texture = {red_png(), texture_coords(image)};
+        change(options.texture);
+        CHECK_THROWS_AS(write_container(folder / "x.glb", image, options), Error);
+        CHECK(fs::is_empty(folder.path()));
+    };
+    refused_texture([](Texture& t) { t.picture[0] = 'X'; });
+    refused_texture([](Texture& t) { t.coords.pop_back(); });
+    refused_texture([](Texture& t) { t.coords[1].pop_back(); });
 }

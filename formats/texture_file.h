@@ -1,0 +1,21 @@
+// The file that Texture::picture is. Target imgmesh_pictures.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "libcore/image/image.h"
+#include "libcore/image/mask.h"
+
+namespace imgmesh {
+
+/// What glTF knows: lossless, or of quality 95 and without transparency.
+enum class TextureType { kPng, kJpeg };
+
+/// texture_image(image, mask) as a file of 8-bit sRGB. The same image gives the same bytes.
+/// Throws Error(kUnsupported) where the picture has no colour, and for a cut-out as JPEG; Error(kUsage) where
+/// it is too large for the format.
+std::vector<std::uint8_t> encode_texture(const Image& image, const Mask& mask, TextureType type);
+
+}  // namespace imgmesh
