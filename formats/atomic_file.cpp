@@ -153,15 +153,16 @@ AtomicFile::~AtomicFile() {
     ::close(claim_);
 }
 
-void AtomicFile::write(std::span<const std::uint8_t> bytes) {
+void AtomicFile::write_parts(std::span<const std::span<const std::uint8_t>> parts) {
     const Descriptor file(::open(temporary_path_.c_str(), O_WRONLY | O_TRUNC | O_CLOEXEC));
     if (file.fd < 0) fail(path_, "cannot write", errno);
-    while (!bytes.empty()) {
-        const ssize_t n = ::write(file.fd, bytes.data(), bytes.size());
-        if (n < 0 && errno == EINTR) continue;
-        if (n < 0) fail(path_, "cannot write", errno);
-        bytes = bytes.subspan(static_cast<std::size_t>(n));
-    }
+    for (std::span<const std::uint8_t> bytes : parts)
+        while (!bytes.empty()) {
+            const ssize_t n = ::write(file.fd, bytes.data(), bytes.size());
+            if (n < 0 && errno == EINTR) continue;
+            if (n < 0) fail(path_, "cannot write", errno);
+            bytes = bytes.subspan(static_cast<std::size_t>(n));
+        }
 }
 
 void AtomicFile::commit() {

@@ -25,7 +25,9 @@ class AtomicFile {
     /// Where to write. Libraries that want a file name get this one; it ends with the extension of `path`.
     const std::string& temporary_path() const { return temporary_path_; }
     /// Replaces the temporary file's content.
-    void write(std::span<const std::uint8_t> bytes);
+    void write(std::span<const std::uint8_t> bytes) { write_parts({&bytes, 1}); }
+    /// The same, one part behind the other.
+    void write_parts(std::span<const std::span<const std::uint8_t>> parts);
     void commit();
     /// As commit(), but until keep() destruction removes the file, now under its own name, and so do signals
     /// as long as `before` is not committed: for a file that is of no use until `before`, which lives longer,

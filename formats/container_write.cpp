@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <filesystem>
 #include <memory>
@@ -96,12 +97,18 @@ Spelling spelling_of(const std::string& path) {
     throw Error(ErrorCode::kUsage, cat(path, ": a container's name ends with .glb or .gltf"));
 }
 
-void write_glb(const std::string& path, Asset& asset, std::vector<std::uint8_t> buffer,
+// The layers are most of the file: they are written from where they are.
+void write_glb(const std::string& path, Asset& asset, const std::vector<std::uint8_t>& buffer,
                const std::vector<std::uint8_t>& layers, bool overwrite) {
     AtomicFile file(path, overwrite);
-    if (asset.has_layers) asset.layers = append(buffer, layers);
-    asset.buffer_length = buffer.size();
-    file.write(pack_glb(json_from_asset(asset), buffer));
+    constexpr std::array<std::uint8_t, 3> kZeros = {};
+    const std::size_t padding = (4 - layers.size() % 4) % 4;
+    if (asset.has_layers) asset.layers = {buffer.size(), layers.size()};
+    asset.buffer_length = buffer.size() + layers.size() + padding;
+    const std::vector<std::uint8_t> head = glb_head(json_from_asset(asset), asset.buffer_length);
+    const std::array<std::span<const std::uint8_t>, 4> parts = {head, buffer, layers,
+                                                                std::span(kZeros).first(padding)};
+    file.write_parts(parts);
     file.commit();
 }
 
@@ -183,7 +190,7 @@ void write_container(const std::string& path, const MeshImage& mesh_image, const
     const std::vector<std::uint8_t> layers =
         options.layers ? encode_exr_layers(parts) : std::vector<std::uint8_t>();
     if (spelling == Spelling::kGlb)
-        write_glb(path, asset, std::move(buffer), layers, options.overwrite);
+        write_glb(path, asset, buffer, layers, options.overwrite);
     else
         write_gltf(path, asset, buffer, layers, options);
 }

@@ -8,6 +8,7 @@
 
 #include "formats/findings.h"
 #include "libcore/base/error.h"
+#include "libcore/base/parallel.h"
 
 namespace imgmesh {
 namespace {
@@ -71,10 +72,52 @@ void check_part_header(const Imf::Header& header, const std::string& name, const
     check_channels(header, name, findings);
 }
 
-// Checks what was read, and puts weights of any origin on the grid.
+namespace {
+
+// What a quick look at all pixels finds.
+struct Glance {
+    bool sound = true, half_grid = true, any_outside = false;
+};
+
+// Looks at the rows [first, last); makes negative zeros positive, and changes nothing else.
+Glance glance(PixelMap& map, int first, int last, std::uint64_t faces, bool has_mask) {
+    bool sound = true, half_grid = true, any_outside = false;
+    for (int y = first; y < last; ++y)
+        for (PixelCoord& c : map.row(y)) {
+            const bool outside = c.face == kNone;
+            sound &= in_simplex(c) & on_grid(c, kFloatWeightStep) &
+                     (outside ? has_mask & (c.u == 0) & (c.v == 0) : c.face < faces);
+            half_grid &= on_grid(c, kHalfWeightStep);
+            any_outside |= outside;
+            c.u += 0.0f;
+            c.v += 0.0f;
+        }
+    return {sound, half_grid, any_outside};
+}
+
+Glance glance(PixelMap& map, std::uint64_t faces, bool has_mask) {
+    constexpr int kGrain = 32;
+    std::vector<Glance> blocks(static_cast<std::size_t>((map.height + kGrain - 1) / kGrain));
+    parallel_blocks(0, map.height, kGrain, [&](int first, int last) {
+        blocks[static_cast<std::size_t>(first / kGrain)] = glance(map, first, last, faces, has_mask);
+    });
+    Glance all;
+    for (const Glance& g : blocks) {
+        all.sound &= g.sound;
+        all.half_grid &= g.half_grid;
+        all.any_outside |= g.any_outside;
+    }
+    return all;
+}
+
+}  // namespace
+
+// Checks what was read, and puts weights of any origin on the grid. Nearly all maps are sound: only where a
+// glance says otherwise, pixel after pixel is looked at for what is wrong with it.
 void finish_part(LayerPart& part, bool stored_as_half, std::uint64_t faces, bool has_mask,
                  Findings& findings) {
-    bool all_on_half_grid = stored_as_half, any_outside = false;
+    const Glance first = glance(part.map, faces, has_mask);
+    bool all_on_half_grid = stored_as_half && first.half_grid, any_outside = first.any_outside;
     const auto width = static_cast<std::size_t>(part.map.width);
     const auto where = [&](std::size_t i) { return cat("(", i % width, ",", i / width, ") of ", part.name); };
     const auto place = [&](std::size_t i, const char* channel) {
@@ -84,7 +127,7 @@ void finish_part(LayerPart& part, bool stored_as_half, std::uint64_t faces, bool
     };
     Repeated weights(findings, "layers.weights"), mask(findings, "layers.mask"),
         range(findings, "layers.face_range"), grid(findings, "layers.grid");
-    for (std::size_t i = 0; i < part.map.coords.size(); ++i) {
+    for (std::size_t i = 0; i < part.map.coords.size() && !first.sound; ++i) {
         PixelCoord& c = part.map.coords[i];
         if (!in_simplex(c))
             weights.hit([&] {
@@ -93,7 +136,6 @@ void finish_part(LayerPart& part, bool stored_as_half, std::uint64_t faces, bool
                                  place(i, kU));
             });
         if (c.face == kNone) {
-            any_outside = true;
             if (!has_mask)
                 mask.hit([&] {
                     return std::pair(cat("no face at ", where(i), ", but the picture has no mask"),

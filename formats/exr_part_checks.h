@@ -11,6 +11,8 @@
 
 namespace imgmesh {
 
+inline constexpr const char *kVersionName = "imgmesh:version", *kTopologyName = "imgmesh:topology",
+                            *kLayersVersion = "1.0";
 inline constexpr const char *kFace = "face.id", *kU = "bary.u", *kV = "bary.v", *kVisits = "visit.count";
 
 inline bool on_grid(const PixelCoord& c, float step) {

@@ -29,15 +29,14 @@ bool is_glb(std::span<const std::uint8_t> bytes) {
     return bytes.size() >= 4 && number(bytes, 0) == kMagic;
 }
 
-std::vector<std::uint8_t> pack_glb(std::string_view json, std::span<const std::uint8_t> binary) {
-    const std::size_t json_bytes = padded(json.size()), binary_bytes = padded(binary.size());
-    const std::size_t total = kHeaderBytes + 2 * kChunkHeaderBytes + json_bytes + binary_bytes;
+std::vector<std::uint8_t> glb_head(std::string_view json, std::uint64_t binary_bytes) {
+    const std::size_t json_bytes = padded(json.size());
+    const std::uint64_t total = kHeaderBytes + 2 * kChunkHeaderBytes + json_bytes + binary_bytes;
     if (total > std::numeric_limits<std::uint32_t>::max())
         throw Error(ErrorCode::kUnsupported,
                     cat("a .glb holds at most 4 GiB, this one would need ", total, " bytes; write a .gltf"));
     std::vector<std::uint8_t> bytes;
-    bytes.reserve(total);
-    const auto put = [&](std::size_t value) {
+    const auto put = [&](std::uint64_t value) {
         for (int shift = 0; shift < 32; shift += 8)
             bytes.push_back(static_cast<std::uint8_t>(value >> shift));
     };
@@ -50,6 +49,12 @@ std::vector<std::uint8_t> pack_glb(std::string_view json, std::span<const std::u
     bytes.resize(bytes.size() + json_bytes - json.size(), ' ');
     put(binary_bytes);
     put(kBinary);
+    return bytes;
+}
+
+std::vector<std::uint8_t> pack_glb(std::string_view json, std::span<const std::uint8_t> binary) {
+    std::vector<std::uint8_t> bytes = glb_head(json, padded(binary.size()));
+    const std::size_t total = bytes.size() + padded(binary.size());
     bytes.insert(bytes.end(), binary.begin(), binary.end());
     bytes.resize(total, 0);
     return bytes;

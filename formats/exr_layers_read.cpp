@@ -1,14 +1,11 @@
 #include "formats/exr_layers.h"
 
-#include <ImfArray.h>
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
 #include <ImfIO.h>
 #include <ImfInputPart.h>
 #include <ImfMultiPartInputFile.h>
-#include <ImfMultiPartOutputFile.h>
-#include <ImfOutputPart.h>
 #include <ImfPartType.h>
 #include <ImfStringAttribute.h>
 #include <half.h>
@@ -17,38 +14,20 @@
 #include <cmath>
 #include <cstring>
 #include <stdexcept>
+#include <string_view>
 
 #include "formats/exr_header.h"
 #include "formats/exr_part_checks.h"
 #include "formats/findings.h"
+#include "formats/zip_blocks.h"
 #include "libcore/base/error.h"
+#include "libcore/base/parallel.h"
 
 namespace imgmesh {
 namespace {
 
-constexpr const char* kVersionName = "imgmesh:version";
-constexpr const char* kTopologyName = "imgmesh:topology";
-constexpr const char* kVersion = "1.0";
 // Deflate never packs more than this many bytes into one.
 constexpr std::uint64_t kMaxDeflateRatio = 1032;
-
-class MemoryOutput : public Imf::OStream {
-  public:
-    MemoryOutput() : OStream("layers") {}
-    void write(const char* data, int count) override {
-        const std::size_t end = position_ + static_cast<std::size_t>(count);
-        if (end > bytes.size()) bytes.resize(end);
-        std::memcpy(bytes.data() + position_, data, static_cast<std::size_t>(count));
-        position_ = end;
-    }
-    std::uint64_t tellp() override { return position_; }
-    void seekp(std::uint64_t position) override { position_ = position; }
-
-    std::vector<std::uint8_t> bytes;
-
-  private:
-    std::size_t position_ = 0;
-};
 
 class MemoryInput : public Imf::IStream {
   public:
@@ -69,54 +48,90 @@ class MemoryInput : public Imf::IStream {
     std::uint64_t position_ = 0;
 };
 
-void check_writable(const LayerPart& part) {
-    const float step = part.map.precision == WeightPrecision::kHalf ? kHalfWeightStep : kFloatWeightStep;
-    for (const PixelCoord& c : part.map.coords)
-        if (!in_simplex(c) || !on_grid(c, step) || (c.face == kNone && (c.u != 0 || c.v != 0)))
-            throw Error(ErrorCode::kInternal, cat("cannot store the weights (", c.u, ",", c.v, ") of face ",
-                                                  c.face, ": outside the simplex or no multiples of ", step));
-}
-
 // A slice over one member of an array of structures of `stride` bytes.
 Imf::Slice slice(Imf::PixelType type, const void* first, std::size_t stride, int width) {
     return Imf::Slice(type, static_cast<char*>(const_cast<void*>(first)), stride,
                       stride * static_cast<std::size_t>(width));
 }
 
-Imf::Header header_of(const LayerPart& part) {
-    Imf::Header header(part.map.width, part.map.height);
-    header.setName(part.name);
-    header.setType(Imf::SCANLINEIMAGE);
-    header.compression() = Imf::ZIP_COMPRESSION;
-    header.insert(kVersionName, Imf::StringAttribute(kVersion));
-    if (!part.topology.empty()) header.insert(kTopologyName, Imf::StringAttribute(part.topology));
-    const Imf::PixelType weight = part.map.precision == WeightPrecision::kHalf ? Imf::HALF : Imf::FLOAT;
-    header.channels().insert(kFace, Imf::Channel(Imf::UINT));
-    header.channels().insert(kU, Imf::Channel(weight));
-    header.channels().insert(kV, Imf::Channel(weight));
-    if (!part.visits.empty()) header.channels().insert(kVisits, Imf::Channel(Imf::UINT));
-    return header;
+// OpenEXR puts tiles together, and turns HALF into FLOAT.
+void read_tiles(Imf::InputPart& in, LayerPart& part) {
+    const int width = part.map.width;
+    Imf::FrameBuffer frame;
+    frame.insert(kFace, slice(Imf::UINT, &part.map.coords[0].face, sizeof(PixelCoord), width));
+    frame.insert(kU, slice(Imf::FLOAT, &part.map.coords[0].u, sizeof(PixelCoord), width));
+    frame.insert(kV, slice(Imf::FLOAT, &part.map.coords[0].v, sizeof(PixelCoord), width));
+    if (!part.visits.empty()) frame.insert(kVisits, slice(Imf::UINT, part.visits.data(), sizeof(Id), width));
+    in.setFrameBuffer(frame);
+    in.readPixels(0, part.map.height - 1);
 }
 
-void write_part(Imf::MultiPartOutputFile& file, int index, const LayerPart& part) {
-    const PixelMap& map = part.map;
-    const int width = map.width;
-    Imf::FrameBuffer frame;
-    frame.insert(kFace, slice(Imf::UINT, &map.coords[0].face, sizeof(PixelCoord), width));
-    std::vector<std::array<half, 2>> halves;
-    if (map.precision == WeightPrecision::kHalf) {
-        halves.reserve(map.coords.size());
-        for (const PixelCoord& c : map.coords) halves.push_back({half(c.u), half(c.v)});
-        frame.insert(kU, slice(Imf::HALF, &halves[0][0], sizeof(halves[0]), width));
-        frame.insert(kV, slice(Imf::HALF, &halves[0][1], sizeof(halves[0]), width));
-    } else {
-        frame.insert(kU, slice(Imf::FLOAT, &map.coords[0].u, sizeof(PixelCoord), width));
-        frame.insert(kV, slice(Imf::FLOAT, &map.coords[0].v, sizeof(PixelCoord), width));
+template <typename T>
+T take(const std::uint8_t*& in) {
+    T value;
+    std::memcpy(&value, in, sizeof value);
+    in += sizeof value;
+    return value;
+}
+
+// The rows from `first` on from the block that holds them: row by row, in each channel after channel, by
+// their names.
+void spread_block(const Imf::ChannelList& channels, const std::vector<std::uint8_t>& block, int first,
+                  int last, LayerPart& part) {
+    const std::uint8_t* in = block.data();
+    for (int y = first; y < last; ++y)
+        for (auto at = channels.begin(); at != channels.end(); ++at) {
+            const std::string_view name = at.name();
+            const std::span<PixelCoord> row = part.map.row(y);
+            if (name == kVisits || name == kFace) {
+                Id* visits =
+                    name == kVisits ? part.visits.data() + static_cast<std::size_t>(y) * row.size() : nullptr;
+                for (PixelCoord& c : row) (visits ? *visits++ : c.face) = take<Id>(in);
+                continue;
+            }
+            float PixelCoord::*const weight = name == kU ? &PixelCoord::u : &PixelCoord::v;
+            if (at.channel().type == Imf::HALF)
+                for (PixelCoord& c : row) {
+                    half value;
+                    value.setBits(take<std::uint16_t>(in));
+                    c.*weight = value;
+                }
+            else
+                for (PixelCoord& c : row) c.*weight = take<float>(in);
+        }
+}
+
+// OpenEXR finds the blocks and checks their lengths; they are unpacked on all threads. Compression is one of
+// those that check_part_header() lets through.
+void read_scanlines(Imf::InputPart& in, LayerPart& part) {
+    constexpr int kGroupBlocks = 128;  // read at a time, before they are unpacked
+    const Imf::ChannelList& channels = in.header().channels();
+    const int rows = in.header().compression() == Imf::ZIP_COMPRESSION ? 16 : 1, height = part.map.height,
+              blocks = (height + rows - 1) / rows;
+    std::size_t row_bytes = 0;
+    for (auto at = channels.begin(); at != channels.end(); ++at)
+        row_bytes += static_cast<std::size_t>(part.map.width) * (at.channel().type == Imf::HALF ? 2 : 4);
+    std::vector<std::vector<std::uint8_t>> packed(static_cast<std::size_t>(std::min(blocks, kGroupBlocks)));
+    for (int group = 0; group < blocks; group += kGroupBlocks) {
+        const int end = std::min(blocks, group + kGroupBlocks);
+        for (int b = group; b < end; ++b) {
+            const char* data = nullptr;
+            int size = 0;
+            in.rawPixelData(b * rows, data, size);
+            packed[static_cast<std::size_t>(b - group)].assign(data, data + size);
+        }
+        parallel_blocks(group, end, std::max(1, 16 / rows), [&](int first, int last) {
+            ZipUnpacker unpacker;
+            std::vector<std::uint8_t> block;
+            for (int b = first; b < last; ++b) {
+                const int top = b * rows, bottom = std::min(height, top + rows);
+                block.resize(row_bytes * static_cast<std::size_t>(bottom - top));
+                if (!unpacker.unpack(packed[static_cast<std::size_t>(b - group)], block))
+                    throw Iex::InputExc(cat("the block of row ", top, " cannot be unpacked"));
+                spread_block(channels, block, top, bottom, part);
+            }
+        });
     }
-    if (!part.visits.empty()) frame.insert(kVisits, slice(Imf::UINT, part.visits.data(), sizeof(Id), width));
-    Imf::OutputPart out(file, index);
-    out.setFrameBuffer(frame);
-    out.writePixels(map.height);
 }
 
 LayerPart read_part(Imf::MultiPartInputFile& file, int index, const ExpectedLayers& expected,
@@ -127,22 +142,17 @@ LayerPart read_part(Imf::MultiPartInputFile& file, int index, const ExpectedLaye
     LayerPart part{
         expected.parts[which], {expected.width, expected.height, {}, WeightPrecision::kFloat}, {}, {}};
     part.map.coords.resize(pixels);
-    Imf::FrameBuffer frame;  // OpenEXR turns HALF into FLOAT
-    frame.insert(kFace, slice(Imf::UINT, &part.map.coords[0].face, sizeof(PixelCoord), expected.width));
-    frame.insert(kU, slice(Imf::FLOAT, &part.map.coords[0].u, sizeof(PixelCoord), expected.width));
-    frame.insert(kV, slice(Imf::FLOAT, &part.map.coords[0].v, sizeof(PixelCoord), expected.width));
-    if (header.channels().findChannel(kVisits)) {
-        part.visits.resize(pixels);
-        frame.insert(kVisits, slice(Imf::UINT, part.visits.data(), sizeof(Id), expected.width));
-    }
+    if (header.channels().findChannel(kVisits)) part.visits.resize(pixels);
     if (const auto* topology = header.findTypedAttribute<Imf::StringAttribute>(kTopologyName))
         part.topology = topology->value();
     else
         findings.add("layers.unbound", cat("part ", part.name, " has no ", kTopologyName),
                      at_part(part.name));
     Imf::InputPart in(file, index);
-    in.setFrameBuffer(frame);
-    in.readPixels(0, expected.height - 1);
+    if (header.hasTileDescription())
+        read_tiles(in, part);
+    else
+        read_scanlines(in, part);
     const bool stored_as_half =
         header.channels()[kU].type == Imf::HALF && header.channels()[kV].type == Imf::HALF;
     finish_part(part, stored_as_half, expected.faces[which], expected.has_mask, findings);
@@ -185,25 +195,6 @@ std::vector<LayerPart> read_parts(std::span<const std::uint8_t> bytes, const Exp
 }
 
 }  // namespace
-
-std::vector<std::uint8_t> encode_exr_layers(const std::vector<LayerPart>& parts) {
-    std::vector<Imf::Header> headers;
-    for (const LayerPart& part : parts) {
-        check_writable(part);
-        headers.push_back(header_of(part));
-    }
-    try {
-        MemoryOutput stream;
-        {
-            Imf::MultiPartOutputFile file(stream, headers.data(), static_cast<int>(headers.size()),
-                                          /*overrideSharedAttributes=*/false, /*numThreads=*/0);
-            for (std::size_t i = 0; i < parts.size(); ++i) write_part(file, static_cast<int>(i), parts[i]);
-        }  // the chunk tables are written on destruction
-        return std::move(stream.bytes);
-    } catch (const Iex::BaseExc& error) {
-        throw Error(ErrorCode::kInternal, cat("OpenEXR cannot encode the layers: ", error.what()));
-    }
-}
 
 std::vector<LayerPart> decode_exr_layers(std::span<const std::uint8_t> bytes, const ExpectedLayers& expected,
                                          Findings& findings) {
