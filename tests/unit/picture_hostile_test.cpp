@@ -4,6 +4,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <cstring>
+
 #include "formats/image_io.h"
 #include "formats/picture_probe.h"
 #include "tests/support/picture_files.h"
@@ -268,6 +270,18 @@ TEST_CASE("hostile: paths that lead to no picture") {
     save(folder / "secret.tif", tif);
     ::chmod((folder / "secret.tif").c_str(), 0);
     if (::geteuid() != 0) CHECK(error_of([&] { read_image(folder / "secret.tif"); }) == ErrorCode::kIo);
+}
+
+// Found by fuzzing: OpenImageIO goes to where the header says, also before the file's begin.
+TEST_CASE("hostile: a BMP whose pixels are outside the file") {
+    const TemporaryFolder folder;
+    const Bytes good = sample_file(folder, "a.bmp");
+    for (const std::uint32_t offset : {0xFFFFFFFFu, 0xFFFFFF00u, 0x80000000u, 0x7FFFFFFFu, 100000u}) {
+        Bytes file = good;
+        std::memcpy(file.data() + 10, &offset, 4);
+        save(folder / "r.bmp", file);
+        CHECK(error_of([&] { read_image(folder / "r.bmp"); }) == ErrorCode::kBadFile);
+    }
 }
 
 // Found by fuzzing: OpenImageIO reads runs of indices into a palette that is not there.
