@@ -110,7 +110,7 @@ void advise_on_level(const json& document, const Asset& asset, std::size_t k, Fi
         if (name != "POSITION" && name != "COLOR_0" && name != "TEXCOORD_0" && !name.starts_with('_'))
             findings.add("gltf.foreign", cat("attribute ", name, " is not read"),
                          at_pointer(at_mesh + "/primitives/0/attributes/" + pointer_token(name)));
-    findings.attempt(at_mesh, [&] { advise_on_texture(document, asset, k, findings); });
+    advise_on_texture(document, asset, k, findings);
     if (k == 0) return;
     const AssetLevel &finer = asset.levels[k - 1], &level = asset.levels[k];
     if (finer.is_sound && (level.faces > finer.faces || level.error < finer.error))

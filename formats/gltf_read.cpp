@@ -260,13 +260,12 @@ void read_levels(const json& document, const tinygltf::Model& model, const Conta
         }) && findings.attempt(mesh < 0 ? at_node : at_mesh, [&] {
             read_primitive(document, model, mesh, asset, level);
         });
-        if (k == 0 && level.is_sound)
-            findings.attempt(at_mesh + "/primitives/0/material", [&] {
-                const auto texture = texture_view(document, static_cast<std::uint64_t>(mesh));
-                if (!texture) return;
-                asset.texture = view_range(model, texture->view, asset.buffer_length);
-                asset.texture_type = texture->type;
-            });
+        level.is_sound = level.is_sound && findings.attempt(at_mesh, [&] {
+            const auto texture = texture_view(document, static_cast<std::uint64_t>(mesh));
+            if (!texture || k > 0) return;
+            asset.texture = view_range(model, texture->view, asset.buffer_length);
+            asset.texture_type = texture->type;
+        });
         asset.levels.push_back(std::move(level));
         asset.places.push_back({node, static_cast<std::uint64_t>(std::max(mesh, 0)), at_mesh});
     }

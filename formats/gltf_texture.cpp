@@ -20,25 +20,45 @@ constexpr const char* kJpeg = "image/jpeg";
 // OpenGL's numbers. At the sides the picture's own pixels go on: the other side's do not mix in.
 constexpr int kClampToEdge = 33071, kLinear = 9729, kLinearMipmapLinear = 9987;
 
-// document[name][index]. `index` is that of `object`'s member of the name `key`.
-const json& referred(const json& document, const char* name, const json& object, const char* key) {
-    const std::uint64_t index = unsigned_member(object, key, "gltf.structure");
+// An object of the document and where it stands.
+struct Object {
+    const json& value;
+    std::string pointer;
+
+    Object member(const char* name) const {
+        const json* found = find(value, name);
+        return {found ? *found : kNothing, cat(pointer, '/', name)};
+    }
+    explicit operator bool() const { return !value.is_null(); }
+
+  private:
+    static inline const json kNothing;
+};
+
+// Which one of the list `name` an index means.
+Object referred(const json& document, const char* name, const Object& index) {
+    if (!index.value.is_number_unsigned())
+        refuse("gltf.structure", cat("an index of ", name, " is not a whole number >= 0"),
+               at_pointer(index.pointer));
+    const auto i = index.value.get<std::uint64_t>();
     const json* list = find(document, name);
     const std::size_t size = list && list->is_array() ? list->size() : 0;
-    if (index >= size) refuse("gltf.index", cat(key, " ", index, " of ", size), at_pointer(cat('/', name)));
-    return (*list)[index];
+    if (i >= size) refuse("gltf.index", cat(i, " of ", size, " ", name), at_pointer(index.pointer));
+    return {(*list)[i], cat('/', name, '/', i)};
 }
 
-const json& first_primitive(const json& document, std::uint64_t mesh) {
-    return document["meshes"][mesh]["primitives"][0];  // a sound level has it
+// That of a sound level.
+Object first_primitive(const json& document, std::uint64_t mesh) {
+    return {document["meshes"][mesh]["primitives"][0], cat("/meshes/", mesh, "/primitives/0")};
 }
 
 // The baseColorTexture of a primitive's material; null for none.
-const json* base_texture(const json& document, const json& primitive) {
-    if (!find(primitive, "material")) return nullptr;
-    const json* roughness =
-        find(referred(document, "materials", primitive, "material"), "pbrMetallicRoughness");
-    return roughness ? find(*roughness, "baseColorTexture") : nullptr;
+Object base_texture(const json& document, const Object& primitive) {
+    const Object material = primitive.member("material");
+    if (!material) return material;
+    return referred(document, "materials", material)
+        .member("pbrMetallicRoughness")
+        .member("baseColorTexture");
 }
 
 }  // namespace
@@ -65,35 +85,37 @@ void add_texture(json& document, int view, const std::string& type, bool cut_out
 }
 
 std::optional<TextureView> texture_view(const json& document, std::uint64_t mesh) {
-    const json* info = base_texture(document, first_primitive(document, mesh));
+    const Object info = base_texture(document, first_primitive(document, mesh));
     if (!info) return {};
-    const json& texture = referred(document, "textures", *info, "index");
-    if (!find(texture, "source")) return {};  // a format that an extension defines
-    const json& image = referred(document, "images", texture, "source");
-    const json* type = find(image, "mimeType");
-    if (!find(image, "bufferView") || !type || (*type != kPng && *type != kJpeg)) return {};
-    return TextureView{unsigned_member(image, "bufferView", "gltf.structure"), type->get<std::string>()};
+    const Object source = referred(document, "textures", info.member("index")).member("source");
+    if (!source) return {};  // a format that an extension defines
+    const Object image = referred(document, "images", source);
+    const Object view = image.member("bufferView"), type = image.member("mimeType");
+    if (!view || (type.value != kPng && type.value != kJpeg)) return {};
+    referred(document, "bufferViews", view);
+    return TextureView{view.value.get<std::uint64_t>(), type.value.get<std::string>()};
 }
 
 void advise_on_texture(const json& document, const Asset& asset, std::size_t k, Findings& findings) {
     const std::uint64_t mesh = asset.places[k].mesh;
-    const json& primitive = first_primitive(document, mesh);
-    const json& attributes = primitive["attributes"];
-    const std::string pointer = cat("/meshes/", mesh, "/primitives/0/");
-    const auto tell = [&](FindingCode code, const char* text, const char* place) {
-        findings.add(code, cat("level ", k, text), at_pointer(pointer + place));
+    const Object primitive = first_primitive(document, mesh);
+    const Object attributes = primitive.member("attributes"), texture = base_texture(document, primitive);
+    const bool has_color = attributes.value.contains("COLOR_0");
+    const auto tell = [&](FindingCode code, const char* text, const Object& place) {
+        findings.add(code, cat("level ", k, text), at_pointer(place.pointer));
     };
-    const bool has_color = attributes.contains("COLOR_0"), has_coords = attributes.contains(kTexcoord);
-    if (!base_texture(document, primitive)) {
-        if (attributes.contains(kHiddenColor) && !has_color)
-            tell("gltf.texture", " has no texture, and its colour where viewers do not look", "attributes");
+    if (!texture) {
+        if (attributes.value.contains(kHiddenColor) && !has_color)
+            tell("gltf.texture", " has no texture, and its colour where viewers do not look", attributes);
         return;
     }
     if (has_color)
-        tell("gltf.texture", " has a texture, and COLOR_0, by which viewers multiply it", "attributes");
-    if (!has_coords) tell("gltf.texture", " has a texture without TEXCOORD_0", "attributes");
+        tell("gltf.texture", " has a texture, and COLOR_0, by which viewers multiply it", attributes);
+    if (!attributes.value.contains(kTexcoord))
+        tell("gltf.texture", " has a texture without TEXCOORD_0", attributes);
     if (!texture_view(document, mesh))
-        tell("gltf.foreign", " has a texture that is no PNG or JPEG in a bufferView", "material");
+        tell("gltf.foreign", " has a texture that is no PNG or JPEG in a bufferView",
+             primitive.member("material"));
 }
 
 }  // namespace imgmesh

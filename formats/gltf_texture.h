@@ -27,10 +27,11 @@ struct TextureView {
 
 /// The texture of a mesh's first primitive, as add_texture makes it; none where there is no texture, or one
 /// of another kind (a file beside, another format), which only viewers look at. Throws FindingError for an
-/// index beyond its array.
+/// index that is none or beyond its array.
 std::optional<TextureView> texture_view(const nlohmann::json& document, std::uint64_t mesh);
 
-/// What a validator says of a level's texture: whether viewers show it as it is.
+/// What a validator says of a level's texture: whether viewers show it as it is. `level` is sound, and so
+/// is what texture_view looks at.
 void advise_on_texture(const nlohmann::json& document, const Asset& asset, std::size_t level,
                        Findings& findings);
 

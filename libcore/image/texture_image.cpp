@@ -23,41 +23,77 @@ std::array<int, 3> color_channels(const Image& image) {
     return {grey, grey, grey};
 }
 
-// Gives `pixel` the mean colour of its neighbours that have one; whether there are any.
-bool mix_neighbours(Image& out, const std::vector<std::uint8_t>& has_color, int x, int y) {
-    Vec3f sum(0, 0, 0);
-    float count = 0;
-    for (int v = std::max(y - 1, 0); v <= std::min(y + 1, out.height - 1); ++v)
-        for (int u = std::max(x - 1, 0); u <= std::min(x + 1, out.width - 1); ++u) {
-            if (!has_color[static_cast<std::size_t>(v) * static_cast<std::size_t>(out.width) +
-                           static_cast<std::size_t>(u)])
-                continue;
-            sum += Eigen::Map<const Vec3f>(out.pixel(u, v));
-            ++count;
-        }
-    if (count > 0) Eigen::Map<Vec3f>(out.pixel(x, y)) = sum / count;
-    return count > 0;
-}
+constexpr std::uint8_t kClear = 0, kColored = 1, kNext = 2;  // what a pixel is; kNext: of the ring to come
 
-// Ring by ring, each from those before alone: no order of pixels counts.
-void spread_colors(Image& out, const Mask& mask) {
-    std::vector<std::uint8_t> has_color = mask.inside;
-    for (int ring = 0; ring < kSpread; ++ring) {
-        std::vector<std::size_t> added;
-        for (std::size_t i = 0; i < has_color.size(); ++i) {
-            const auto width = static_cast<std::size_t>(out.width);
-            if (!has_color[i] &&
-                mix_neighbours(out, has_color, static_cast<int>(i % width), static_cast<int>(i / width)))
-                added.push_back(i);
-        }
-        for (const std::size_t i : added) has_color[i] = 1;
+class Spread {
+  public:
+    Spread(Image& out, const Mask& mask) : out_(out), state_(mask.inside) {
+        for (std::uint8_t& state : state_) state = state ? kColored : kClear;
     }
+
+    // Ring by ring, each from those before alone: no order of pixels counts.
+    void run() {
+        std::vector<std::size_t> ring;
+        for (std::size_t i = 0; i < state_.size(); ++i) {
+            bool touches = false;
+            if (state_[i] == kClear) around(i, [&](std::size_t n) { touches |= state_[n] == kColored; });
+            if (touches) ring.push_back(i);
+        }
+        for (int k = 0; k < kSpread && !ring.empty(); ++k) {
+            for (const std::size_t i : ring) state_[i] = kNext;
+            for (const std::size_t i : ring) mix(i);
+            for (const std::size_t i : ring) state_[i] = kColored;
+            std::vector<std::size_t> next;
+            for (const std::size_t i : ring)
+                around(i, [&](std::size_t n) {
+                    if (state_[n] != kClear) return;
+                    state_[n] = kNext;
+                    next.push_back(n);
+                });
+            ring = std::move(next);
+        }
+        for (const std::size_t i : ring) state_[i] = kClear;
+    }
+
+    bool reached(std::size_t i) const { return state_[i] == kColored; }
+
+  private:
+    // Calls visit(j) for the pixels around pixel i, and for itself.
+    template <typename Visit>
+    void around(std::size_t i, Visit&& visit) const {
+        const auto width = static_cast<std::size_t>(out_.width),
+                   height = static_cast<std::size_t>(out_.height);
+        const std::size_t x = i % width, y = i / width;
+        for (std::size_t v = y == 0 ? 0 : y - 1; v <= std::min(y + 1, height - 1); ++v)
+            for (std::size_t u = x == 0 ? 0 : x - 1; u <= std::min(x + 1, width - 1); ++u)
+                visit(v * width + u);
+    }
+
+    // The mean colour of the neighbours that have one; there are some.
+    void mix(std::size_t i) {
+        Vec3f sum(0, 0, 0);
+        float count = 0;
+        around(i, [&](std::size_t n) {
+            if (state_[n] != kColored) return;
+            sum += Eigen::Map<const Vec3f>(out_.data.data() + 4 * n);
+            ++count;
+        });
+        Eigen::Map<Vec3f>(out_.data.data() + 4 * i) = sum / count;
+    }
+
+    Image& out_;
+    std::vector<std::uint8_t> state_;
+};
+
+void spread_colors(Image& out, const Mask& mask) {
+    Spread spread(out, mask);
+    spread.run();
     Vec3d sum(0, 0, 0);
-    for (std::size_t i = 0; i < has_color.size(); ++i)
+    for (std::size_t i = 0; i < mask.inside.size(); ++i)
         if (mask.inside[i]) sum += Eigen::Map<const Vec3f>(out.data.data() + 4 * i).cast<double>();
     const Vec3f mean = (sum / static_cast<double>(std::max<std::int64_t>(mask.count(), 1))).cast<float>();
-    for (std::size_t i = 0; i < has_color.size(); ++i)
-        if (!has_color[i]) Eigen::Map<Vec3f>(out.data.data() + 4 * i) = mean;
+    for (std::size_t i = 0; i < mask.inside.size(); ++i)
+        if (!spread.reached(i)) Eigen::Map<Vec3f>(out.data.data() + 4 * i) = mean;
 }
 
 }  // namespace

@@ -14,6 +14,7 @@
 #include "formats/validate.h"
 #include "libcore/base/error.h"
 #include "tests/support/random_mesh_image.h"
+#include "tests/support/small_pictures.h"
 #include "tests/support/temporary_folder.h"
 
 namespace imgmesh::fuzz {
@@ -131,7 +132,9 @@ std::vector<Bytes> seeds(Target target) {
                 const bool mask = ++seed % 2 == 0;
                 MeshImage image = random_mesh_image(17, 11, 1 + int(seed % 3), precision, mask, seed);
                 if (mask) image.visits.assign(image.levels[0].map.coords.size(), 3);
-                write_container(folder / "x.glb", image, {mode, true});
+                ContainerOptions options{mode, true};
+                if (!mask) options.texture = {red_png(), texture_coords(image)};
+                write_container(folder / "x.glb", image, options);
                 all.push_back(read_file(folder / "x.glb", 1 << 24));
             }
     }

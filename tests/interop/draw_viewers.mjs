@@ -18,8 +18,8 @@ try {
 }
 
 const types = {
-  '.html': 'text/html', '.js': 'text/javascript', '.wasm': 'application/wasm', '.glb': 'model/gltf-binary',
-  '.gltf': 'model/gltf+json', '.png': 'image/png', '.jpg': 'image/jpeg',
+  '.html': 'text/html', '.js': 'text/javascript', '.mjs': 'text/javascript', '.wasm': 'application/wasm',
+  '.glb': 'model/gltf-binary', '.gltf': 'model/gltf+json', '.png': 'image/png', '.json': 'application/json',
 };
 
 function serve(roots) {

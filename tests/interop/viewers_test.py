@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""viewers_test.py BIN NODE CHROMIUM FOLDER: three.js and Babylon.js in headless Chromium show containers as they are
-meant, by the pages of docs/engines. FOLDER gets the containers and the screenshots.
+"""viewers_test.py BIN NODE CHROMIUM FOLDER: three.js, Babylon.js and PixiJS in headless Chromium show containers
+as they are meant, by the pages of docs/engines. FOLDER gets the containers and the screenshots.
 
 The expected picture is drawn here, from the container without Draco: a viewer interpolates COLOR_0 in linear light
 over each triangle, or takes the texture's light at TEXCOORD_0, between its pixels by bilinear interpolation. A
@@ -23,7 +23,6 @@ from read_container import read_accessor, read_gltf
 HERE = pathlib.Path(__file__).resolve().parent
 PAGES = HERE.parents[1] / "docs" / "engines"
 DATA = HERE.parent / "data"
-VIEWERS = ("three", "babylon")
 ZOOM = 2
 MIN_PSNR = 40.0
 # Upside down or mirrored the photograph must be far from the expectation, or the comparison would tell nothing.
@@ -36,7 +35,7 @@ ALPHA_MARGIN = 0.02
 
 @dataclasses.dataclass
 class Expected:
-    colour: np.ndarray  # linear RGB of every sample, height x width x 3
+    codes: np.ndarray  # sRGB of every sample, 0 to 255, height x width x 3
     inside: np.ndarray  # in the mesh, away from its outline
     outside: np.ndarray  # not in the mesh, away from its outline
 
@@ -100,8 +99,8 @@ def mesh_of(path):
     return position, faces, values, texture, image["width"], image["height"]
 
 
-def expected_of(path):
-    position, faces, vertex_values, texture, width, height = mesh_of(path)
+def rasterise(position, faces, vertex_values, width, height):
+    """The values at every sample, whether the mesh covers it, and whether it is near to the outline."""
     shape = (ZOOM * height, ZOOM * width)
     values, covered, near = np.zeros((*shape, vertex_values.shape[1])), np.zeros(shape, bool), np.zeros(shape, bool)
     for face in faces:
@@ -124,12 +123,30 @@ def expected_of(path):
         along = edge[1] - edge[0]
         t = np.clip(((x - edge[0][0]) * along[0] + (y - edge[0][1]) * along[1]) / (along @ along), 0, 1)
         near[block] |= np.hypot(x - edge[0][0] - t * along[0], y - edge[0][1] - t * along[1]) < OUTLINE_MARGIN
+    return values, covered, near
+
+
+def expected_of(path):
+    position, faces, vertex_values, texture, width, height = mesh_of(path)
+    values, covered, near = rasterise(position, faces, vertex_values, width, height)
     if texture is not None:
         values = bilinear(texture, values)
         # The material's alphaMode is MASK: below 1/2 nothing is drawn.
         near |= np.abs(values[..., 3] - 0.5) < ALPHA_MARGIN
         covered &= values[..., 3] >= 0.5
-    return Expected(values[..., :3], covered & ~near, ~covered & ~near)
+    return Expected(srgb_codes(values[..., :3]), covered & ~near, ~covered & ~near)
+
+
+def expected_of_sprite(path):
+    """PixiJS knows no linear light: it interpolates the picture's numbers."""
+    sheet = json.loads(path.read_text())
+    (frame,) = sheet["frames"].values()
+    size = sheet["meta"]["size"]
+    coords = np.array(frame["verticesUV"]) / [size["w"], size["h"]]
+    position = np.array(frame["vertices"]) - 0.5
+    values, covered, near = rasterise(position, frame["triangles"], coords, size["w"], size["h"])
+    picture = np.asarray(Image.open(path.parent / sheet["meta"]["image"]).convert("RGB"), float)
+    return Expected(np.round(bilinear(picture, values)), covered & ~near, ~covered & ~near)
 
 
 def psnr(codes, expected, where):
@@ -144,17 +161,16 @@ def compare(path, expected, is_photograph):
         return 0.0, [f"the screenshot has {shot.size} pixels"]
     codes = np.asarray(shot, float)
     alpha = codes[..., 3]
-    want = srgb_codes(expected.colour)
     problems = []
     for missed, text in ((expected.inside & (alpha != 255), "inside the mesh are not drawn"),
                          (expected.outside & (alpha != 0), "outside the mesh are drawn")):
         if missed.any():
             problems.append(f"{missed.sum()} samples {text}")
-    reached = psnr(codes[..., :3], want, expected.inside)
+    reached = psnr(codes[..., :3], expected.codes, expected.inside)
     if not reached >= MIN_PSNR:
         problems.append(f"PSNR {reached:.1f} dB, expected {MIN_PSNR:.0f}")
     for name, turned in (("upside down", codes[::-1]), ("mirrored", codes[:, ::-1])):
-        if is_photograph and psnr(turned[..., :3], want, expected.inside) > MAX_PSNR_TURNED:
+        if is_photograph and psnr(turned[..., :3], expected.codes, expected.inside) > MAX_PSNR_TURNED:
             problems.append(f"{name} it would do as well")
     return reached, problems
 
@@ -180,6 +196,7 @@ class Case:
     file: str
     plain: str  # the same without Draco
     is_photograph: bool = True
+    viewers: tuple = ("three", "babylon")
 
 
 def make_cases(bin_folder, folder):
@@ -203,6 +220,9 @@ def make_cases(bin_folder, folder):
     run("imgmesh-warp", "draco-texture-plain.glb", "--handle", "60,50:6,-3", "-o", "warped-texture.gltf")
     run("imgmesh-convert", "warped-texture.gltf", "-o", "warped-texture-plain.glb", "--draco", "none")
     cases.append(Case("warped-texture.gltf", "warped-texture-plain.glb"))
+    for name in ("draco", "cut-out"):
+        run("imgmesh-convert", f"{name}.glb", "-o", f"{name}.json", "--image", "photograph.png")
+        cases.append(Case(f"{name}.json", f"{name}.json", viewers=("pixi",)))
     return cases
 
 
@@ -213,14 +233,14 @@ def main():
     make_pictures(folder)
     cases = make_cases(bin_folder.resolve(), folder)
     jobs = [{"page": f"{viewer}.html", "file": case.file, "zoom": ZOOM, "output": f"{case.file}-{viewer}.png"}
-            for viewer in VIEWERS for case in cases]
+            for case in cases for viewer in case.viewers]
     (folder / "jobs.json").write_text(json.dumps(jobs))
     draw = [node, HERE / "draw_viewers.mjs", chromium, PAGES, folder, folder / "jobs.json"]
     subprocess.run(draw, check=True, timeout=300)
     failed = False
     for case in cases:
-        expected = expected_of(folder / case.plain)
-        for viewer in VIEWERS:
+        expected = (expected_of_sprite if case.plain.endswith(".json") else expected_of)(folder / case.plain)
+        for viewer in case.viewers:
             reached, problems = compare(folder / f"{case.file}-{viewer}.png", expected, case.is_photograph)
             failed |= bool(problems)
             print(f"{viewer:8} {case.file:19} {reached:5.1f} dB", *problems, sep="  ")

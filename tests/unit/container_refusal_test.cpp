@@ -12,6 +12,7 @@
 #include "formats/finding_codes.h"
 #include "formats/glb.h"
 #include "formats/gltf_asset.h"
+#include "formats/validate.h"
 #include "libcore/base/error.h"
 #include "tests/support/random_mesh_image.h"
 #include "tests/support/small_pictures.h"
@@ -155,6 +156,15 @@ TEST_CASE("refusals: the texture; one of another kind is for viewers alone") {
         d["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"]["index"] = 1;
     }) == "gltf.index");
     CHECK(file.with([](json& d) { d["textures"][0]["source"] = 7; }) == "gltf.index");
+    // A level that is not looked at for the picture counts as well; a validator tells it once.
+    for (const std::size_t k : {0u, 1u}) {
+        std::vector<Issue> issues;
+        CHECK(file.with([&](json& d) { d["meshes"][k]["primitives"][0]["material"] = 7; },
+                        [&] { issues = validate_container(file.path); }) == "gltf.index");
+        REQUIRE(issues.size() == 1);
+        CHECK(issues[0].finding->code == "gltf.index");
+        CHECK(issues[0].place.pointer == cat("/meshes/", k, "/primitives/0/material"));
+    }
     CHECK(file.with([](json& d) { d.erase("images"); }) == "gltf.index");
     CHECK(file.with([](json& d) { d["images"] = {{"0", 1}}; }) == "gltf.index");
     CHECK(file.with([](json& d) { d["images"][0]["bufferView"] = 77; }) == "gltf.index");
@@ -166,6 +176,23 @@ TEST_CASE("refusals: the texture; one of another kind is for viewers alone") {
     CHECK(file.with([&](json& d) { texcoord(d)["byteOffset"] = 4; }) == "gltf.range");
     CHECK(file.with([](json& d) { d["meshes"][0]["primitives"][0]["attributes"].erase("_COLOR"); }) ==
           "gltf.attribute");
+    // What viewers make of it is for a validator to tell.
+    const auto advice = [&](const auto& change) {
+        std::set<std::string_view> codes;
+        file.with(change, [&] {
+            for (const Issue& issue : validate_container(file.path)) codes.insert(issue.finding->code);
+        });
+        return codes;
+    };
+    using Codes = std::set<std::string_view>;
+    const auto attributes = [](json& d) -> json& { return d["meshes"][0]["primitives"][0]["attributes"]; };
+    CHECK(advice([&](json& d) { attributes(d)["COLOR_0"] = attributes(d)["_COLOR"]; }) ==
+          Codes{"gltf.texture"});
+    CHECK(advice([&](json& d) { attributes(d).erase("TEXCOORD_0"); }) ==
+          Codes{"gltf.texture", "gltf.unused"});
+    CHECK(advice([&](json& d) { d["materials"][0].erase("pbrMetallicRoughness"); }) == Codes{"gltf.texture"});
+    CHECK(advice([&](json& d) { d["images"][0]["mimeType"] = "image/ktx2"; }) == Codes{"gltf.foreign"});
+    CHECK(advice([&](json& d) { d["images"][0]["mimeType"] = "image/jpeg"; }) == Codes{"texture.data"});
     CHECK_FALSE(has_texture([](json& d) { d["materials"][0].erase("pbrMetallicRoughness"); }));
     CHECK_FALSE(has_texture([](json& d) { d["textures"][0].erase("source"); }));
     CHECK_FALSE(has_texture([](json& d) { d["images"][0]["mimeType"] = "image/ktx2"; }));

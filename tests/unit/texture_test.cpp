@@ -1,5 +1,8 @@
 #include <doctest/doctest.h>
 
+#include <cstdlib>
+#include <random>
+
 #include "libcore/base/error.h"
 #include "libcore/image/color.h"
 #include "libcore/image/texture_image.h"
@@ -71,6 +74,49 @@ TEST_CASE("texture: colours spread ring by ring, and the rest has their mean") {
     wide.data.front() = wide.data.back() = 1;
     CHECK(Vec3f(texture_image(wide, ends).data.data() + 4 * 20) == Vec3f(0.5f, 0, 0.5f));
     CHECK(Vec3f(texture_image(wide, ends).data.data() + 4 * 8) == Vec3f(1, 0, 0));
+}
+
+// The definition, pixel by pixel over the whole picture for each ring.
+TEST_CASE("texture: colours spread as they are said to, out of masks of any shape") {
+    std::mt19937 random(4);
+    for (const int share : {2, 30, 400}) {
+        const int width = 37, height = 29;
+        Image image = make_image(width, height, 3);
+        Mask mask{width, height, {}};
+        for (std::size_t i = 0; i < image.pixel_count(); ++i)
+            mask.inside.push_back(random() % static_cast<unsigned>(share) == 0);
+        mask.inside[5] = 1;
+        for (float& v : image.data) v = static_cast<float>(random() % 256) / 255;
+        std::vector<Vec3f> color(image.pixel_count());
+        std::vector<std::uint8_t> colored = mask.inside;
+        Vec3d sum(0, 0, 0);
+        for (std::size_t i = 0; i < color.size(); ++i) {
+            color[i] = Vec3f(image.data.data() + 3 * i);
+            if (mask.inside[i]) sum += color[i].cast<double>();
+        }
+        for (int ring = 0; ring < 8; ++ring) {
+            const std::vector<std::uint8_t> before = colored;
+            for (int i = 0; i < width * height; ++i) {
+                Vec3f near(0, 0, 0);
+                float count = 0;
+                for (int j = 0; j < width * height; ++j) {
+                    if (!before[static_cast<std::size_t>(j)] || std::abs(i % width - j % width) > 1 ||
+                        std::abs(i / width - j / width) > 1)
+                        continue;
+                    near += color[static_cast<std::size_t>(j)];
+                    ++count;
+                }
+                if (before[static_cast<std::size_t>(i)] || count == 0) continue;
+                color[static_cast<std::size_t>(i)] = near / count;
+                colored[static_cast<std::size_t>(i)] = 1;
+            }
+        }
+        const Image texture = texture_image(image, mask);
+        for (std::size_t i = 0; i < color.size(); ++i) {
+            const Vec3f want = colored[i] ? color[i] : Vec3f((sum / double(mask.count())).cast<float>());
+            CHECK(Vec3f(texture.data.data() + 4 * i) == want);
+        }
+    }
 }
 
 TEST_CASE("texture: a picture without colour has none") {
