@@ -6,6 +6,10 @@
 #include <cstdint>
 #include <cstring>
 
+#if defined(__SSE2__)
+#include <emmintrin.h>
+#endif
+
 namespace imgmesh {
 
 using Float8 = float __attribute__((vector_size(32)));
@@ -23,6 +27,22 @@ IMGMESH_INLINE Float8 load8(const float* p) {
 /// p[0], p[2], ... p[14]; reads p[15] too.
 IMGMESH_INLINE Float8 load8_every_other(const float* p) {
     return __builtin_shufflevector(load8(p), load8(p + 8), 0, 2, 4, 6, 8, 10, 12, 14);
+}
+
+/// Bit k is set where values[k] is `wanted`, for 0 <= k < 12.
+inline unsigned match12(const std::uint32_t* values, std::uint32_t wanted) {
+#if defined(__SSE2__)
+    const __m128i w = _mm_set1_epi32(static_cast<int>(wanted));
+    const auto four = [&](int k) {
+        return _mm_cmpeq_epi32(_mm_loadu_si128(reinterpret_cast<const __m128i*>(values + k)), w);
+    };
+    const __m128i eight = _mm_packs_epi32(four(0), four(4)), last = _mm_packs_epi32(four(8), __m128i{});
+    return static_cast<unsigned>(_mm_movemask_epi8(_mm_packs_epi16(eight, last)));
+#else
+    unsigned found = 0;
+    for (unsigned k = 0; k < 12; ++k) found |= static_cast<unsigned>(values[k] == wanted) << k;
+    return found;
+#endif
 }
 
 /// rows[i][j] <-> rows[j][i].

@@ -5,6 +5,7 @@
 #include <array>
 #include <bit>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "libcore/base/types.h"
@@ -26,36 +27,89 @@ class BucketQueue {
         return static_cast<int>(std::bit_cast<std::uint32_t>(cost) >> kShift);
     }
 
+    BucketQueue() { clear(); }
+
     void push(float cost, const QueuedEdge& edge) {
-        const int bucket = bucket_of(cost);
-        buckets_[static_cast<std::size_t>(bucket)].edges.push_back(edge);
-        lowest_ = std::min(lowest_, bucket);
+        const int number = bucket_of(cost);
+        Bucket& bucket = buckets_[static_cast<std::size_t>(number)];
+        if (bucket.filled == kChunk) {
+            const Id chunk = take_chunk();
+            if (bucket.last == kNone)
+                bucket.first = chunk;
+            else
+                chunk_at(bucket.last).next = chunk;
+            bucket.last = chunk;
+            bucket.filled = 0;
+        }
+        chunk_at(bucket.last).edges[bucket.filled++] = edge;
+        lowest_ = std::min(lowest_, number);
         ++size_;
     }
     bool empty() const { return size_ == 0; }
     /// The bucket that pop() would take from; the queue must not be empty.
     int lowest_bucket() {
-        while (buckets_[static_cast<std::size_t>(lowest_)].edges.empty()) ++lowest_;
+        while (buckets_[static_cast<std::size_t>(lowest_)].first == kNone) ++lowest_;
         return lowest_;
     }
     QueuedEdge pop() {
         Bucket& bucket = buckets_[static_cast<std::size_t>(lowest_bucket())];
-        const QueuedEdge edge = bucket.edges[bucket.next++];
-        if (bucket.next == bucket.edges.size()) bucket = {};  // its memory goes to the buckets that fill next
+        const Id number = bucket.first;
+        Chunk& chunk = chunk_at(number);
+        const QueuedEdge edge = chunk.edges[bucket.taken++];
         --size_;
+        if (number == bucket.last ? bucket.taken == bucket.filled : bucket.taken == kChunk) {
+            bucket.first = number == bucket.last ? kNone : chunk.next;
+            bucket.taken = 0;
+            if (bucket.first == kNone) bucket = {};
+            chunk.next = spare_;
+            spare_ = number;
+        }
         return edge;
+    }
+    /// Keeps its memory.
+    void clear() {
+        buckets_.fill({});
+        spare_ = kNone;
+        used_ = 0;
+        lowest_ = kBuckets;
+        size_ = 0;
     }
 
   private:
-    struct Bucket {
-        std::vector<QueuedEdge> edges;
-        std::size_t next = 0;  // the first that has not been handed out
+    // Buckets are lists of chunks, and chunks that are worked off are used again: what the queue touches
+    // stays small and near.
+    static constexpr std::uint16_t kChunk = 15;
+    static constexpr Id kChunksPerBlock = 256;
+    struct Chunk {
+        std::array<QueuedEdge, kChunk> edges;
+        Id next;
     };
+    struct Bucket {
+        Id first = kNone, last = kNone;
+        std::uint16_t taken = 0, filled = kChunk;  // of the first, of the last chunk
+    };
+
+    Chunk& chunk_at(Id number) { return blocks_[number / kChunksPerBlock][number % kChunksPerBlock]; }
+    Id take_chunk() {
+        if (spare_ != kNone) {
+            const Id number = spare_;
+            spare_ = chunk_at(number).next;
+            return number;
+        }
+        if (used_ == blocks_.size() * kChunksPerBlock)
+            blocks_.push_back(std::make_unique_for_overwrite<Chunk[]>(kChunksPerBlock));
+        return static_cast<Id>(used_++);
+    }
+
     // Sign and exponent are 9 bits, so 3 bits of the mantissa remain: 2048 buckets for the finite,
     // non-negative floats.
     static constexpr int kShift = 32 - 9 - 3;
-    std::array<Bucket, (1u << 31 >> kShift)> buckets_;
-    int lowest_ = 0;
+    static constexpr int kBuckets = 1u << 31 >> kShift;
+    std::array<Bucket, kBuckets> buckets_;
+    std::vector<std::unique_ptr<Chunk[]>> blocks_;
+    Id spare_ = kNone;      // the first of the list of chunks that are free again
+    std::size_t used_ = 0;  // chunks taken so far, those that are free again with them
+    int lowest_ = kBuckets;
     std::size_t size_ = 0;
 };
 

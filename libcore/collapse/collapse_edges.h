@@ -34,7 +34,9 @@ struct CollapseParams {
     /// pixels on
     bool rebuild_quadrics = false;
     bool total_priority = false;  ///< edges go by the total error (the paper), not by what a merge adds to it
-    bool tiles = true;  ///< while the goal is far, edges go tile by tile: faster, but seams show in the order
+    /// while the goal is far, edges go tile by tile, on all threads: faster, but seams show in the order. Not
+    /// with CollapseHooks::before.
+    bool tiles = true;
     /// no new triangle larger than this [px^2]
     float max_face_area = std::numeric_limits<float>::infinity();
     /// nor of a lesser q = 4 sqrt(3) area / sum of squared edges (1 is best); 0 leaves only the guard against
@@ -74,8 +76,9 @@ struct CollapseHooks {
 /// targets  one a level, each at least as coarse as the one before
 /// return   the mesh at each of the targets, in that order
 ///
-/// Any number of features, 1 to kMaxFeatures (Error(kUsage) else). About 170 bytes a pixel with up to three
-/// of them, 480 with another metric or solver than the first; O(n). Deterministic.
+/// Any number of features, 1 to kMaxFeatures (Error(kUsage) else). About 70 bytes a pixel with up to three
+/// of them, 170 where it cannot begin in tiles (a mask, hooks, total priority, a goal above half the pixels),
+/// 480 with another metric or solver than the first; O(n). Deterministic, with any number of threads.
 std::vector<CollapseResult> collapse_edges(const GridMesh& grid, const CollapseParams& params,
                                            std::span<const CollapseTarget> targets,
                                            const Progress& progress = {}, const CollapseHooks& hooks = {});

@@ -15,16 +15,17 @@
 
 namespace imgmesh {
 
-template <int C>
+/// T: float, or Float8 for eight quadrics side by side.
+template <int C, typename T = float>
 struct Quadric {
     static constexpr int kChannels = C;
 
-    float px = 0, py = 0;             ///< m_p, position of the minimiser [pixels]
-    float s[C] = {};                  ///< m_s, its features
-    float gx[C] = {}, gy[C] = {};     ///< G, mean gradient [feature / pixel]
-    float sxx = 0, sxy = 0, syy = 0;  ///< S
-    float weight = 0;                 ///< W
-    float error = 0;                  ///< e
+    T px = {}, py = {};              ///< m_p, position of the minimiser [pixels]
+    T s[C] = {};                     ///< m_s, its features
+    T gx[C] = {}, gy[C] = {};        ///< G, mean gradient [feature / pixel]
+    T sxx = {}, sxy = {}, syy = {};  ///< S
+    T weight = {};                   ///< W
+    T error = {};                    ///< e
 
     /// Error at position p with the best features for it.
     float at(float x, float y) const { return error + rise(x, y); }
@@ -52,21 +53,23 @@ struct Quadric {
 };
 
 /// Minimiser of Q_i + Q_j, relative to that of Q_i, and how much the least error grows.
+template <typename T>
 struct MergedMinimum {
-    float qx, qy;     ///< m_p - m_p,i
-    float increment;  ///< e - e_i - e_j
+    T qx, qy;     ///< m_p - m_p,i
+    T increment;  ///< e - e_i - e_j
 };
 
 /// Sum of two quadrics, in closed form (derivation in docs/decisions/0001-canonical-quadric.md). Where S is
 /// singular, the minimiser is not unique: the midpoint of both is taken. O(1), about 60 flops.
-template <int C>
-inline __attribute__((always_inline)) MergedMinimum merged_minimum(const Quadric<C>& i, const Quadric<C>& j) {
-    const float h = i.weight * j.weight / (i.weight + j.weight);
-    const float dx = j.px - i.px, dy = j.py - i.py;
-    float txx = 0, txy = 0, tyy = 0, ux = 0, uy = 0, rr = 0;
+template <int C, typename T>
+inline __attribute__((always_inline)) MergedMinimum<T> merged_minimum(const Quadric<C, T>& i,
+                                                                      const Quadric<C, T>& j) {
+    const T h = i.weight * j.weight / (i.weight + j.weight);
+    const T dx = j.px - i.px, dy = j.py - i.py;
+    T txx = {}, txy = {}, tyy = {}, ux = {}, uy = {}, rr = {};
     for (int c = 0; c < C; ++c) {
-        const float ex = i.gx[c] - j.gx[c], ey = i.gy[c] - j.gy[c];
-        const float r = i.s[c] - j.s[c] + j.gx[c] * dx + j.gy[c] * dy;
+        const T ex = i.gx[c] - j.gx[c], ey = i.gy[c] - j.gy[c];
+        const T r = i.s[c] - j.s[c] + j.gx[c] * dx + j.gy[c] * dy;
         txx += ex * ex;
         txy += ex * ey;
         tyy += ey * ey;
@@ -74,33 +77,33 @@ inline __attribute__((always_inline)) MergedMinimum merged_minimum(const Quadric
         uy += ey * r;
         rr += r * r;
     }
-    const float axx = i.sxx + j.sxx + h * txx, axy = i.sxy + j.sxy + h * txy, ayy = i.syy + j.syy + h * tyy;
-    const float bx = j.sxx * dx + j.sxy * dy - h * ux, by = j.sxy * dx + j.syy * dy - h * uy;
-    const float det = axx * ayy - axy * axy;
+    const T axx = i.sxx + j.sxx + h * txx, axy = i.sxy + j.sxy + h * txy, ayy = i.syy + j.syy + h * tyy;
+    const T bx = j.sxx * dx + j.sxy * dy - h * ux, by = j.sxy * dx + j.syy * dy - h * uy;
+    const T det = axx * ayy - axy * axy;
     // Below this, rounding decides the solution's direction.
     constexpr float kSingular = 1e-6f;
     // Both outcomes are computed, so that the compiler can choose between them without a branch, lane by
     // lane.
-    const bool regular = det > kSingular * (axx + ayy) * (axx + ayy);
-    const float inverse = 1 / det;
-    const float x = (ayy * bx - axy * by) * inverse, y = (axx * by - axy * bx) * inverse;
-    const float middle_x = 0.5f * dx, middle_y = 0.5f * dy;
-    MergedMinimum m;
+    const auto regular = det > kSingular * (axx + ayy) * (axx + ayy);
+    const T inverse = 1 / det;
+    const T x = (ayy * bx - axy * by) * inverse, y = (axx * by - axy * bx) * inverse;
+    const T middle_x = 0.5f * dx, middle_y = 0.5f * dy;
+    MergedMinimum<T> m;
     m.qx = regular ? x : middle_x;
     m.qy = regular ? y : middle_y;
-    const float wx = m.qx - dx, wy = m.qy - dy;
-    const float own = m.qx * (i.sxx * m.qx + i.sxy * m.qy) + m.qy * (i.sxy * m.qx + i.syy * m.qy);
-    const float other = wx * (j.sxx * wx + j.sxy * wy) + wy * (j.sxy * wx + j.syy * wy);
-    const float color = rr + 2 * (ux * m.qx + uy * m.qy) + m.qx * (txx * m.qx + txy * m.qy) +
-                        m.qy * (txy * m.qx + tyy * m.qy);
-    m.increment = own + other + h * (color > 0 ? color : 0);
+    const T wx = m.qx - dx, wy = m.qy - dy;
+    const T own = m.qx * (i.sxx * m.qx + i.sxy * m.qy) + m.qy * (i.sxy * m.qx + i.syy * m.qy);
+    const T other = wx * (j.sxx * wx + j.sxy * wy) + wy * (j.sxy * wx + j.syy * wy);
+    const T color = rr + 2 * (ux * m.qx + uy * m.qy) + m.qx * (txx * m.qx + txy * m.qy) +
+                    m.qy * (txy * m.qx + tyy * m.qy);
+    m.increment = own + other + h * (color > T{} ? color : T{});
     return m;
 }
 
 /// Q_i + Q_j in canonical form.
 template <int C>
 Quadric<C> merged(const Quadric<C>& i, const Quadric<C>& j) {
-    const MergedMinimum m = merged_minimum(i, j);
+    const MergedMinimum<float> m = merged_minimum(i, j);
     Quadric<C> sum;
     sum.weight = i.weight + j.weight;
     sum.px = i.px + m.qx;

@@ -12,10 +12,10 @@ namespace imgmesh {
 template <class Q>
 inline constexpr bool kCanonical = std::is_same_v<Q, Quadric<Q::kChannels>>;
 
-/// Those of the dense mesh; `rings` are the grid's.
+/// Those of the dense mesh; `rings` are the grid's, `gradients` its smoothed_vertices().
 template <class Q>
-std::vector<Q> initial_quadrics(const GridMesh& grid, const RingMesh& rings, const CollapseParams& params) {
-    const FeatureImage gradients = smoothed_vertices(grid, params.smoothing);
+std::vector<Q> initial_quadrics(const GridMesh& grid, const RingMesh& rings, const FeatureImage& gradients,
+                                const CollapseParams& params) {
     if constexpr (!kCanonical<Q>)
         return dense_quadrics<Q::kChannels>(grid, rings, gradients, params);
     else if (grid.mask.empty())

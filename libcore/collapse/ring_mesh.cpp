@@ -133,22 +133,24 @@ void apply_merge(RingMesh& rings, Id i, Id j, const MergedRing& merged) {
     ++rings[j].version;
 }
 
-std::vector<Face> ring_faces(const RingMesh& rings, std::vector<Id>& live) {
-    live.clear();
-    std::vector<Id> compact(rings.size(), kNone);
+std::vector<Id> live_list(const RingMesh& rings) {
+    std::vector<Id> live;
     for (Id v = 0; v < rings.size(); ++v)
-        if (rings[v].live()) {
-            compact[v] = static_cast<Id>(live.size());
-            live.push_back(v);
-        }
+        if (rings[v].live()) live.push_back(v);
+    return live;
+}
+
+std::vector<Face> ring_faces(const RingMesh& rings, const std::vector<Id>& order) {
+    std::vector<Id> number(rings.size(), kNone);
+    for (std::size_t n = 0; n < order.size(); ++n) number[order[n]] = static_cast<Id>(n);
     std::vector<Face> faces;
-    faces.reserve(live.size() * 2);
-    for (const Id v : live) {
-        const Ring& ring = rings[v];
+    faces.reserve(order.size() * 2);
+    for (Id a = 0; a < order.size(); ++a) {
+        const Ring& ring = rings[order[a]];
         for (int k = 0; k < ring.valence; ++k) {
             if (ring.border() && k + 1 == ring.valence) break;  // the gap of an open fan
-            const Id b = ring.neighbor[k], c = ring.neighbor[(k + 1) % ring.valence];
-            if (v < b && v < c) faces.push_back({compact[v], compact[b], compact[c]});
+            const Id b = number[ring.neighbor[k]], c = number[ring.neighbor[(k + 1) % ring.valence]];
+            if (a < b && a < c) faces.push_back({a, b, c});
         }
     }
     return faces;

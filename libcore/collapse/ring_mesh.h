@@ -5,9 +5,11 @@
 #pragma once
 
 #include <array>
+#include <bit>
 #include <cstdint>
 #include <vector>
 
+#include "libcore/base/simd.h"
 #include "libcore/base/types.h"
 #include "libcore/mesh/grid_mesh.h"
 
@@ -27,13 +29,14 @@ struct alignas(64) Ring {
     std::uint8_t valence = 0;   ///< 0: the vertex is gone
     std::uint8_t fixed = 0;     ///< FixedAxis bits; not 0 exactly for border vertices
     std::uint16_t version = 0;  ///< rises whenever the vertex merges or goes
+    std::uint8_t sealed = 0;    ///< not 0: must stay as it is for now, like its edges (edge_collapser.h)
 
     bool border() const { return fixed != 0; }
     bool live() const { return valence != 0; }
+    /// The place of `other` among the neighbours, or -1.
     int find(Id other) const {
-        for (int k = 0; k < valence; ++k)
-            if (neighbor[k] == other) return k;
-        return -1;
+        const unsigned found = match12(neighbor, other) & ((1u << valence) - 1);
+        return found != 0 ? std::countr_zero(found) : -1;
     }
 };
 static_assert(sizeof(Ring) == 64);
@@ -42,6 +45,28 @@ using RingMesh = std::vector<Ring>;
 
 /// The ring of vertex (x, y) of a grid mesh without a mask, vertex ids as there.
 Ring grid_ring(const GridMesh& grid, int x, int y);
+/// The same for a vertex on no side, vertices numbered so that it is `self` and the one below self + stride.
+inline Ring inner_ring(const GridMesh& grid, int x, int y, Id self, Id stride) {
+    Ring ring;
+    ring.x = grid.origin_x + static_cast<float>(x);
+    ring.y = grid.origin_y + static_cast<float>(y);
+    int valence = 0;
+    // Diagonals are written wherever they might be, and written over where they are not.
+    const auto push = [&](Id v, bool there) {
+        ring.neighbor[valence] = v;
+        valence += there;
+    };
+    push(self + 1, true);
+    push(self - stride + 1, !grid.falling_diagonal(x, y - 1));
+    push(self - stride, true);
+    push(self - stride - 1, grid.falling_diagonal(x - 1, y - 1));
+    push(self - 1, true);
+    push(self + stride - 1, !grid.falling_diagonal(x - 1, y));
+    push(self + stride, true);
+    push(self + stride + 1, grid.falling_diagonal(x, y));
+    ring.valence = static_cast<std::uint8_t>(valence);
+    return ring;
+}
 /// The rings of all vertices of a grid mesh.
 RingMesh ring_mesh(const GridMesh& grid);
 
@@ -63,8 +88,11 @@ bool merge_rings(const RingMesh& rings, Id i, Id j, MergedRing& merged);
 /// Carries a merge out: i gets `merged` as its ring, j goes, and every neighbour's ring follows.
 void apply_merge(RingMesh& rings, Id i, Id j, const MergedRing& merged);
 
-/// Every face once, each from its corner of the lowest id; ids are compacted to live vertices in ascending
-/// order. `live` lists the live vertices in that order.
-std::vector<Face> ring_faces(const RingMesh& rings, std::vector<Id>& live);
+/// The live vertices, ascending.
+std::vector<Id> live_list(const RingMesh& rings);
+
+/// Every face once, each from its corner of the lowest number; vertices are numbered as `order` lists them,
+/// which has all the live ones.
+std::vector<Face> ring_faces(const RingMesh& rings, const std::vector<Id>& order);
 
 }  // namespace imgmesh

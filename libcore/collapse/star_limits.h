@@ -1,7 +1,6 @@
 // Which shapes the triangles around a merged vertex may have.
 #pragma once
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -23,20 +22,7 @@ struct StarLimits {
     }
 
     /// Whether a vertex with the ring `ring` may stand at (x, y). border: the ring is an open fan.
-    bool allow(const RingMesh& rings, const MergedRing& ring, bool border, float x, float y) const {
-        const int faces = border ? ring.valence - 1 : ring.valence;
-        for (int k = 0; k < faces; ++k) {
-            const Ring& a = rings[ring.neighbor[static_cast<std::size_t>(k)]];
-            const Ring& b = rings[ring.neighbor[static_cast<std::size_t>(k + 1 == ring.valence ? 0 : k + 1)]];
-            const float ax = a.x - x, ay = a.y - y, bx = b.x - x, by = b.y - y, ex = bx - ax, ey = by - ay;
-            const float aa = ax * ax + ay * ay, bb = bx * bx + by * by, ee = ex * ex + ey * ey;
-            const float area2 = ay * bx - ax * by;
-            if (!(area2 > kFatness * std::max({aa, bb, ee})) || area2 > max_area2 ||
-                area2 < min_area2_per_sum * (aa + bb + ee))
-                return false;
-        }
-        return true;
-    }
+    bool allow(const RingMesh& rings, const MergedRing& ring, bool border, float x, float y) const;
 };
 
 }  // namespace imgmesh

@@ -20,6 +20,11 @@ namespace imgmesh {
 template <int C>
 std::vector<Quadric<C>> vertex_quadrics(const GridMesh& grid, const FeatureImage& gradients, float lambda);
 
+/// Of the pixels of a rectangle alone, row by row into `out`.
+template <int C>
+void vertex_quadrics(const GridMesh& grid, const FeatureImage& gradients, float lambda, const PixelRect& rect,
+                     Quadric<C>* out);
+
 /// The same for any grid mesh, with or without a mask; rings: ring_mesh(grid), gradients: of all its
 /// vertices.
 template <int C>

@@ -12,6 +12,14 @@
 
 namespace imgmesh {
 
+/// The pixels left <= x < right, top <= y < bottom.
+struct PixelRect {
+    int left, top, right, bottom;
+
+    int width() const { return right - left; }
+    int height() const { return bottom - top; }
+};
+
 /// How samples were stored in the file that a picture came from, so that results can be stored alike.
 enum class SampleType { kUint8, kUint16, kHalf, kFloat };
 

@@ -15,7 +15,7 @@ TrackStart track_start(const GridMesh& grid, int width, int height) {
     start.feature = grid.feature.data;
     const RingMesh rings = ring_mesh(grid);
     for (const Ring& ring : rings) start.position.emplace_back(ring.x, ring.y);
-    std::vector<Id> live;
+    const std::vector<Id> live = live_list(rings);
     start.faces = ring_faces(rings, live);
     for (Face& face : start.faces)
         for (Id& v : face) v = live[v];

@@ -24,8 +24,8 @@ GridMesh cut_out(const Mask& mask, Kind kind = Kind::kNoise) {
 
 BaseMesh dense_mesh(const GridMesh& grid) {
     BaseMesh mesh;
-    std::vector<Id> live;
     const RingMesh rings = ring_mesh(grid);
+    const std::vector<Id> live = live_list(rings);
     mesh.faces = ring_faces(rings, live);
     for (const Id v : live) mesh.position.emplace_back(rings[v].x, rings[v].y);
     mesh.feature.resize(3 * live.size());
@@ -231,6 +231,21 @@ TEST_CASE("cut-outs: levels, limits and rebuilt quadrics keep the topology") {
                 check_covers(level.mesh, mask);
                 if (params.max_face_area == 6) CHECK(mesh_quality(level.mesh).min_shape >= 0.3999);
             }
+    }
+}
+
+// Large enough for several rounds of tiles with outlines through them.
+TEST_CASE("cut-outs: tiles keep topology, pixels and distance, the same with any number of threads") {
+    const Mask mask = sample_masks(220)[2].mask;  // a ring
+    const GridMesh grid = cut_out(mask);
+    const BaseMesh first = coarse_mesh(grid, 1500);
+    check_topology(first, mesh_quality(dense_mesh(grid)));
+    check_covers(first, mask);
+    for (const int threads : {1, 2, 3}) {
+        const ThreadLimit limit(threads);
+        const BaseMesh again = coarse_mesh(grid, 1500);
+        CHECK(again.position == first.position);
+        CHECK(again.faces == first.faces);
     }
 }
 

@@ -182,7 +182,7 @@ TEST_CASE("collapse hooks: called for each collapse in order, and their word cou
     const FeatureImage feature = sample_feature(Kind::kNoise, 30, 20);
     const GridMesh grid = grid_mesh(feature);
     const std::vector<CollapseTarget> targets{{.vertices = 100}, {.vertices = 30}};
-    const std::vector<CollapseResult> plain = collapse_edges(grid, {}, targets);
+    const std::vector<CollapseResult> plain = collapse_edges(grid, {.tiles = false}, targets);
     std::int64_t calls = 0;
     std::vector<std::int64_t> calls_at_level;
     CollapseHooks hooks;

@@ -44,7 +44,7 @@ void check_rings(const GridMesh& grid) {
             CHECK(signed_area2({rings[v].x, rings[v].y}, {a.x, a.y}, {b.x, b.y}) == 1);
         }
     }
-    std::vector<Id> live;
+    const std::vector<Id> live = live_list(rings);
     CHECK(in_standard_order(ring_faces(rings, live)) == in_standard_order(faces));
     CHECK(live.size() == rings.size());
 }
@@ -119,5 +119,26 @@ TEST_CASE("ring mesh: small and narrow grids") {
         for (const std::uint32_t pattern : {0u, ~0u, 0x2C9A65B3u}) {
             INFO(w << " x " << h << ", pattern " << pattern);
             check_rings(patterned_grid(w, h, pattern));
+        }
+}
+
+TEST_CASE("rings: those of vertices inside, in the numbers of any rectangle") {
+    const GridMesh grid = grid_mesh(sample_feature(Kind::kNoise, 12, 9));
+    for (int y = 1; y < 8; ++y)
+        for (int x = 1; x < 11; ++x) {
+            const Ring whole = grid_ring(grid, x, y);
+            const auto v = static_cast<Id>(y * 12 + x);
+            const Ring same = inner_ring(grid, x, y, v, 12), other = inner_ring(grid, x, y, 1000, 100);
+            CHECK(same.valence == whole.valence);
+            CHECK(same.x == whole.x);
+            CHECK(same.y == whole.y);
+            CHECK(!same.border());
+            for (int k = 0; k < whole.valence; ++k) {
+                CHECK(same.neighbor[k] == whole.neighbor[k]);
+                const int step = static_cast<int>(whole.neighbor[k] - v), dy = step > 1    ? 1
+                                                                               : step < -1 ? -1
+                                                                                           : 0;
+                CHECK(static_cast<int>(other.neighbor[k]) - 1000 == step - 12 * dy + 100 * dy);
+            }
         }
 }

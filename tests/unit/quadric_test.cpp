@@ -1,9 +1,11 @@
 #include <doctest/doctest.h>
 
+#include <cmath>
+
 #include <Eigen/LU>
 #include <random>
 
-#include "libcore/collapse/edge_batch.h"
+#include "libcore/collapse/star.h"
 #include "libcore/collapse/vertex_quadrics.h"
 #include "tests/support/grid_faces.h"
 #include "tests/support/sample_pictures.h"
@@ -169,7 +171,7 @@ TEST_CASE("merged_minimum: the increment is the least error of the sum less both
         for (int trial = 0; trial < 20; ++trial) {
             const Quadric<3>&i = quadrics[random() % quadrics.size()],
                   &j = quadrics[random() % quadrics.size()];
-            const MergedMinimum m = merged_minimum(i, j);
+            const MergedMinimum<float> m = merged_minimum(i, j);
             const Quadric<3> sum = merged(i, j);
             const Point least{{sum.px, sum.py}, {sum.s[0], sum.s[1], sum.s[2]}};
             CHECK(m.increment >= 0);
@@ -181,36 +183,69 @@ TEST_CASE("merged_minimum: the increment is the least error of the sum less both
     }
 }
 
-TEST_CASE("edge batch: the increments of merged_minimum, to the bit, full or not") {
+// Against the formula for one pair, of which the last ones are singular.
+TEST_CASE("star increments: those of merged_minimum, to the bit, for any number of neighbours") {
     std::mt19937 random(6);
     for (const Kind kind : kAllKinds) {
         const GridMesh grid = grid_mesh(sample_feature(kind, 9, 8));
-        const std::vector<Quadric<3>> quadrics = vertex_quadrics<3>(grid, smoothed(grid.feature, 1), kLambda);
-        EdgeBatch<Quadric<3>> batch;  // used again and again, as the collapse does
+        std::vector<Quadric<3>> quadrics = vertex_quadrics<3>(grid, smoothed(grid.feature, 1), kLambda);
+        for (std::size_t k = 0; k < 20; ++k)
+            quadrics[k] = merged(quadrics[k], quadrics[random() % quadrics.size()]);
+        Quadric<3> singular;
+        singular.weight = 1;
+        quadrics.push_back(singular);
+        singular.px = 4;
+        singular.s[0] = 3;
+        quadrics.push_back(singular);
         for (int trial = 0; trial < 50; ++trial) {
-            float expected[EdgeBatch<Quadric<3>>::kWidth];
-            const int lanes = 1 + static_cast<int>(random() % EdgeBatch<Quadric<3>>::kWidth);
-            for (int lane = 0; lane < lanes; ++lane) {
-                const Quadric<3>& i = quadrics[random() % quadrics.size()];
-                const Quadric<3> j =
-                    merged(quadrics[random() % quadrics.size()], quadrics[random() % quadrics.size()]);
-                batch.set(lane, i, j);
-                expected[lane] = merged_minimum(i, j).increment;
+            const Id i = static_cast<Id>(random() % quadrics.size());
+            const int count = static_cast<int>(random() % (kMaxValence + 1));
+            Id others[kStarRoom];
+            float expected[kStarRoom], increments[kStarRoom];
+            for (int k = 0; k < count; ++k) {
+                others[k] = static_cast<Id>(random() % quadrics.size());
+                expected[k] = merged_minimum(quadrics[i], quadrics[others[k]]).increment;
             }
-            batch.evaluate();
-            for (int lane = 0; lane < lanes; ++lane) CHECK(batch.increment(lane) == expected[lane]);
+            star_increments(quadrics.data(), i, others, count, increments);
+            for (int k = 0; k < count; ++k) CHECK(increments[k] == expected[k]);
         }
     }
-    // Singular ones take the branch less travelled.
-    EdgeBatch<Quadric<3>> batch;
-    Quadric<3> i, j;
-    i.weight = j.weight = 1;
-    j.px = 4;
-    j.s[0] = 3;
-    for (int lane = 0; lane < EdgeBatch<Quadric<3>>::kWidth; ++lane) batch.set(lane, i, j);
-    batch.evaluate();
-    for (int lane = 0; lane < EdgeBatch<Quadric<3>>::kWidth; ++lane)
-        CHECK(batch.increment(lane) == merged_minimum(i, j).increment);
+}
+
+// Every rule once for each triangle of a random star, and written down for one triangle at a time.
+TEST_CASE("star limits: no triangle of the star too thin, too large, too far from regular, or turned over") {
+    std::mt19937 random(8);
+    const auto number = [&] { return static_cast<float>(random() % 1000) / 100; };
+    int allowed = 0;
+    for (int trial = 0; trial < 4000; ++trial) {
+        RingMesh rings(kMaxValence);
+        MergedRing star;
+        star.valence = 3 + static_cast<int>(random() % (kMaxValence - 2));
+        const float turn = -6.2831853f / static_cast<float>(star.valence);  // counter-clockwise on screen
+        for (Id v = 0; v < static_cast<Id>(star.valence); ++v) {
+            star.neighbor[v] = v;
+            const float angle = turn * (static_cast<float>(v) + 0.03f * number()), radius = 2 + number();
+            rings[v].x = 10 + radius * std::cos(angle);
+            rings[v].y = 10 + radius * std::sin(angle);
+        }
+        const bool border = random() % 4 == 0;
+        const StarLimits limits = StarLimits::of(random() % 2 ? 30.0f : 1e9f, random() % 2 ? 0.4f : 0.0f);
+        const float x = 8 + 0.4f * number(), y = 8 + 0.4f * number();
+        bool expected = true;
+        for (int k = 0; k < star.valence - border; ++k) {
+            const Ring &a = rings[star.neighbor[static_cast<std::size_t>(k)]],
+                       &b = rings[star.neighbor[static_cast<std::size_t>((k + 1) % star.valence)]];
+            const float ax = a.x - x, ay = a.y - y, bx = b.x - x, by = b.y - y, ex = bx - ax, ey = by - ay;
+            const float aa = ax * ax + ay * ay, bb = bx * bx + by * by, ee = ex * ex + ey * ey;
+            const float area2 = ay * bx - ax * by;
+            expected &= area2 > kFatness * std::max({aa, bb, ee}) && area2 <= limits.max_area2 &&
+                        area2 >= limits.min_area2_per_sum * (aa + bb + ee);
+        }
+        CHECK(limits.allow(rings, star, border, x, y) == expected);
+        allowed += expected;
+    }
+    CHECK(allowed > 400);
+    CHECK(allowed < 3600);
 }
 
 // With lambda 0 and one common gradient every position along the plane is as good: take the middle.
@@ -219,7 +254,7 @@ TEST_CASE("merged_minimum: a singular pair meets half way") {
     i.weight = j.weight = 1;
     j.px = 4;
     j.py = 2;
-    const MergedMinimum m = merged_minimum(i, j);
+    const MergedMinimum<float> m = merged_minimum(i, j);
     CHECK(m.qx == 2);
     CHECK(m.qy == 1);
     CHECK(m.increment == 0);

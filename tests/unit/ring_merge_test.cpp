@@ -13,7 +13,7 @@ namespace {
 using Edge = std::pair<Id, Id>;
 
 std::vector<Face> faces_of(const RingMesh& rings) {
-    std::vector<Id> live;
+    const std::vector<Id> live = live_list(rings);
     std::vector<Face> faces = ring_faces(rings, live);
     for (Face& face : faces)
         for (Id& v : face) v = live[v];

@@ -1,0 +1,234 @@
+// The first part of the collapse, which takes most vertices away: small tiles of the picture by themselves.
+// The dense mesh, of which they are parts, never exists as a whole.
+#pragma once
+
+#include <algorithm>
+#include <vector>
+
+#include "libcore/base/parallel.h"
+#include "libcore/collapse/edge_collapser.h"
+
+namespace imgmesh {
+
+// A tile of rings and quadrics stays in a core's own cache.
+inline constexpr int kStartTile = 64;
+
+// Of a threshold from one round of tiles to the next.
+inline constexpr float kTileWindow = 2.0f;
+
+// Tiles that one engine works off, one after the other.
+inline constexpr int kStartTilesPerBlock = 8;
+
+/// The threshold at which `share` of the vertices would be left, found out on some of the tiles; to a factor
+/// of kTileWindow, rather too low.
+template <class Q>
+float start_threshold(const GridMesh& grid, const FeatureImage& gradients, const CollapseRules& rules,
+                      double share);
+
+/// Collapses edges below `threshold` in every tile of the grid, which has no mask, as long as at most
+/// `share_that_goes` of its vertices go; vertices next to another tile stay.
+///
+/// left      out: what is left, vertices tile by tile, in the grid's order within each
+/// progress  is told how many vertices are gone so far
+template <class Q, class Progress>
+Tally start_in_tiles(const GridMesh& grid, const FeatureImage& gradients, const CollapseRules& rules,
+                     float threshold, double share_that_goes, CollapseMesh<Q>& left,
+                     const Progress& progress);
+
+namespace tile_start {
+
+// Among the neighbours of a sealed vertex: a pixel of another tile.
+inline constexpr Id kElsewhere = 1u << 31;
+
+struct Tiles {
+    int width, height;  // of the picture
+    int across = (width + kStartTile - 1) / kStartTile, down = (height + kStartTile - 1) / kStartTile;
+
+    int count() const { return across * down; }
+    int of(Id pixel) const {
+        const int x = static_cast<int>(pixel) % width, y = static_cast<int>(pixel) / width;
+        return y / kStartTile * across + x / kStartTile;
+    }
+    PixelRect rect(int tile) const {
+        const int left = tile % across * kStartTile, top = tile / across * kStartTile;
+        return {left, top, std::min(left + kStartTile, width), std::min(top + kStartTile, height)};
+    }
+};
+
+// The tile's part of the dense mesh, vertices row by row.
+template <class Q>
+void fill(const GridMesh& grid, const FeatureImage& gradients, float lambda, const PixelRect& rect,
+          CollapseMesh<Q>& mesh) {
+    const Id w = static_cast<Id>(grid.feature.width);
+    const auto count = static_cast<std::size_t>(rect.width()) * static_cast<std::size_t>(rect.height());
+    mesh.rings.resize(count);
+    mesh.pixel.resize(count);
+    mesh.quadrics.resize(count);
+    vertex_quadrics(grid, gradients, lambda, rect, mesh.quadrics.data());
+    const auto stride = static_cast<Id>(rect.width());
+    Id v = 0;
+    for (int y = rect.top; y < rect.bottom; ++y)
+        for (int x = rect.left; x < rect.right; ++x, ++v) {
+            mesh.pixel[v] = static_cast<Id>(y) * w + static_cast<Id>(x);
+            if (x > rect.left && x + 1 < rect.right && y > rect.top && y + 1 < rect.bottom) {
+                mesh.rings[v] = inner_ring(grid, x, y, v, stride);
+                continue;
+            }
+            Ring& ring = mesh.rings[v] = grid_ring(grid, x, y);
+            for (int k = 0; k < ring.valence; ++k) {
+                Id& n = ring.neighbor[k];
+                const int nx = static_cast<int>(n % w), ny = static_cast<int>(n / w);
+                if (nx < rect.left || nx >= rect.right || ny < rect.top || ny >= rect.bottom) {
+                    n |= kElsewhere;
+                    ring.sealed = 1;
+                } else {
+                    n = static_cast<Id>((ny - rect.top) * rect.width() + nx - rect.left);
+                }
+            }
+        }
+}
+
+// Appends what has survived to `out`, numbered from 0 on, and writes these numbers to number[pixel].
+template <class Q>
+void keep_survivors(const CollapseMesh<Q>& mesh, CollapseMesh<Q>& out, std::vector<Id>& number) {
+    const std::vector<Id> live = live_list(mesh.rings);
+    for (Id n = 0; n < live.size(); ++n) number[mesh.pixel[live[n]]] = n;
+    out.rings.reserve(live.size());
+    out.quadrics.reserve(live.size());
+    out.pixel.reserve(live.size());
+    for (const Id v : live) {
+        Ring ring = mesh.rings[v];
+        for (int k = 0; k < ring.valence; ++k)
+            if (Id& n = ring.neighbor[k]; !(n & kElsewhere)) n = number[mesh.pixel[n]];
+        ring.version = 0;
+        ring.sealed = 0;
+        out.rings.push_back(ring);
+        out.quadrics.push_back(mesh.quadrics[v]);
+        out.pixel.push_back(mesh.pixel[v]);
+    }
+}
+
+// Puts the tiles' parts together, and takes them apart meanwhile.
+template <class Q>
+CollapseMesh<Q> joined(const Tiles& tiles, std::vector<CollapseMesh<Q>>& parts,
+                       const std::vector<Id>& number) {
+    std::vector<Id> first(parts.size() + 1, 0);
+    for (std::size_t t = 0; t < parts.size(); ++t)
+        first[t + 1] = first[t] + static_cast<Id>(parts[t].rings.size());
+    CollapseMesh<Q> whole;
+    whole.rings.resize(first.back());
+    whole.quadrics.resize(first.back());
+    whole.pixel.resize(first.back());
+    parallel_blocks(0, tiles.count(), kStartTilesPerBlock, [&](int begin, int end) {
+        for (auto t = static_cast<std::size_t>(begin); t < static_cast<std::size_t>(end); ++t) {
+            CollapseMesh<Q> part = std::move(parts[t]);
+            for (Ring& ring : part.rings)
+                for (int k = 0; k < ring.valence; ++k) {
+                    Id& n = ring.neighbor[k];
+                    const Id pixel = n & ~kElsewhere;
+                    n = n & kElsewhere ? first[static_cast<std::size_t>(tiles.of(pixel))] + number[pixel]
+                                       : first[t] + n;
+                }
+            std::copy(part.rings.begin(), part.rings.end(), whole.rings.begin() + first[t]);
+            std::copy(part.quadrics.begin(), part.quadrics.end(), whole.quadrics.begin() + first[t]);
+            std::copy(part.pixel.begin(), part.pixel.end(), whole.pixel.begin() + first[t]);
+        }
+    });
+    return whole;
+}
+
+// Tiles all over the picture.
+inline std::vector<int> some_tiles(const Tiles& tiles) {
+    const int count = std::clamp(tiles.count() / 32, 1, 16);
+    std::vector<int> some;
+    for (int n = 0; n < count; ++n) some.push_back((2 * n + 1) * tiles.count() / (2 * count));
+    return some;
+}
+
+template <class Q>
+float median_cost(CollapseMesh<Q>& mesh, const CollapseRules& rules) {
+    std::vector<float> costs;
+    EdgeCollapser<Q> engine(mesh, rules);
+    for (Id v = 0; v < mesh.rings.size(); ++v)
+        if (const Ring& ring = mesh.rings[v]; !ring.sealed)
+            if (const float cost = engine.cost(v, ring.neighbor[0]); cost < kNever) costs.push_back(cost);
+    if (costs.empty()) return 0;
+    std::nth_element(costs.begin(), costs.begin() + costs.size() / 2, costs.end());
+    return costs[costs.size() / 2];
+}
+
+}  // namespace tile_start
+
+template <class Q>
+float start_threshold(const GridMesh& grid, const FeatureImage& gradients, const CollapseRules& rules,
+                      double share) {
+    using namespace tile_start;
+    const Tiles tiles{grid.feature.width, grid.feature.height};
+    const std::vector<int> some = some_tiles(tiles);
+    std::vector<CollapseMesh<Q>> meshes(some.size());
+    std::vector<float> medians(some.size());
+    const auto each = [&](const auto& body) {
+        parallel_blocks(0, static_cast<int>(some.size()), 1,
+                        [&](int n, int) { body(static_cast<std::size_t>(n)); });
+    };
+    each([&](std::size_t n) {
+        fill(grid, gradients, rules.params.geometry_weight, tiles.rect(some[n]), meshes[n]);
+        medians[n] = median_cost(meshes[n], rules);
+    });
+    std::int64_t all = 0, gone = 0;
+    for (const CollapseMesh<Q>& mesh : meshes) all += static_cast<std::int64_t>(mesh.rings.size());
+    std::nth_element(medians.begin(), medians.begin() + medians.size() / 2, medians.end());
+    float threshold = std::max(medians[medians.size() / 2], std::numeric_limits<float>::min());
+    for (float next = threshold;; next *= kTileWindow) {
+        std::vector<Tally> tallies(some.size());
+        each([&](std::size_t n) {
+            tallies[n] = EdgeCollapser<Q>(meshes[n], rules)
+                             .run(
+                                 meshes[n].rings.size(), [](std::size_t v) { return static_cast<Id>(v); },
+                                 next, kAllMayGo);
+        });
+        Tally sum;
+        for (const Tally& tally : tallies) sum.add(tally);
+        gone += sum.vertices;
+        if (static_cast<double>(gone) > (1 - share) * static_cast<double>(all)) return threshold;
+        threshold = next;
+        if (sum.postponed == kNever) return threshold;
+        while (next < sum.postponed && sum.vertices == 0) next *= kTileWindow;
+    }
+}
+
+template <class Q, class Progress>
+Tally start_in_tiles(const GridMesh& grid, const FeatureImage& gradients, const CollapseRules& rules,
+                     float threshold, double share_that_goes, CollapseMesh<Q>& left,
+                     const Progress& progress) {
+    using namespace tile_start;
+    const Tiles tiles{grid.feature.width, grid.feature.height};
+    std::vector<CollapseMesh<Q>> parts(static_cast<std::size_t>(tiles.count()));
+    std::vector<Tally> tallies(parts.size());
+    std::vector<Id> number(grid.feature.pixel_count());
+    const auto collapse_some = [&](int begin, int end) {
+        CollapseMesh<Q> mesh;
+        EdgeCollapser<Q> engine(mesh, rules);
+        for (auto t = static_cast<std::size_t>(begin); t < static_cast<std::size_t>(end); ++t) {
+            fill(grid, gradients, rules.params.geometry_weight, tiles.rect(static_cast<int>(t)), mesh);
+            const auto may_go =
+                static_cast<std::int64_t>(share_that_goes * static_cast<double>(mesh.rings.size()));
+            tallies[t] = engine.run(mesh.rings.size(), [](std::size_t v) { return static_cast<Id>(v); },
+                                    threshold, {.vertices = may_go, .faces = 2 * may_go});
+            keep_survivors(mesh, parts[t], number);
+        }
+    };
+    Tally sum;
+    constexpr int kReports = 20;
+    const int step = (tiles.count() / kReports / kStartTilesPerBlock + 1) * kStartTilesPerBlock;
+    for (int begin = 0; begin < tiles.count(); begin += step) {
+        const int end = std::min(begin + step, tiles.count());
+        parallel_blocks(begin, end, kStartTilesPerBlock, collapse_some);
+        for (int t = begin; t < end; ++t) sum.add(tallies[static_cast<std::size_t>(t)]);
+        progress(sum.vertices);
+    }
+    left = joined(tiles, parts, number);
+    return sum;
+}
+
+}  // namespace imgmesh
