@@ -134,6 +134,23 @@ void use_one_thread() {
     (void)kDone;
 }
 
+// Bytes in memory, and nothing before or behind them: OpenImageIO's own reader (2.4) reads before the first
+// where a file sends it to a negative place. What such a place holds is then missing, as if it were behind
+// the end.
+class BoundedReader : public OIIO::Filesystem::IOMemReader {
+  public:
+    using IOMemReader::IOMemReader;
+    std::size_t read(void* out, std::size_t count) override {
+        return is_inside(tell()) ? IOMemReader::read(out, count) : 0;
+    }
+    std::size_t pread(void* out, std::size_t count, std::int64_t at) override {
+        return is_inside(at) ? IOMemReader::pread(out, count, at) : 0;
+    }
+
+  private:
+    bool is_inside(std::int64_t at) const { return at >= 0 && static_cast<std::uint64_t>(at) <= size(); }
+};
+
 OiioPicture decode(const std::string& path, std::span<const std::uint8_t> bytes, const PictureClaim& claim,
                    const ImageLimits& limits, decltype(&check_size) check) {
     use_one_thread();
@@ -144,7 +161,7 @@ OiioPicture decode(const std::string& path, std::span<const std::uint8_t> bytes,
     if (claim.width != 0 || claim.height != 0)
         check(path, claim.width, claim.height, std::max<std::int64_t>(claim.channels, 1), limits);
     try {
-        OIIO::Filesystem::IOMemReader memory(bytes.data(), bytes.size());
+        BoundedReader memory(bytes.data(), bytes.size());
         const std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::create(format);
         if (!input)
             throw Error(ErrorCode::kUnsupported, cat(path, ": OpenImageIO is built without ", format));

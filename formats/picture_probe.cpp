@@ -97,6 +97,20 @@ void claim_bmp(Bytes b, PictureClaim& claim) {
     claim.height = core ? little_endian(b, 20, 2) : side(22);
 }
 
+// Runs are of a palette's indices. OpenImageIO 2.4 looks them up in a palette that other depths do not have,
+// and crashes; and takes compressions that it does not know for none.
+void check_bmp_compression(const std::string& path, Bytes b) {
+    const std::uint32_t header = little_endian(b, 14, 4), bits = little_endian(b, 28, 2);
+    const std::uint32_t compression = header < 40 ? 0 : little_endian(b, 30, 4);
+    constexpr std::uint32_t kNone = 0, kRuns8 = 1, kRuns4 = 2, kMasks = 3, kMasksWithAlpha = 6;
+    if (compression > kMasks && compression != kMasksWithAlpha)
+        throw Error(ErrorCode::kUnsupported, cat(path, ": BMP of compression ", compression, ", expected ",
+                                                 kNone, " to ", kMasks, " or ", kMasksWithAlpha));
+    if ((compression == kRuns8 && bits != 8) || (compression == kRuns4 && bits != 4))
+        throw broken(path, cat("BMP of ", bits, " bits with compression ", compression, ", which is for ",
+                               compression == kRuns8 ? 8 : 4, " bits"));
+}
+
 void claim_jpeg2000(Bytes b, PictureClaim& claim) {
     if (const auto at = find(b, 0, "\xFF\x4F\xFF\x51")) {
         claim.width = std::int64_t{big_endian(b, *at + 8, 4)} - big_endian(b, *at + 16, 4);
@@ -179,6 +193,7 @@ PictureClaim probe_picture(const std::string& path, Bytes b) {
             claim.height = little_endian(b, 8, 2);
             break;
         case PictureFormat::kBmp:
+            check_bmp_compression(path, b);
             claim_bmp(b, claim);
             break;
         case PictureFormat::kTga:

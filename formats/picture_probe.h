@@ -21,8 +21,9 @@ struct PictureClaim {
 };
 
 /// Recognises the format by the content, not by the name (TGA alone, which has no signature, by its
-/// extension), and checks a PNG's chunks to their end. Throws Error: kBadFile for no picture or a broken PNG,
-/// kUnsupported for camera raw files.
+/// extension), and checks a PNG's chunks to their end. Throws Error: kBadFile for no picture, a broken PNG or
+/// a BMP whose compression is not for its depth, kUnsupported for camera raw files and other compressions of
+/// BMP.
 PictureClaim probe_picture(const std::string& path, std::span<const std::uint8_t> bytes);
 
 /// Throws Error(kBadFile) where the size is not positive or over the limits.

@@ -82,8 +82,8 @@ struct BuildParams {
     /// features are a colour and the metric the flattened one with fitted colours, else 0; 0 for a
     /// tracked map, which takes none.
     std::optional<std::int64_t> refine;
-    double shape_weight = 0.4;  ///< of the triangles' shape in refinement (RefineParams::shape_weight); >= 0
-    double exchange = 0;        ///< share of vertices that a round adds and takes away elsewhere; 0 to 1
+    double shape_weight = 0.22;  ///< of the triangles' shape in refinement (RefineParams::shape_weight); >= 0
+    double exchange = 0;         ///< share of vertices that a round adds and takes away elsewhere; 0 to 1
     Objective objective = Objective::kLuv;
     double min_quality = 0;  ///< no triangle of a lesser q = 4 sqrt(3) area / sum of squared edges; 0 to 0.8
 };

@@ -20,12 +20,12 @@ BuildParams preset_params(Preset preset) {
             params.shape_weight = 0;
             break;
         case Preset::kFem:
-            params.geometry_weight = 0.5;
+            params.geometry_weight = 1;
             params.rebuild_quadrics = true;
             params.refine = 10;
             params.exchange = 0.2;
-            params.shape_weight = 0.5;
-            params.min_quality = 0.3;
+            params.shape_weight = 0.3;
+            params.min_quality = 0.28;
             params.objective = Objective::kRgb;  // the mesh alone is what a simulation gets
             break;
     }

@@ -2,22 +2,34 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
-#include <vector>
 
 namespace imgmesh {
 
-/// One run of the collapse: what to do with the mesh at each of some numbers of vertices, which fall. Only
-/// meshes that are asked for need be finished, in any order, so the run hands out a function from the index
-/// to the error of the finished mesh.
-using MeasuredRun = std::function<std::function<double(std::size_t)>(const std::vector<std::int64_t>&)>;
+/// What a search needs of the meshes between which it chooses.
+class MeasuredMeshes {
+  public:
+    struct Probe {
+        std::int64_t vertices;  ///< of the mesh: about as many as asked for
+        double rms;             ///< its error
+    };
+    virtual ~MeasuredMeshes() = default;
+    /// A mesh of at most `vertices`, or the coarsest there is, finished. Cheap only where numbers fall, or
+    /// rise by a third at most.
+    virtual Probe finished(std::int64_t vertices) = 0;
+    /// The mesh of the last call of finished() is the best so far.
+    virtual void keep() = 0;
+    /// About the error that finished() would tell, at a fraction of the cost.
+    virtual Probe estimated(std::int64_t vertices) = 0;
+};
 
-/// Calls `run` twice, first at halvings of `vertices` (>= 4), then at steps of 3 % around the halving after
-/// which the error exceeds `rms`, and measures as few meshes as a bisection needs. Errors are taken to rise
-/// as vertices fall; where they do not, the mesh found still has an error of at most `rms`.
+/// Finds as few vertices as an error of at most `rms` takes, to about 3 %: by the power law that errors of
+/// photographs follow, with the numbers of vertices that are known to be too few and enough as bounds.
+/// Usually two meshes are finished, none but cheap ones far from the goal. Where errors do not fall steadily,
+/// the mesh found still has an error of at most `rms`.
 ///
-/// keep   called for each measured mesh whose error is at most `rms` and which has fewer vertices than any
-///        before it: the last one is the result. Never called where even `vertices` have a larger error.
-void search_rms(std::int64_t vertices, double rms, const MeasuredRun& run, const std::function<void()>& keep);
+/// vertices  of the dense mesh, >= 4
+/// guess     where to begin; rather too many
+/// return    false where even the dense mesh has a larger error: keep() was never called
+bool search_rms(std::int64_t vertices, std::int64_t guess, double rms, MeasuredMeshes& meshes);
 
 }  // namespace imgmesh

@@ -18,6 +18,11 @@ extern template class Collapser<DenseQuadric<3>>;
 extern template class Collapser<DenseQuadric<8>>;
 extern template class Collapser<DenseQuadric<16>>;
 
+struct CollapseRun::Engine {
+    virtual ~Engine() = default;
+    virtual CollapseResult to(const CollapseTarget& target, const Progress& progress) = 0;
+};
+
 namespace {
 
 // The first channels of every item, or all and zeros behind them.
@@ -31,50 +36,80 @@ std::vector<float> with_channels(const std::vector<float>& values, int from, int
 }
 
 template <class Q>
-std::vector<CollapseResult> collapse_by(const GridMesh& grid, const CollapseParams& params,
-                                        std::span<const CollapseTarget> targets, const Progress& progress,
-                                        const CollapseHooks& hooks) {
-    Collapser<Q> collapser(grid, params, hooks);
-    std::vector<CollapseResult> levels;
-    for (const CollapseTarget& target : targets) {
-        collapser.run(target, progress);
-        levels.push_back(collapser.snapshot());
-        if (hooks.reached) hooks.reached(levels.size() - 1, levels.back());
+class EngineOf : public CollapseRun::Engine {
+  public:
+    EngineOf(const GridMesh& grid, const CollapseParams& params, const CollapseHooks& hooks)
+        : collapser_(grid, params, hooks) {}
+    CollapseResult to(const CollapseTarget& target, const Progress& progress) override {
+        collapser_.run(target, progress);
+        return collapser_.snapshot();
     }
-    return levels;
+
+  private:
+    Collapser<Q> collapser_;
+};
+
+// For a grid whose features are fewer than the quadrics have room for.
+class PaddedEngine : public CollapseRun::Engine {
+  public:
+    template <class MakeEngine>
+    PaddedEngine(const GridMesh& grid, int padded, MakeEngine&& make)
+        : channels_(grid.feature.channels), padded_(padded), wide_(grid) {
+        wide_.feature.channels = padded;
+        wide_.feature.data = with_channels(grid.feature.data, channels_, padded);
+        engine_ = make(wide_);
+    }
+    CollapseResult to(const CollapseTarget& target, const Progress& progress) override {
+        CollapseResult level = engine_->to(target, progress);
+        level.mesh.channels = channels_;
+        level.mesh.feature = with_channels(level.mesh.feature, padded_, channels_);
+        return level;
+    }
+
+  private:
+    int channels_, padded_;
+    GridMesh wide_;
+    std::unique_ptr<CollapseRun::Engine> engine_;
+};
+
+std::unique_ptr<CollapseRun::Engine> make_engine(const GridMesh& grid, const CollapseParams& params,
+                                                 const CollapseHooks& hooks) {
+    const int channels = grid.feature.channels;
+    if (channels < 1 || channels > kMaxFeatures)
+        throw Error(ErrorCode::kUsage, cat(channels, " features, expected 1 to ", kMaxFeatures));
+    return with_padded_features(channels, [&](auto padded) -> std::unique_ptr<CollapseRun::Engine> {
+        constexpr int kPadded = padded();
+        const auto make = [&](const GridMesh& g) -> std::unique_ptr<CollapseRun::Engine> {
+            if (params.metric == Metric::kFlattened && params.solver == Solver::kClosed)
+                return std::make_unique<EngineOf<Quadric<kPadded>>>(g, params, hooks);
+            return std::make_unique<EngineOf<DenseQuadric<kPadded>>>(g, params, hooks);
+        };
+        if (channels == kPadded) return make(grid);
+        return std::make_unique<PaddedEngine>(grid, kPadded, make);
+    });
 }
 
-// grid.feature has C channels.
-template <int C>
-std::vector<CollapseResult> collapse(const GridMesh& grid, const CollapseParams& params,
-                                     std::span<const CollapseTarget> targets, const Progress& progress,
-                                     const CollapseHooks& hooks) {
-    if (params.metric == Metric::kFlattened && params.solver == Solver::kClosed)
-        return collapse_by<Quadric<C>>(grid, params, targets, progress, hooks);
-    return collapse_by<DenseQuadric<C>>(grid, params, targets, progress, hooks);
-}
+const CollapseHooks kNoHooks;
 
 }  // namespace
+
+CollapseRun::CollapseRun(const GridMesh& grid, const CollapseParams& params)
+    : engine_(make_engine(grid, params, kNoHooks)) {}
+CollapseRun::~CollapseRun() = default;
+CollapseResult CollapseRun::to(const CollapseTarget& target, const Progress& progress) {
+    return engine_->to(target, progress);
+}
 
 std::vector<CollapseResult> collapse_edges(const GridMesh& grid, const CollapseParams& params,
                                            std::span<const CollapseTarget> targets, const Progress& progress,
                                            const CollapseHooks& hooks) {
-    const int channels = grid.feature.channels;
-    if (channels < 1 || channels > kMaxFeatures)
-        throw Error(ErrorCode::kUsage, cat(channels, " features, expected 1 to ", kMaxFeatures));
-    return with_padded_features(channels, [&](auto padded) {
-        constexpr int kPadded = padded();
-        if (channels == kPadded) return collapse<kPadded>(grid, params, targets, progress, hooks);
-        GridMesh wide = grid;
-        wide.feature.channels = kPadded;
-        wide.feature.data = with_channels(grid.feature.data, channels, kPadded);
-        std::vector<CollapseResult> levels = collapse<kPadded>(wide, params, targets, progress, hooks);
-        for (CollapseResult& level : levels) {
-            level.mesh.channels = channels;
-            level.mesh.feature = with_channels(level.mesh.feature, kPadded, channels);
-        }
-        return levels;
-    });
+    const std::unique_ptr<CollapseRun::Engine> engine = make_engine(grid, params, hooks);
+    std::vector<CollapseResult> levels;
+    for (const CollapseTarget& target : targets) {
+        levels.push_back(engine->to(target, progress));
+        if (hooks.reached) hooks.reached(levels.size() - 1, levels.back());
+    }
+    return levels;
 }
 
 CollapseResult collapse_edges(const GridMesh& grid, const CollapseParams& params,

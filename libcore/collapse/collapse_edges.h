@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -81,6 +82,21 @@ struct CollapseHooks {
 std::vector<CollapseResult> collapse_edges(const GridMesh& grid, const CollapseParams& params,
                                            std::span<const CollapseTarget> targets,
                                            const Progress& progress = {}, const CollapseHooks& hooks = {});
+
+/// The same, one target after the other: where it goes on may depend on what came of it so far.
+class CollapseRun {
+  public:
+    /// `grid` must live as long as the run.
+    CollapseRun(const GridMesh& grid, const CollapseParams& params);
+    ~CollapseRun();
+    /// On from where it stands, to a target at least as coarse as the last.
+    CollapseResult to(const CollapseTarget& target, const Progress& progress = {});
+
+    struct Engine;  ///< the run for one kind of quadric
+
+  private:
+    std::unique_ptr<Engine> engine_;
+};
 
 /// The mesh of a single level.
 CollapseResult collapse_edges(const GridMesh& grid, const CollapseParams& params,

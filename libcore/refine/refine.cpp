@@ -26,7 +26,7 @@ RefineReport refine(BaseMesh& mesh, const FeatureImage& picture, const RefinePar
         report.moves += refiner.move_vertices();
         refiner.fit_colors();
         if (params.exchange > 0) refiner.exchange(params.exchange);
-        // Every step lowers the error, so where nothing is left to gain only rounding moves it.
+        // Steps may raise the error for a better shape; a round may not.
         const double error = refiner.total_error();
         if (!(error < report.error.back())) break;
         report.error.push_back(error);

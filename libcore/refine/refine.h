@@ -34,8 +34,9 @@ struct RefineReport {
 
 /// Lowers the squared error of the mesh drawn with colours interpolated linearly over its faces. Each round
 /// fits all colours by least squares, moves vertices by Gauss-Newton steps, flips edges, and takes vertices
-/// from where their loss costs least to where they gain most; every single step lowers the error, so it never
-/// rises. The numbers of vertices and of faces stay.
+/// from where their loss costs least to where they gain most; every single step lowers the error
+/// plus what shape weighs, and a round that does not lower the error alone is dropped with all after it: it
+/// never rises. The numbers of vertices and of faces stay.
 ///
 /// mesh     any outline, three channels, positions on kPositionStep; corners and outlines other than straight
 ///          sides of the bounding box stay, vertices of such sides slide

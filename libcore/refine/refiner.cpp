@@ -42,10 +42,10 @@ Vec3f Refiner::allowed(const Vec3f& color) const {
 bool Refiner::better(const Cost& now, const Cost& before) const {
     // Gains within the rounding of the sums are none.
     const double slack = 1e-5 * before.error + 1e-9;
-    if (!now.legal || !(now.error < before.error - slack)) return false;
+    if (!now.legal) return false;
     // A face below the floor may only become better.
     if (now.least_q < params_.min_quality && now.least_q < before.least_q) return false;
-    return now.error + shape_unit_ * now.shape < before.error + shape_unit_ * before.shape;
+    return now.error + shape_unit_ * now.shape < before.error + shape_unit_ * before.shape - slack;
 }
 
 double Refiner::face_error(const Face& face) const {

@@ -36,12 +36,12 @@ Refiner::Removal Refiner::best_removal(Id v) const {
             if (other(k, 1) != u && other(k, 2) != u)
                 add_shape(after, mesh_.position[u], mesh_.position[other(k, 1)], mesh_.position[other(k, 2)]);
         if (!after.legal || after.least_q < std::min(before.least_q, params_.min_quality)) continue;
-        for (std::size_t k = 0; k < size && after.error - before.error < best.cost; ++k)
+        const double shape = shape_unit_ * (after.shape - before.shape);
+        for (std::size_t k = 0; k < size && after.error - before.error + shape < best.cost; ++k)
             if (other(k, 1) != u && other(k, 2) != u)
                 after.error += face_error({u, other(k, 1), other(k, 2)});
-        const double cost = after.error - before.error + shape_unit_ * (after.shape - before.shape);
-        if (after.error - before.error < best.cost && cost < best.cost)
-            best = {v, u, std::max(cost, after.error - before.error), !star.closed};
+        const double cost = after.error - before.error + shape;
+        if (cost < best.cost) best = {v, u, cost, !star.closed};
     }
     return best;
 }
@@ -96,8 +96,7 @@ void Refiner::try_insertion(Id f, int edge, const Vec2f& position, Insertion& be
     const Vec3f chosen = allowed(color - (we / ww).cast<float>());
     const Vec3d change = (chosen - color).cast<double>();
     after.error += 2 * change.dot(we) + (ww - 1e-3) * change.squaredNorm();
-    const double gain =
-        before.error - after.error + std::min(0.0, shape_unit_ * (before.shape - after.shape));
+    const double gain = before.error - after.error + shape_unit_ * (before.shape - after.shape);
     if (gain > best.gain) best = {f, edge, position, chosen, gain, edge >= 0 && count == 2};
 }
 

@@ -166,7 +166,9 @@ def bench(o):
             for density in o.densities:
                 for threads in o.threads:
                     print(f"bench: {side} x {side}, {density:g} %, {threads} threads", file=sys.stderr, flush=True)
-                    rows += Case(o, folder, picture, side, density, threads).rows(features)
+                    case = list(Case(o, folder, picture, side, density, threads).rows(features))
+                    print(bench_tables.tables({"rows": case}), end="\n\n", flush=True)  # of a long run, what there is
+                    rows += case
             picture.unlink()
     return {"$schema": SCHEMA, "machine": machine(), "pictures": [p.name for p in o.pictures], "rows": rows}
 
@@ -180,7 +182,6 @@ def main(arguments):
         return
     o = options(arguments)
     report = bench(o)
-    print(bench_tables.tables(report))
     if o.json:
         o.json.write_text(json.dumps(report, indent=2) + "\n", "utf-8")
 

@@ -74,6 +74,10 @@ def main():
         subprocess.run([bin_folder / "imgmesh-build", picture, "-o", drawn[-1], "--density", "2", "--draco", "none", "-q",
                         *options], cwd=folder, check=True)
     paths += drawn
+    # Its colours are not where Blender looks, as they should not be.
+    drawn.append(folder / "texture.glb")
+    subprocess.run([bin_folder / "imgmesh-convert", "photograph.glb", "-o", drawn[-1], "--texture", "--image",
+                    "photograph.png", "-q"], cwd=folder, check=True)
 
     run_blender(blender, HERE / "blender_facts.py", folder / "facts.npz", *paths)
     facts = dict(np.load(folder / "facts.npz"))

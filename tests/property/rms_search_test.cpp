@@ -2,46 +2,126 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <functional>
 
 #include "libcore/base/error.h"
 #include "libcore/build/build.h"
+#include "libcore/build/mesh_ladder.h"
 #include "libcore/build/rms_search.h"
 #include "tests/support/sample_pictures.h"
 
 using namespace imgmesh;
 using namespace imgmesh::test;
 
+namespace {
+
+// Errors of a made-up picture.
+class MadeUpMeshes : public MeasuredMeshes {
+  public:
+    std::function<double(std::int64_t)> error;
+    double estimate = 1;     // what estimates are off by
+    std::int64_t least = 4;  // no mesh is coarser
+    int finishes = 0, estimates = 0;
+    std::int64_t last = 0, kept = 0;
+
+    Probe finished(std::int64_t vertices) override {
+        ++finishes;
+        last = std::max(least, vertices);
+        return {last, error(last)};
+    }
+    void keep() override { kept = last; }
+    Probe estimated(std::int64_t vertices) override {
+        ++estimates;
+        const std::int64_t n = std::max(least, vertices);
+        return {n, estimate * error(n)};
+    }
+};
+
+}  // namespace
+
 // Errors like those of photographs: they fall with a power of the number of vertices.
-TEST_CASE("rms search: as few vertices as the error allows, found with few measurements") {
+TEST_CASE("rms search: as few vertices as the error allows, found with few meshes") {
     for (const std::int64_t vertices : {4, 5, 100, 400'000, 100'000'000})
-        for (const double rms : {0.0, 0.01, 0.5, 2.0, 7.0, 1e9}) {
-            INFO(vertices << " vertices, RMS " << rms);
-            const auto error_of = [](std::int64_t n) { return 300 / std::sqrt(double(n)); };
-            int runs = 0, measured = 0;
-            std::int64_t last = 0, found = 0;
-            search_rms(
-                vertices, rms,
-                [&](const std::vector<std::int64_t>& counts) {
-                    ++runs;
-                    for (std::size_t k = 1; k < counts.size(); ++k) CHECK(counts[k] < counts[k - 1]);
-                    CHECK(counts.back() >= 4);
-                    return [&, counts](std::size_t k) {
-                        ++measured;
-                        last = counts[k];
-                        return error_of(last);
-                    };
-                },
-                [&] { found = last; });
-            CHECK(runs <= 2);
-            CHECK(measured <= 24);
-            if (error_of(vertices) > rms) {
-                CHECK(found == 0);
-                continue;
-            }
-            REQUIRE(found >= 4);
-            CHECK(error_of(found) <= rms);
-            if (found > 4) CHECK(error_of(static_cast<std::int64_t>(0.95 * double(found)) - 1) > rms);
-        }
+        for (const double rms : {0.0, 0.01, 0.5, 2.0, 7.0, 1e9})
+            for (const double slope : {0.35, 0.5, 0.7})
+                for (const double off : {0.85, 1.0, 1.2}) {
+                    INFO(vertices << " vertices, RMS " << rms << " slope " << slope << " off " << off);
+                    MadeUpMeshes meshes;
+                    meshes.error = [slope](std::int64_t n) { return 300 * std::pow(double(n), -slope); };
+                    meshes.estimate = off;
+                    const bool found = search_rms(vertices, vertices / 50, rms, meshes);
+                    CHECK(meshes.estimates <= 2);
+                    CHECK(found == (meshes.error(vertices) <= rms));
+                    CHECK(found == (meshes.kept > 0));
+                    // Those that only the densest or the coarsest mesh ends, or that are far from the guess,
+                    // take a few more.
+                    CHECK(meshes.finishes <= 8);
+                    if (!found) continue;
+                    CHECK(meshes.error(meshes.kept) <= rms);
+                    if (meshes.kept == 4) continue;
+                    CHECK(meshes.error(static_cast<std::int64_t>(0.94 * double(meshes.kept)) - 1) > rms);
+                    const double share = double(meshes.kept) / double(vertices);
+                    if (share > 0.002 && share < 0.1 && meshes.kept > 100) CHECK(meshes.finishes <= 3);
+                }
+}
+
+// An edge that only so many vertices can follow, errors that rise and fall, and none at all.
+TEST_CASE("rms search: errors that follow no law") {
+    MadeUpMeshes jump;
+    jump.error = [](std::int64_t n) { return n >= 777 ? 1.0 : 30.0; };
+    REQUIRE(search_rms(100'000, 1000, 2, jump));
+    CHECK(jump.kept >= 777);
+    CHECK(jump.kept <= 810);
+    CHECK(jump.finishes <= 30);
+
+    MadeUpMeshes rough;
+    rough.error = [](std::int64_t n) { return 300 / std::sqrt(double(n)) * (1 + 0.3 * std::sin(double(n))); };
+    REQUIRE(search_rms(100'000, 1000, 5, rough));
+    CHECK(rough.error(rough.kept) <= 5);
+    CHECK(rough.finishes <= 30);
+
+    MadeUpMeshes flat;
+    flat.error = [](std::int64_t) { return 0.0; };
+    REQUIRE(search_rms(100'000, 1000, 0, flat));
+    CHECK(flat.kept == 4);
+    CHECK(flat.finishes <= 3);
+
+    // No mesh is coarser than 600: limits of the collapse have ended it.
+    MadeUpMeshes limited;
+    limited.least = 600;
+    limited.error = [](std::int64_t n) { return 300 / std::sqrt(double(n)); };
+    REQUIRE(search_rms(100'000, 1000, 50, limited));
+    CHECK(limited.kept == 600);
+    CHECK(limited.finishes <= 3);
+    REQUIRE(search_rms(100'000, 1000, 7, limited));
+    CHECK(limited.error(limited.kept) <= 7);
+}
+
+// What is handed out is the mesh asked for; a little finer ones are there still, others begin anew.
+TEST_CASE("mesh ladder: meshes of any number of vertices, from as few runs as possible") {
+    const FeatureImage feature = sample_feature(Kind::kNoise, 150, 120);
+    const GridMesh grid = grid_mesh(feature);
+    const auto params = [](std::int64_t) { return CollapseParams{}; };
+    const Progress none;
+    MeshLadder ladder(grid, params, none);
+    const auto count = [&](std::int64_t vertices, bool rungs) {
+        const CollapseResult level = ladder.mesh(vertices, rungs);
+        CHECK(level.mesh.faces.size() > 0);
+        return static_cast<std::int64_t>(level.mesh.vertex_count());
+    };
+    CHECK(count(5000, false) == 5000);
+    CHECK(count(900, false) == 900);
+    CHECK(count(600, true) == 600);
+    CHECK(ladder.runs() == 1);
+    for (const std::int64_t finer : {600, 601, 650, 700, 790}) {
+        CHECK(count(finer, true) <= finer);
+        CHECK(count(finer, true) >= 0.98 * double(finer) - 1);
+    }
+    CHECK(count(590, true) <= 590);
+    CHECK(ladder.runs() == 1);
+    CHECK(count(2000, true) == 2000);
+    CHECK(ladder.runs() == 2);
+    CHECK(count(4, true) == 4);
 }
 
 // A strip one pixel wide has more vertices than pixels: with all of them the picture is reached exactly.

@@ -12,70 +12,16 @@
 #include "formats/finding_codes.h"
 #include "formats/glb.h"
 #include "formats/gltf_asset.h"
-#include "formats/validate.h"
 #include "libcore/base/error.h"
+#include "tests/support/broken_container.h"
 #include "tests/support/random_mesh_image.h"
-#include "tests/support/small_pictures.h"
 #include "tests/support/temporary_folder.h"
 
 using namespace imgmesh;
+using namespace imgmesh::test;
 using nlohmann::json;
 
 namespace {
-
-using Bytes = std::vector<std::uint8_t>;
-
-Bytes read_bytes(const std::string& path) {
-    return read_file(path, 1 << 24);
-}
-
-void write_bytes(const std::string& path, std::span<const std::uint8_t> bytes) {
-    std::ofstream out(path, std::ios::binary);
-    out.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
-}
-
-void write_text(const std::string& path, const std::string& text) {
-    write_bytes(path, {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
-}
-
-// The code in the message of the Error, "" for none; a message must be one line that names the file.
-std::string refusal(const std::string& path, const ContainerLimits& limits = {}) {
-    try {
-        read_container(path, limits);
-        return "";
-    } catch (const Error& error) {
-        const std::string text = error.what();
-        CHECK(text.starts_with(path + ": ["));
-        CHECK(text.find('\n') == std::string::npos);
-        CHECK((error.code() == ErrorCode::kBadFile || error.code() == ErrorCode::kUnsupported));
-        const auto begin = text.find('[') + 1;
-        return text.substr(begin, text.find(']') - begin);
-    }
-}
-
-// A .gltf whose JSON can be changed.
-struct Broken {
-    TemporaryFolder folder;
-    std::string path = folder / "x.gltf";
-
-    explicit Broken(DracoMode mode = DracoMode::kOff) {
-        write_container(path, random_mesh_image(20, 15, 2, WeightPrecision::kHalf, true, 5), {mode, true});
-    }
-    std::string with(const auto& change) {
-        return with(change, [] {});
-    }
-    // `look`s at the changed file.
-    std::string with(const auto& change, const auto& look) {
-        const Bytes good = read_bytes(path);
-        json document = json::parse(good.begin(), good.end());
-        change(document);
-        write_text(path, document.dump());
-        const std::string code = refusal(path);
-        look();
-        write_bytes(path, good);
-        return code;
-    }
-};
 
 json& root(json& d) {
     return d["extensions"]["IMGMESH_pixel_map"];
@@ -127,79 +73,6 @@ TEST_CASE("refusals: the glTF part") {
     CHECK(file.with([](json& d) { d["buffers"].push_back(d["buffers"][0]); }) == "gltf.buffer");
     CHECK(file.with([](json& d) { d["buffers"][0]["byteLength"] = 1 << 24; }) == "gltf.buffer");
     CHECK(file.with([](json& d) { d["buffers"][0].erase("uri"); }) == "gltf.buffer");
-}
-
-TEST_CASE("refusals: the texture; one of another kind is for viewers alone") {
-    Broken file;
-    {
-        const MeshImage image = random_mesh_image(20, 15, 2, WeightPrecision::kHalf, true, 5);
-        ContainerOptions options{DracoMode::kOff, true};
-        options.texture = {red_png(), texture_coords(image)};
-        write_container(file.path, image, options);
-    }
-    const auto has_texture = [&](const auto& change) {
-        bool found = false;
-        const std::string code =
-            file.with(change, [&] { found = !read_container(file.path).texture.picture.empty(); });
-        CHECK(code == "");
-        return found;
-    };
-    const auto view = [](const json& d) { return d["images"][0]["bufferView"].get<std::size_t>(); };
-    const auto texcoord = [](json& d) -> json& {
-        const auto index = d["meshes"][0]["primitives"][0]["attributes"]["TEXCOORD_0"].get<std::size_t>();
-        return d["accessors"][index];
-    };
-    CHECK(has_texture([](json&) {}));
-    CHECK(file.with([](json& d) { d["meshes"][0]["primitives"][0]["material"] = 1; }) == "gltf.index");
-    CHECK(file.with([](json& d) { d["meshes"][0]["primitives"][0]["material"] = -1; }) == "gltf.structure");
-    CHECK(file.with([](json& d) {
-        d["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"]["index"] = 1;
-    }) == "gltf.index");
-    CHECK(file.with([](json& d) { d["textures"][0]["source"] = 7; }) == "gltf.index");
-    // A level that is not looked at for the picture counts as well; a validator tells it once.
-    for (const std::size_t k : {0u, 1u}) {
-        std::vector<Issue> issues;
-        CHECK(file.with([&](json& d) { d["meshes"][k]["primitives"][0]["material"] = 7; },
-                        [&] { issues = validate_container(file.path); }) == "gltf.index");
-        REQUIRE(issues.size() == 1);
-        CHECK(issues[0].finding->code == "gltf.index");
-        CHECK(issues[0].place.pointer == cat("/meshes/", k, "/primitives/0/material"));
-    }
-    CHECK(file.with([](json& d) { d.erase("images"); }) == "gltf.index");
-    CHECK(file.with([](json& d) { d["images"] = {{"0", 1}}; }) == "gltf.index");
-    CHECK(file.with([](json& d) { d["images"][0]["bufferView"] = 77; }) == "gltf.index");
-    CHECK(file.with([](json& d) { d["images"][0]["bufferView"] = -1; }) == "gltf.structure");
-    CHECK(file.with([&](json& d) { d["bufferViews"][view(d)]["byteLength"] = 2000000000; }) == "gltf.range");
-    CHECK(file.with([&](json& d) { texcoord(d)["type"] = "VEC3"; }) == "mesh.accessor");
-    CHECK(file.with([&](json& d) { texcoord(d)["count"] = 3; }) == "mesh.counts");
-    CHECK(file.with([&](json& d) { texcoord(d)["bufferView"] = 77; }) == "gltf.index");
-    CHECK(file.with([&](json& d) { texcoord(d)["byteOffset"] = 4; }) == "gltf.range");
-    CHECK(file.with([](json& d) { d["meshes"][0]["primitives"][0]["attributes"].erase("_COLOR"); }) ==
-          "gltf.attribute");
-    // What viewers make of it is for a validator to tell.
-    const auto advice = [&](const auto& change) {
-        std::set<std::string_view> codes;
-        file.with(change, [&] {
-            for (const Issue& issue : validate_container(file.path)) codes.insert(issue.finding->code);
-        });
-        return codes;
-    };
-    using Codes = std::set<std::string_view>;
-    const auto attributes = [](json& d) -> json& { return d["meshes"][0]["primitives"][0]["attributes"]; };
-    CHECK(advice([&](json& d) { attributes(d)["COLOR_0"] = attributes(d)["_COLOR"]; }) ==
-          Codes{"gltf.texture"});
-    CHECK(advice([&](json& d) { attributes(d).erase("TEXCOORD_0"); }) ==
-          Codes{"gltf.texture", "gltf.unused"});
-    CHECK(advice([&](json& d) { d["materials"][0].erase("pbrMetallicRoughness"); }) == Codes{"gltf.texture"});
-    CHECK(advice([&](json& d) { d["images"][0]["mimeType"] = "image/ktx2"; }) == Codes{"gltf.foreign"});
-    CHECK(advice([&](json& d) { d["images"][0]["mimeType"] = "image/jpeg"; }) == Codes{"texture.data"});
-    CHECK_FALSE(has_texture([](json& d) { d["materials"][0].erase("pbrMetallicRoughness"); }));
-    CHECK_FALSE(has_texture([](json& d) { d["textures"][0].erase("source"); }));
-    CHECK_FALSE(has_texture([](json& d) { d["images"][0]["mimeType"] = "image/ktx2"; }));
-    CHECK_FALSE(has_texture([](json& d) { d["images"] = {{{"uri", "../secret.png"}}}; }));
-    CHECK_FALSE(has_texture([&](json& d) { d["bufferViews"][view(d)]["byteLength"] = 3; }));
-    CHECK_FALSE(
-        has_texture([](json& d) { d["meshes"][1]["primitives"][0]["attributes"].erase("TEXCOORD_0"); }));
 }
 
 TEST_CASE("refusals: the Draco extension in the JSON") {

@@ -231,15 +231,6 @@ TEST_CASE("container: a texture and its coordinates are read back to the bit, in
             }
 }
 
-TEST_CASE("container: a vertex's place in the texture is its pixel's") {
-    MeshImage image = random_mesh_image(23, 18, 1, WeightPrecision::kHalf, false, 7);
-    image.levels[0].mesh.position[0] = {0, 0};
-    image.levels[0].mesh.position[1] = {22, 8.5f};
-    const auto coords = texture_coords(image)[0];
-    CHECK(coords[0] == Vec2f(0.5f / 23, 0.5f / 18));  // the centre of the first pixel
-    CHECK(coords[1] == Vec2f(22.5f / 23, 0.5f));
-}
-
 TEST_CASE("container: .glb and .gltf turn into each other without loss, and writing is deterministic") {
     const TemporaryFolder folder;
     const MeshImage image = random_mesh_image(30, 20, 2, WeightPrecision::kHalf, true, 99);

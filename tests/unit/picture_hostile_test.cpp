@@ -4,6 +4,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <cstring>
+
 #include "formats/image_io.h"
 #include "formats/picture_probe.h"
 #include "tests/support/picture_files.h"
@@ -268,4 +270,44 @@ TEST_CASE("hostile: paths that lead to no picture") {
     save(folder / "secret.tif", tif);
     ::chmod((folder / "secret.tif").c_str(), 0);
     if (::geteuid() != 0) CHECK(error_of([&] { read_image(folder / "secret.tif"); }) == ErrorCode::kIo);
+}
+
+// Found by fuzzing: OpenImageIO goes to where the header says, also before the file's begin.
+TEST_CASE("hostile: a BMP whose pixels are outside the file") {
+    const TemporaryFolder folder;
+    const Bytes good = sample_file(folder, "a.bmp");
+    for (const std::uint32_t offset : {0xFFFFFFFFu, 0xFFFFFF00u, 0x80000000u, 0x7FFFFFFFu, 100000u}) {
+        Bytes file = good;
+        std::memcpy(file.data() + 10, &offset, 4);
+        save(folder / "r.bmp", file);
+        CHECK(error_of([&] { read_image(folder / "r.bmp"); }) == ErrorCode::kBadFile);
+    }
+}
+
+// Found by fuzzing: OpenImageIO reads runs of indices into a palette that is not there.
+TEST_CASE("hostile: a BMP's compression is one for its depth") {
+    const TemporaryFolder folder;
+    // 4 x 2 pixels, palette {10, 20, 30}, {40, 50, 60}: a run of four of the second, then four of the first.
+    const auto read = [&](int bits, int compression) {
+        Bytes file = bytes_of({"BM\0\0\0\0\0\0\0\0\x3E\0\0\0\x28\0\0\0\x04\0\0\0\x02\0\0\0\x01\0", 28});
+        for (const int value :
+             {bits, 0, compression, 0, 0, 0, 10, 0, 0,  0,  0,  0, 0,  0,  0,  0, 0, 0,
+              2,    0, 0,           0, 0, 0, 0,  0, 30, 20, 10, 0, 60, 50, 40, 0, 4, bits == 4 ? 0x11 : 1,
+              0,    0, 4,           0, 0, 1, 0,  0})
+            file.push_back(static_cast<std::uint8_t>(value));
+        save(folder / "r.bmp", file);
+        return read_image(folder / "r.bmp");
+    };
+    for (const auto& [bits, compression] : {std::pair(8, 1), std::pair(4, 2)}) {
+        const Image image = read(bits, compression);
+        CHECK(image.width == 4);
+        CHECK(image.height == 2);
+        CHECK(image.pixel(0, 0)[0] == 10 / 255.f);  // rows are stored bottom up
+        CHECK(image.pixel(3, 1)[2] == 60 / 255.f);
+    }
+    for (const auto& [bits, compression] :
+         {std::pair(24, 1), std::pair(8, 2), std::pair(4, 1), std::pair(1, 1), std::pair(32, 2)})
+        CHECK(error_of([&] { read(bits, compression); }) == ErrorCode::kBadFile);
+    for (const int compression : {4, 5, 7, 255})
+        CHECK(error_of([&] { read(24, compression); }) == ErrorCode::kUnsupported);
 }
