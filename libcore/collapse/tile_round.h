@@ -77,7 +77,10 @@ Tally tile_round(CollapseMesh<Q>& mesh, const CollapseRules& rules, const RoundT
     });
     Tally sum;
     for (const Tally& part : tallies) sum.add(part);
-    for (Ring& ring : rings) ring.sealed = 0;
+    parallel_blocks(0, count, kGrain, [&](int begin, int end) {
+        for (auto v = static_cast<std::size_t>(begin); v < static_cast<std::size_t>(end); ++v)
+            rings[v].sealed = 0;
+    });
     return sum;
 }
 

@@ -105,12 +105,14 @@ int features(const Arguments& a) {
 int measure(const Arguments& a) {
     const FeatureImage feature = read_features(a.at(0));
     BaseMesh mesh = read_mesh(a.at(1));
+    const MeshQuality quality = mesh_quality(mesh);
     const PixelMap map = trivial_map(mesh, feature.width, feature.height);
     const auto uncovered = std::count_if(map.coords.begin(), map.coords.end(),
                                          [](const PixelCoord& c) { return c.face == kNone; });
     Json out = {{"vertices", mesh.vertex_count()},
-                {"faces", mesh.faces.size()},
                 {"uncovered_pixels", uncovered},
+                {"mean_edge_ratio", quality.mean_edge_ratio},
+                {"mean_shape", quality.mean_shape},
                 {"gouraud_rms", map_rms(mesh, map, feature)}};
     fit_colors(mesh, feature, {{&map, 1}}, {});
     out["refitted_rms"] = map_rms(mesh, map, feature);

@@ -5,10 +5,15 @@
 """
 import pathlib
 import statistics
+import struct
+import subprocess
 import sys
 
 import svg_plot
 from tools_runner import Tools
+
+sys.path.append(str(pathlib.Path(__file__).resolve().parents[2] / "tests" / "bench"))
+import bench_peers  # noqa: E402
 
 DENSITIES = (0.5, 1, 2, 4)
 METHODS = {"fast": ("--preset", "fast"), "default": (), "best, luv": ("--preset", "best"),
@@ -31,6 +36,31 @@ def measure(tools, picture, density, options):
             "seconds": seconds}
 
 
+def peer_results(bin_folder, paths, work):
+    """{(name, density): figures} of the other simplifiers that are installed (./run bench peers): the error and shape of
+    their mesh with colours refitted, and the CPU seconds of the one call that simplifies."""
+    tool, results = pathlib.Path(bin_folder) / "bench-tool", {}
+    features = work / "features"
+    for density in DENSITIES:
+        rows = {}
+        for path in paths:
+            subprocess.run([tool, "features", path, features], check=True)
+            width, height = struct.unpack("<II", features.read_bytes()[8:16])
+            vertices = round(width * height * density / 100)
+            for name, usages, result in bench_peers.measure(bin_folder, features, vertices, work, 1):
+                print(f"quality: {name}, {density} %", flush=True)
+                rows.setdefault(name, []).append(
+                    {"mesh": result["refitted_rms"], "edge_ratio": result["mean_edge_ratio"], "mean_q": result["mean_shape"],
+                     "seconds": usages[0]["user_seconds"] + usages[0]["system_seconds"]})
+        for name, figures in rows.items():
+            results[name, density] = {key: statistics.fmean(f[key] for f in figures) for key in figures[0]}
+    return results
+
+
+def cell(figures, key, form):
+    return format(figures[key], form) if key in figures else ""
+
+
 def summary(rows):
     """Means over pictures; the least of q, the sum of folds."""
     out = {key: statistics.fmean(r[key] for r in rows) for key in rows[0]}
@@ -49,20 +79,26 @@ def main(bin_folder, pictures, out):
         for density in DENSITIES:
             print(f"quality: {name}, {density} %", flush=True)
             results[name, density] = summary([measure(tools, p, density, options) for p in paths])
+    peers = peer_results(bin_folder, paths, out / "work")
+    results |= peers
+    names = [*METHODS, *dict.fromkeys(name for name, _ in peers)]
     text = ["# Error over size", "",
             f"Means over {len(paths)} pictures, made by `./run quality FOLDER`. RMS is in L\\*u\\*v\\*, of the reconstruction "
             "through the pixel map and of the mesh drawn alone; PSNR is that of the mesh drawn alone "
             "(`imgmesh-reconstruct --mode gouraud`), in 8-bit sRGB; q = 4 sqrt(3) area / sum of squared edges, the least of "
             "all pictures; folds are folded pixel triangles in all pictures; CPU seconds are those of the whole program on "
-            "one thread.", ""]
+            "one thread.", "",
+            "Other simplifiers, where `./run bench peers` has installed them, get the same pixel grid; theirs are the error of "
+            "the mesh with colours of least squares and the seconds of the one call that simplifies.", ""]
     for density in DENSITIES:
         text += [f"## {density} % of the pixels as vertices", "",
                  "| | " + " | ".join(c[0] for c in COLUMNS) + " |", "|---" * (len(COLUMNS) + 1) + "|"]
-        text += [f"| {name} | " + " | ".join(format(results[name, density][key], f) for _, key, f in COLUMNS) + " |"
-                 for name in METHODS] + [""]
+        text += [f"| {name} | " + " | ".join(cell(results[name, density], key, f) for _, key, f in COLUMNS) + " |"
+                 for name in names] + [""]
     for key, title, unit in (("map", "Error through the map", "RMS in L*u*v*"), ("mesh", "Error of the mesh", "RMS in L*u*v*"),
                              ("psnr", "The mesh drawn alone", "PSNR [dB]")):
-        curves = {name: [(d, results[name, d][key]) for d in DENSITIES] for name in METHODS}
+        curves = {name: [(d, results[name, d][key]) for d in DENSITIES] for name in names
+                  if key in results[name, DENSITIES[0]]}
         (out / f"quality-{key}.svg").write_text(svg_plot.curves(title, "vertices, % of the pixels", unit, curves) + "\n",
                                                 encoding="utf-8")
         text += [f"![{title}](quality-{key}.svg)"]

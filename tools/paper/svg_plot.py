@@ -2,16 +2,18 @@
 import html
 import math
 
-COLORS = ("#3465c9", "#cc3d3d", "#2d9a4b", "#8d55b8", "#d98a1c", "#555555")
+COLORS = ("#3465c9", "#cc3d3d", "#2d9a4b", "#8d55b8", "#d98a1c", "#555555", "#20a5a5", "#b0b030", "#e07bb0", "#7a4a20",
+          "#999999")
 WIDTH, HEIGHT = 460, 300
 LEFT, RIGHT, TOP, BOTTOM = 52, 12, 28, 44
+LEGEND = 250  # beside curves, which are too many to leave room among them
 
 
-def _frame(title, x_label, y_label, body):
+def _frame(title, x_label, y_label, body, width=WIDTH):
     middle_x, middle_y = (LEFT + WIDTH - RIGHT) / 2, (TOP + HEIGHT - BOTTOM) / 2
-    return (f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {HEIGHT}" width="{WIDTH}" '
+    return (f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {HEIGHT}" width="{width}" '
             f'height="{HEIGHT}" font-family="sans-serif" font-size="11">'
-            f'<rect width="{WIDTH}" height="{HEIGHT}" fill="white"/>'
+            f'<rect width="{width}" height="{HEIGHT}" fill="white"/>'
             f'<text x="{middle_x}" y="16" text-anchor="middle" font-weight="bold">{html.escape(title)}</text>'
             f'<text x="{middle_x}" y="{HEIGHT - 8}" text-anchor="middle">{html.escape(x_label)}</text>'
             f'<text x="14" y="{middle_y}" text-anchor="middle" transform="rotate(-90 14 {middle_y})">'
@@ -37,12 +39,12 @@ def _y_axis(top_value):
     return to_y, body
 
 
-def _legend(names):
+def _legend(names, left=WIDTH - RIGHT - 172):
     body = []
     for k, name in enumerate(names):
         y = TOP + 12 + 15 * k
-        body.append(f'<rect x="{WIDTH - RIGHT - 172}" y="{y - 8}" width="12" height="8" fill="{COLORS[k]}"/>'
-                    f'<text x="{WIDTH - RIGHT - 154}" y="{y}">{html.escape(name)}</text>')
+        body.append(f'<rect x="{left}" y="{y - 8}" width="12" height="8" fill="{COLORS[k]}"/>'
+                    f'<text x="{left + 18}" y="{y}">{html.escape(name)}</text>')
     return body
 
 
@@ -58,7 +60,7 @@ def curves(title, x_label, y_label, series):
         line = " ".join(f"{to_x(x):.1f},{to_y(y):.1f}" for x, y in points)
         body.append(f'<polyline points="{line}" fill="none" stroke="{color}" stroke-width="1.8"/>')
         body += [f'<circle cx="{to_x(x):.1f}" cy="{to_y(y):.1f}" r="2.5" fill="{color}"/>' for x, y in points]
-    return _frame(title, x_label, y_label, body + _legend(series))
+    return _frame(title, x_label, y_label, body + _legend(series, WIDTH + 4), WIDTH + LEGEND)
 
 
 def histograms(title, x_label, series):
