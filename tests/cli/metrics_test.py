@@ -39,8 +39,8 @@ class Metrics(CliCase):
         self.assertEqual(fitted["vertices"], quadric["vertices"])
         self.assertLess(fitted["gouraud_rms"], 0.99 * quadric["gouraud_rms"])
         for wrong in (("--refine", "1"), ("--objective", "rgb")):
-            self.assert_error("imgmesh-build", ["in.png", "-o", "x.glb", "--colors", "quadric", *wrong], 2, "colors",
-                              "refine")
+            self.assert_error("imgmesh-build", ["in.png", "-o", "x.glb", "--colors", "quadric", *wrong], 2,
+                              "--colors quadric", wrong[0])
 
     def test_smoothing_is_by_density_or_as_wanted(self):
         self.assertEqual(self.parameters("--smoothing", "3")["smoothing"], 3)

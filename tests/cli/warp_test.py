@@ -142,7 +142,7 @@ class Warp(CliCase):
 
     def test_container(self):
         for name in ("w.glb", "w.gltf"):
-            report = self.report(TOOL, "c.glb", "-o", name, "--handle", "24,16:1,-1", "--level", "1")
+            report = self.report(TOOL, "c.glb", "-o", name, "--handle", "24,16:0.5,-0.5", "--level", "1")
             self.assertEqual(report["bytes"], (self.folder / name).stat().st_size)
             info = self.report("imgmesh-info", name, "--validate")
             self.assertTrue(info["valid"])
