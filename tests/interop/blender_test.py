@@ -66,7 +66,9 @@ def main():
     bin_folder, blender, samples, folder = (pathlib.Path(argument).resolve() for argument in sys.argv[1:5])
     folder.mkdir(parents=True, exist_ok=True)
     make_pictures(folder)
-    paths = sorted(path for flavour in FLAVOURS for path in samples.glob(f"{flavour}none *.gl*"))
+    # Other tests put drawings beside the samples, x.glb.png.
+    paths = sorted(path for flavour in FLAVOURS for path in samples.glob(f"{flavour}none *.gl*")
+                   if path.suffix in (".glb", ".gltf"))
     drawn = []
     for name, picture, options in (("photograph", "photograph.png", ["--levels", "2"]),
                                    ("cut-out", "photograph.png", ["--mask", "mask.png"])):
