@@ -242,7 +242,7 @@ TEST_CASE("refusals: bytes, chunks, depth and limits") {
     write_text(path, "{\"asset\": {\"version\": \"2.0\xFF\"}}");
     CHECK(refusal(path) == "json.syntax");
     // Some readers stop at a zero, others read on.
-    write_text(path, std::string("{\"asset\": {\"version\": \"2.0\"}}\0 ", 34));
+    write_text(path, "{\"asset\": {\"version\": \"2.0\"}}" + std::string(1, '\0') + " ");
     CHECK(refusal(path) == "json.syntax");
     // What a message quotes cannot break its line.
     write_text(path, R"({"asset": {"version": "1.0\nimgmesh: all is well\u001b[31m"}})");
