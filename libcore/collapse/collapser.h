@@ -22,7 +22,7 @@ inline constexpr double kTiledAbove = 1.5;
 
 // Of the tiles after the first round.
 inline constexpr double kVerticesPerTile = 4096;
-// Fewer tiles than these are not worth a round of their own.
+// Fewer vertices than these are not worth a round of tiles.
 inline constexpr std::int64_t kLeastTiled = 16384;
 
 template <class Q>
@@ -206,7 +206,8 @@ class Collapser {
 
     static constexpr std::size_t kSampled = 4096;
     // What the first tiles leave: little enough to make the dense mesh's memory and time theirs alone; the
-    // seams do not show in the result (docs/performance.md). Where the goal is near, more.
+    // seams do not show in the result (docs/decisions/0019-collapse-in-tiles.md). Where the goal is near,
+    // more.
     static constexpr double kStartShare = 0.12, kStartAbove = 1.3, kMostStartShare = 0.7;
 
     const GridMesh& grid_;

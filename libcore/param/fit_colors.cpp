@@ -120,7 +120,7 @@ CornersOfVertices corners_of_vertices(const BaseMesh& mesh) {
     return out;
 }
 
-// The normal equations of one vertex: diagonal x - sum of links = rhs.
+// The normal equations of one vertex: diagonal x + sum of weight other = rhs.
 template <int C>
 struct VertexSystem {
     Id vertex;
