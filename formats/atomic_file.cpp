@@ -38,56 +38,43 @@ struct Descriptor {
 
 // ---- Temporary names that a signal handler removes -------------------------------------------------------
 // More files than slots at one time is no error: those beyond are removed by their destructor alone.
-struct Slot {
-    std::atomic<const char*> path;
-    std::atomic<const char*> guard;  // or null: the file goes only if this one was still there and went
-};
-std::array<Slot, 256> g_temporaries;
+std::array<std::atomic<const char*>, 256> g_temporaries;
 std::atomic<bool> g_ending = false;
+std::atomic<int> g_switches = 0;  // living SwitchOvers
 static_assert(std::atomic<const char*>::is_always_lock_free, "a signal handler uses it");
 
-void register_temporary(const char* path, const char* guard = nullptr) {
-    static const char kReserved = 0;
-    for (Slot& slot : g_temporaries) {
+void register_temporary(const char* path) {
+    for (std::atomic<const char*>& slot : g_temporaries) {
         const char* empty = nullptr;
-        if (!slot.path.compare_exchange_strong(empty, &kReserved)) continue;
-        slot.guard = guard;
-        slot.path = path;  // the reserved slot's path, which names no file, is gone from here on
-        return;
+        if (slot.compare_exchange_strong(empty, path)) return;
     }
 }
 
 void forget_temporary(const char* path) {
-    for (Slot& slot : g_temporaries) {
+    for (std::atomic<const char*>& slot : g_temporaries) {
         const char* expected = path;
-        if (slot.path.compare_exchange_strong(expected, nullptr)) return;
+        if (slot.compare_exchange_strong(expected, nullptr)) return;
     }
     // Taken by a signal handler on another thread: the process is ending, and the string must live until
     // then.
     while (g_ending) ::pause();
 }
 
-// Async-signal-safe: lock-free atomics, unlink, pause, raise.
+// Async-signal-safe: lock-free atomics, nanosleep, unlink, raise. A thread that switches over holds signals
+// off, so whoever is waited for here is another thread.
 extern "C" void remove_temporaries_and_end(int signal) {
     g_ending = true;
-    const char* removed[g_temporaries.size()];
-    std::size_t count = 0;
-    for (Slot& slot : g_temporaries) {
-        if (slot.guard) continue;
-        const char* path = slot.path.exchange(nullptr);
-        if (path && ::unlink(path) == 0) removed[count++] = path;
-    }
-    for (Slot& slot : g_temporaries) {
-        const char* guard = slot.guard;
-        const char* path = guard ? slot.path.exchange(nullptr) : nullptr;
-        if (path && std::find(removed, removed + count, guard) != removed + count) ::unlink(path);
-    }
+    constexpr timespec kMillisecond = {0, 1'000'000};
+    while (g_switches > 0) ::nanosleep(&kMillisecond, nullptr);
+    for (std::atomic<const char*>& slot : g_temporaries)
+        if (const char* path = slot.exchange(nullptr)) ::unlink(path);
     ::raise(signal);  // SA_RESETHAND and SA_NODEFER: the default action, at once
 }
 
-// ---- Targets
-// ----------------------------------------------------------------------------------------------- Renaming
-// over a device would replace it by a regular file, and over a link would cut it off.
+constexpr std::array kEndingSignals = {SIGINT, SIGTERM, SIGHUP};
+
+// ---- Targets ---------------------------------------------------------------------------------------------
+// Renaming over a device would replace it by a regular file, and over a link would cut it off.
 std::string resolve_target(const std::string& path, bool overwrite) {
     struct stat info = {};
     if (::lstat(path.c_str(), &info) != 0) {
@@ -166,24 +153,18 @@ void AtomicFile::write_parts(std::span<const std::span<const std::uint8_t>> part
 }
 
 void AtomicFile::commit() {
-    flush_and_rename();
+    place();
     keep();
-    flush_folder(target_);
 }
 
-void AtomicFile::place(const AtomicFile& before) {
-    assert(!overwrite_);  // what is removed in place of an old file would be lost with it
+void AtomicFile::place() {
     flush_and_rename();
+    flush_folder(target_);
     forget_temporary(temporary_path_.c_str());
     temporary_path_ = target_;
-    register_temporary(temporary_path_.c_str(), before.temporary_path_.c_str());
-    flush_folder(target_);
 }
 
-void AtomicFile::keep() {
-    kept_ = true;
-    forget_temporary(temporary_path_.c_str());
-}
+void AtomicFile::keep() { kept_ = true; }
 
 void AtomicFile::flush_and_rename() {
     {
@@ -204,8 +185,24 @@ void AtomicFile::flush_and_rename() {
     if (status != 0) fail(path_, overwrite_ ? "cannot write" : "not overwritten", errno);
 }
 
+SwitchOver::SwitchOver() {
+    sigset_t ending;
+    ::sigemptyset(&ending);
+    for (const int signal : kEndingSignals) ::sigaddset(&ending, signal);
+    ::pthread_sigmask(SIG_BLOCK, &ending, &before_);
+    ++g_switches;
+    if (!g_ending) return;
+    --g_switches;  // the handler of another thread is at work, or waits for this one
+    for (;;) ::pause();
+}
+
+SwitchOver::~SwitchOver() {
+    --g_switches;
+    ::pthread_sigmask(SIG_SETMASK, &before_, nullptr);
+}
+
 void remove_temporaries_on_signals() {
-    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    for (const int signal : kEndingSignals) {
         struct sigaction action = {};
         if (::sigaction(signal, nullptr, &action) != 0 || action.sa_handler != SIG_DFL) continue;
         action = {};

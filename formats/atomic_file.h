@@ -1,6 +1,7 @@
 // Files that appear whole or not at all.
 #pragma once
 
+#include <csignal>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -29,10 +30,9 @@ class AtomicFile {
     /// The same, one part behind the other.
     void write_parts(std::span<const std::span<const std::uint8_t>> parts);
     void commit();
-    /// As commit(), but until keep() destruction removes the file, now under its own name, and so do signals
-    /// as long as `before` is not committed: for a file that is of no use until `before`, which lives longer,
-    /// stands. Not with `overwrite`.
-    void place(const AtomicFile& before);
+    /// As commit(), but until keep() destruction removes the file, now under its own name: for a file that is
+    /// of no use without another. Only where there was none of this name, and in a SwitchOver.
+    void place();
     void keep();
 
   private:
@@ -44,6 +44,19 @@ class AtomicFile {
     int claim_ = -1;  ///< a descriptor that holds the claim to the temporary file
     bool overwrite_;
     bool kept_ = false;
+};
+
+/// As long as one lives, the signals of remove_temporaries_on_signals() wait: for a change of several files
+/// that must happen as a whole.
+class SwitchOver {
+  public:
+    SwitchOver();
+    ~SwitchOver();
+    SwitchOver(const SwitchOver&) = delete;
+    SwitchOver& operator=(const SwitchOver&) = delete;
+
+  private:
+    sigset_t before_;
 };
 
 /// From now on SIGINT, SIGTERM and SIGHUP remove the temporary files of living AtomicFiles before they end

@@ -59,8 +59,8 @@ CompanionFile::CompanionFile(const std::string& path, const std::string& extensi
     file_->write(bytes);
 }
 
-void CompanionFile::place(const AtomicFile& gltf) {
-    if (file_) file_->place(gltf);
+void CompanionFile::place() {
+    if (file_) file_->place();
 }
 
 void CompanionFile::keep() {

@@ -20,7 +20,7 @@ class CompanionFile {
 
     const std::string& name() const { return name_; }  ///< without the folder
     /// Gives it its name; until keep() it goes when this object does (AtomicFile::place).
-    void place(const AtomicFile& gltf);
+    void place();
     void keep();
 
   private:

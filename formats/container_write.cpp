@@ -113,10 +113,11 @@ void write_glb(const std::string& path, Asset& asset, const std::vector<std::uin
 }
 
 // The rename of the .gltf switches over: until then the files of the old container stay as they are, and only
-// then they go. A crash in between leaves files that nothing refers to.
+// then they go. A crash in between leaves files that nothing refers to; a signal waits until all is done.
 void write_gltf(const std::string& path, Asset& asset, const std::vector<std::uint8_t>& buffer,
                 const std::vector<std::uint8_t>& layers, const ContainerOptions& options) {
     const std::vector<std::string> old_files = companions_of(path);
+    std::optional<SwitchOver> switch_over;  // ends after the files: one placed in vain must go before a signal
     AtomicFile gltf(path, options.overwrite);
     CompanionFile bin(path, ".bin", buffer);
     std::optional<CompanionFile> exr;
@@ -126,8 +127,9 @@ void write_gltf(const std::string& path, Asset& asset, const std::vector<std::ui
     asset.buffer_length = buffer.size();
     const std::string json = json_from_asset(asset);
     gltf.write({reinterpret_cast<const std::uint8_t*>(json.data()), json.size()});
-    bin.place(gltf);
-    if (exr) exr->place(gltf);
+    switch_over.emplace();
+    bin.place();
+    if (exr) exr->place();
     gltf.commit();
     bin.keep();
     if (exr) exr->keep();

@@ -107,10 +107,13 @@ class Faults(CliCase):
 
     def test_ended_by_a_signal_leaves_no_file(self):
         before = self.files()
-        for name, number in (("c.glb", signal.SIGTERM), ("c.gltf", signal.SIGINT), ("c.gltf", signal.SIGTERM),
-                             ("c.gltf", signal.SIGHUP)):
+        for name, number, moment in (("c.glb", signal.SIGTERM, "."), ("c.gltf", signal.SIGINT, "."),
+                                     ("c.gltf", signal.SIGTERM, "."), ("c.gltf", signal.SIGHUP, "."),
+                                     # While new files stand beside old ones: all are switched, or none.
+                                     ("c.gltf", signal.SIGTERM, "c"), ("c.gltf", signal.SIGINT, "c")):
             process = self.start(name)
-            while process.poll() is None and set(os.listdir(self.folder)) <= {*before, "alone"}:
+            while process.poll() is None and not any(file.startswith(moment) for file in
+                                                     set(os.listdir(self.folder)) - {*before, "alone"}):
                 pass
             process.send_signal(number)
             process.wait(60)
