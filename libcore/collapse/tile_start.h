@@ -37,9 +37,6 @@ Tally start_in_tiles(const GridMesh& grid, const FeatureImage& gradients, const 
 
 namespace tile_start {
 
-// Among the neighbours of a sealed vertex: a pixel of another tile.
-inline constexpr Id kElsewhere = 1u << 31;
-
 struct Tiles {
     int width, height;  // of the picture
     int across = (width + kStartTile - 1) / kStartTile, down = (height + kStartTile - 1) / kStartTile;
@@ -55,16 +52,42 @@ struct Tiles {
     }
 };
 
-// The tile's part of the dense mesh, vertices row by row.
+// In a part that keep_survivors() has made: a neighbour in another tile, by its pixel.
+inline constexpr Id kElsewhere = 1u << 31;
+
+// A tile while it collapses.
+template <class Q>
+struct TileMesh {
+    CollapseMesh<Q> mesh;    // the tile's own vertices row by row, then ghosts
+    std::size_t own = 0;     // so many
+    std::int64_t live = 0;   // of them
+    std::int64_t halved = 0; // where quadrics are to be rebuilt next
+};
+
+// The tile's part of the dense mesh. A vertex with a neighbour in another tile is sealed, and that neighbour
+// a ghost: a place and features, in no ring's middle.
 template <class Q>
 void fill(const GridMesh& grid, const FeatureImage& gradients, float lambda, const PixelRect& rect,
-          CollapseMesh<Q>& mesh) {
+          TileMesh<Q>& tile) {
     const Id w = static_cast<Id>(grid.feature.width);
-    const auto count = static_cast<std::size_t>(rect.width()) * static_cast<std::size_t>(rect.height());
-    mesh.rings.resize(count);
-    mesh.pixel.resize(count);
-    mesh.quadrics.resize(count);
+    CollapseMesh<Q>& mesh = tile.mesh;
+    tile.own = static_cast<std::size_t>(rect.width()) * static_cast<std::size_t>(rect.height());
+    tile.live = static_cast<std::int64_t>(tile.own);
+    tile.halved = tile.live / 2;
+    mesh.rings.resize(tile.own);
+    mesh.pixel.resize(tile.own);
+    mesh.quadrics.resize(tile.own);
     vertex_quadrics(grid, gradients, lambda, rect, mesh.quadrics.data());
+    const auto ghost = [&](int x, int y) {
+        const Id pixel = static_cast<Id>(y) * w + static_cast<Id>(x);
+        Ring& ring = mesh.rings.emplace_back();
+        Q& quadric = mesh.quadrics.emplace_back();
+        quadric.px = ring.x = grid.origin_x + static_cast<float>(x);
+        quadric.py = ring.y = grid.origin_y + static_cast<float>(y);
+        std::copy_n(grid.feature.pixel(pixel), Q::kChannels, quadric.s);
+        mesh.pixel.push_back(pixel);
+        return static_cast<Id>(mesh.rings.size() - 1);
+    };
     const auto stride = static_cast<Id>(rect.width());
     Id v = 0;
     for (int y = rect.top; y < rect.bottom; ++y)
@@ -74,23 +97,47 @@ void fill(const GridMesh& grid, const FeatureImage& gradients, float lambda, con
                 mesh.rings[v] = inner_ring(grid, x, y, v, stride);
                 continue;
             }
-            Ring& ring = mesh.rings[v] = grid_ring(grid, x, y);
+            Ring ring = grid_ring(grid, x, y);
             for (int k = 0; k < ring.valence; ++k) {
                 Id& n = ring.neighbor[k];
                 const int nx = static_cast<int>(n % w), ny = static_cast<int>(n / w);
                 if (nx < rect.left || nx >= rect.right || ny < rect.top || ny >= rect.bottom) {
-                    n |= kElsewhere;
+                    n = ghost(nx, ny);
                     ring.sealed = 1;
                 } else {
                     n = static_cast<Id>((ny - rect.top) * rect.width() + nx - rect.left);
                 }
             }
+            mesh.rings[v] = ring;
         }
+}
+
+// Collapses the tile's edges below `threshold`, rebuilding quadrics at every halving of its vertices where
+// that is asked for. What their neighbours in other tiles look like is known then: they too are sealed.
+template <class Q>
+Tally collapse_tile(EdgeCollapser<Q>& engine, const CollapseParams& params, TileMesh<Q>& tile,
+                    float threshold, std::int64_t may_go) {
+    Tally sum;
+    for (;;) {
+        std::int64_t part_may = may_go - sum.vertices;
+        if (params.rebuild_quadrics) part_may = std::min(part_may, tile.live - tile.halved);
+        const Tally part = engine.run(tile.own, [](std::size_t v) { return static_cast<Id>(v); }, threshold,
+                                      {.vertices = part_may, .faces = kAllMayGo.faces});
+        // What is put off while quadrics are old may be cheaper now.
+        sum.postponed = kNever;
+        sum.add(part);
+        tile.live -= part.vertices;
+        if (!params.rebuild_quadrics || tile.live > tile.halved || sum.vertices >= may_go) return sum;
+        const std::vector<Q> rebuilt = rebuilt_quadrics(tile.mesh.rings, tile.mesh.quadrics, params);
+        std::copy_n(rebuilt.begin(), tile.own, tile.mesh.quadrics.begin());  // ghosts stay as they are
+        tile.halved = tile.live / 2;
+    }
 }
 
 // Appends what has survived to `out`, numbered from 0 on, and writes these numbers to number[pixel].
 template <class Q>
-void keep_survivors(const CollapseMesh<Q>& mesh, CollapseMesh<Q>& out, std::vector<Id>& number) {
+void keep_survivors(const TileMesh<Q>& tile, CollapseMesh<Q>& out, std::vector<Id>& number) {
+    const CollapseMesh<Q>& mesh = tile.mesh;
     const std::vector<Id> live = live_list(mesh.rings);
     for (Id n = 0; n < live.size(); ++n) number[mesh.pixel[live[n]]] = n;
     out.rings.reserve(live.size());
@@ -99,7 +146,10 @@ void keep_survivors(const CollapseMesh<Q>& mesh, CollapseMesh<Q>& out, std::vect
     for (const Id v : live) {
         Ring ring = mesh.rings[v];
         for (int k = 0; k < ring.valence; ++k)
-            if (Id& n = ring.neighbor[k]; !(n & kElsewhere)) n = number[mesh.pixel[n]];
+            if (Id& n = ring.neighbor[k]; n < tile.own)
+                n = number[mesh.pixel[n]];
+            else
+                n = mesh.pixel[n] | kElsewhere;
         ring.version = 0;
         ring.sealed = 0;
         out.rings.push_back(ring);
@@ -150,7 +200,7 @@ float median_cost(CollapseMesh<Q>& mesh, const CollapseRules& rules) {
     std::vector<float> costs;
     EdgeCollapser<Q> engine(mesh, rules);
     for (Id v = 0; v < mesh.rings.size(); ++v)
-        if (const Ring& ring = mesh.rings[v]; !ring.sealed)
+        if (const Ring& ring = mesh.rings[v]; ring.live() && !ring.sealed)
             if (const float cost = engine.cost(v, ring.neighbor[0]); cost < kNever) costs.push_back(cost);
     if (costs.empty()) return 0;
     std::nth_element(costs.begin(), costs.begin() + costs.size() / 2, costs.end());
@@ -165,7 +215,7 @@ float start_threshold(const GridMesh& grid, const FeatureImage& gradients, const
     using namespace tile_start;
     const Tiles tiles{grid.feature.width, grid.feature.height};
     const std::vector<int> some = some_tiles(tiles);
-    std::vector<CollapseMesh<Q>> meshes(some.size());
+    std::vector<TileMesh<Q>> meshes(some.size());
     std::vector<float> medians(some.size());
     const auto each = [&](const auto& body) {
         parallel_blocks(0, static_cast<int>(some.size()), 1,
@@ -173,19 +223,17 @@ float start_threshold(const GridMesh& grid, const FeatureImage& gradients, const
     };
     each([&](std::size_t n) {
         fill(grid, gradients, rules.params.geometry_weight, tiles.rect(some[n]), meshes[n]);
-        medians[n] = median_cost(meshes[n], rules);
+        medians[n] = median_cost(meshes[n].mesh, rules);
     });
     std::int64_t all = 0, gone = 0;
-    for (const CollapseMesh<Q>& mesh : meshes) all += static_cast<std::int64_t>(mesh.rings.size());
+    for (const TileMesh<Q>& tile : meshes) all += tile.live;
     std::nth_element(medians.begin(), medians.begin() + medians.size() / 2, medians.end());
     float threshold = std::max(medians[medians.size() / 2], std::numeric_limits<float>::min());
     for (float next = threshold;; next *= kTileWindow) {
         std::vector<Tally> tallies(some.size());
         each([&](std::size_t n) {
-            tallies[n] = EdgeCollapser<Q>(meshes[n], rules)
-                             .run(
-                                 meshes[n].rings.size(), [](std::size_t v) { return static_cast<Id>(v); },
-                                 next, kAllMayGo);
+            EdgeCollapser<Q> engine(meshes[n].mesh, rules);
+            tallies[n] = collapse_tile(engine, rules.params, meshes[n], next, kAllMayGo.vertices);
         });
         Tally sum;
         for (const Tally& tally : tallies) sum.add(tally);
@@ -207,15 +255,13 @@ Tally start_in_tiles(const GridMesh& grid, const FeatureImage& gradients, const 
     std::vector<Tally> tallies(parts.size());
     std::vector<Id> number(grid.feature.pixel_count());
     const auto collapse_some = [&](int begin, int end) {
-        CollapseMesh<Q> mesh;
-        EdgeCollapser<Q> engine(mesh, rules);
+        TileMesh<Q> tile;
+        EdgeCollapser<Q> engine(tile.mesh, rules);
         for (auto t = static_cast<std::size_t>(begin); t < static_cast<std::size_t>(end); ++t) {
-            fill(grid, gradients, rules.params.geometry_weight, tiles.rect(static_cast<int>(t)), mesh);
-            const auto may_go =
-                static_cast<std::int64_t>(share_that_goes * static_cast<double>(mesh.rings.size()));
-            tallies[t] = engine.run(mesh.rings.size(), [](std::size_t v) { return static_cast<Id>(v); },
-                                    threshold, {.vertices = may_go, .faces = 2 * may_go});
-            keep_survivors(mesh, parts[t], number);
+            fill(grid, gradients, rules.params.geometry_weight, tiles.rect(static_cast<int>(t)), tile);
+            const auto may_go = static_cast<std::int64_t>(share_that_goes * static_cast<double>(tile.live));
+            tallies[t] = collapse_tile(engine, rules.params, tile, threshold, may_go);
+            keep_survivors(tile, parts[t], number);
         }
     };
     Tally sum;
