@@ -164,7 +164,9 @@ void AtomicFile::place() {
     temporary_path_ = target_;
 }
 
-void AtomicFile::keep() { kept_ = true; }
+void AtomicFile::keep() {
+    kept_ = true;
+}
 
 void AtomicFile::flush_and_rename() {
     {

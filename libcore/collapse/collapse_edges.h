@@ -77,7 +77,7 @@ struct CollapseHooks {
 /// return   the mesh at each of the targets, in that order
 ///
 /// Any number of features, 1 to kMaxFeatures (Error(kUsage) else). About 70 bytes a pixel with up to three
-/// of them, 170 where it cannot begin in tiles (a mask, hooks, total priority, a goal above half the pixels),
+/// of them, 170 where it cannot begin in tiles (hooks, total priority, a goal above half the pixels),
 /// 480 with another metric or solver than the first; O(n). Deterministic, with any number of threads.
 std::vector<CollapseResult> collapse_edges(const GridMesh& grid, const CollapseParams& params,
                                            std::span<const CollapseTarget> targets,

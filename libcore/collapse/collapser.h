@@ -101,13 +101,12 @@ class Collapser {
     void start(const CollapseTarget& target, const Progress& progress) {
         const FeatureImage gradients = smoothed_vertices(grid_, params_.smoothing);
         if constexpr (kCanonical<Q>) {
-            if (params_.tiles && !params_.total_priority && grid_.mask.empty()) {
-                const auto w = std::int64_t{grid_.feature.width}, h = std::int64_t{grid_.feature.height};
-                dense_vertices_ = vertices_ = w * h;
+            if (params_.tiles && !params_.total_priority) {
+                count_dense();
                 next_rebuild_ = 0;  // tiles have their own
-                faces_ = 2 * (w - 1) * (h - 1);
                 set_target(target);
-                const double share = std::max(kStartShare, kStartAbove * (1 - share_that_goes()));
+                const double share = std::max(grid_.mask.empty() ? kStartShare : kMaskedStartShare,
+                                              kStartAbove * (1 - share_that_goes()));
                 if (share < kMostStartShare) {
                     threshold_ = start_threshold<Q>(grid_, gradients, rules_, share);
                     take(start_in_tiles(grid_, gradients, rules_, threshold_, share_that_goes(), mesh_,
@@ -116,17 +115,27 @@ class Collapser {
                                         }));
                     threshold_ *= kTileWindow;
                     next_rebuild_ = vertices_ / 2;
+                    if (!grid_.mask.empty())
+                        rules_.outline = &outline_.emplace(grid_, mesh_.rings, mesh_.pixel);
                     return;
                 }
             }
         }
         mesh_.rings = ring_mesh(grid_);
         mesh_.quadrics = initial_quadrics<Q>(grid_, mesh_.rings, gradients, params_);
-        dense_vertices_ = vertices_ = live_vertices(mesh_.rings);
-        faces_ = face_count(mesh_.rings);
+        count_dense();
         next_rebuild_ = vertices_ / 2;
-        if (!grid_.mask.empty()) rules_.outline = &outline_.emplace(grid_, mesh_.rings);
+        if (!grid_.mask.empty()) rules_.outline = &outline_.emplace(grid_, mesh_.rings, mesh_.pixel);
         threshold_ = median(sampled_costs());
+    }
+
+    void count_dense() {
+        const auto w = std::int64_t{grid_.feature.width}, h = std::int64_t{grid_.feature.height};
+        const bool masked = !grid_.mask.empty();
+        dense_vertices_ =
+            masked ? grid_.mask.count() + static_cast<std::int64_t>(grid_.copies.size()) : w * h;
+        faces_ = masked ? masked_face_count(grid_) : 2 * (w - 1) * (h - 1);
+        vertices_ = dense_vertices_;
     }
 
     // Of the vertices of each tile, so that none can take what others would have to pay for.
@@ -217,8 +226,9 @@ class Collapser {
     static constexpr double kHalved = 1.25;
     // What the first tiles leave: little enough to make the dense mesh's memory and time theirs alone; the
     // seams do not show in the result (docs/decisions/0019-collapse-in-tiles.md). Where the goal is near,
-    // more.
-    static constexpr double kStartShare = 0.12, kStartAbove = 1.3, kMostStartShare = 0.7;
+    // more; and of a cut-out, whose outline waits meanwhile.
+    static constexpr double kStartShare = 0.12, kMaskedStartShare = 0.2, kStartAbove = 1.3,
+                            kMostStartShare = 0.7;
 
     const GridMesh& grid_;
     CollapseParams params_;

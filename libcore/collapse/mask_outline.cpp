@@ -62,16 +62,16 @@ std::array<std::array<Vec2f, 3>, 3> gains(const Vec2f& a, const Vec2f& b, const 
 
 }  // namespace
 
-MaskOutline::MaskOutline(const GridMesh& grid, const RingMesh& rings)
-    : grid_(grid), first_point_(rings.size(), kNone) {
+MaskOutline::MaskOutline(const GridMesh& grid, const RingMesh& rings, const std::vector<Id>& number)
+    : grid_(grid), first_point_(grid.vertex_count(), kNone), point_(rings.size(), kNone) {
     for (Id v = 0; v < rings.size(); ++v)
         if (rings[v].live() && rings[v].border()) {
-            const Id n = static_cast<Id>(points_.size());
-            first_point_[v] = n;
-            points_.push_back({{rings[v].x, rings[v].y}, grid.pixel_of(v), kNone, n, v, n, 0});
+            const Id n = point_[v] = static_cast<Id>(points_.size());
+            const Id dense = number.empty() ? v : number[v];
+            first_point_[dense] = n;
+            points_.push_back({{rings[v].x, rings[v].y}, grid.pixel_of(dense), kNone, n, v, n, 0});
         }
-    for (Point& point : points_) point.next = first_point_[rings[point.vertex].neighbor[0]];
-    point_ = first_point_;
+    for (Point& point : points_) point.next = point_[rings[point.vertex].neighbor[0]];
 }
 
 MaskOutline::Sides MaskOutline::sides(const RingMesh& rings, Id i, Id j) {

@@ -24,8 +24,9 @@ inline constexpr float kOutlineBand = 1.0f;
 /// merge_rings(); `rings` is the mesh before the merge.
 class MaskOutline {
   public:
-    /// rings: those of the dense mesh.
-    MaskOutline(const GridMesh& grid, const RingMesh& rings);
+    /// rings   of a mesh whose outline is still the dense mesh's
+    /// number  of each of its vertices in the grid mesh; empty where it is the same
+    MaskOutline(const GridMesh& grid, const RingMesh& rings, const std::vector<Id>& number);
 
     /// Places where the merged vertex would make the mesh only grow: at either end, where the outer
     /// neighbours' edges meet, at (x, y), and on a straight side as near to (x, y) as it goes. Snapped.

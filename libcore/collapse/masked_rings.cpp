@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <initializer_list>
+#include <numeric>
+#include <vector>
 
 #include "libcore/base/parallel.h"
 #include "libcore/mesh/mask_fans.h"
@@ -13,24 +15,18 @@ constexpr std::uint8_t kCorner = kFixedX | kFixedY;
 
 class MaskedRings {
   public:
-    explicit MaskedRings(const GridMesh& grid)
-        : grid_(grid), width_(grid.feature.width), height_(grid.feature.height) {}
+    explicit MaskedRings(const GridMesh& grid) : grid_(grid), width_(grid.feature.width) {}
 
-    RingMesh make() const {
-        RingMesh rings(grid_.vertex_count());
-        parallel_blocks(0, height_, 16, [&](int first, int last) {
-            for (int y = first; y < last; ++y)
-                for (int x = 0; x < width_; ++x) {
-                    if (const Strip strip = strip_at(grid_.mask, x, y); strip != Strip::kNoStrip) {
-                        add_strip(rings, strip, x, y);
-                        continue;
-                    }
-                    const PixelFans fans = fans_of(x, y);
-                    for (int f = 0; f < fans.count; ++f)
-                        rings[vertex(x, y, f)] = ring(fans.fan[static_cast<std::size_t>(f)], x, y);
-                }
-        });
-        return rings;
+    PixelRings at(int x, int y) const {
+        PixelRings out;
+        if (const Strip strip = strip_at(grid_.mask, x, y); strip != Strip::kNoStrip) {
+            add_strip(out, strip, x, y);
+        } else {
+            const PixelFans fans = fans_of(x, y);
+            for (int f = 0; f < fans.count; ++f)
+                add(out, x, y) = ring(fans.fan[static_cast<std::size_t>(f)], x, y);
+        }
+        return out;
     }
 
   private:
@@ -48,6 +44,12 @@ class MaskedRings {
         const auto first = std::lower_bound(grid_.copies.begin(), grid_.copies.end(), pixel);
         return static_cast<Id>(grid_.feature.pixel_count()) +
                static_cast<Id>(first - grid_.copies.begin() + n - 1);
+    }
+
+    // The next vertex of the pixel.
+    Ring& add(PixelRings& pixel, int x, int y) const {
+        pixel.vertex[pixel.count] = vertex(x, y, static_cast<int>(pixel.count));
+        return pixel.ring[pixel.count++];
     }
 
     Ring ring(const Fan& fan, int x, int y) const {
@@ -69,20 +71,20 @@ class MaskedRings {
 
     // A strip's pixels have their first vertex at its upper (left) side and their second at its lower (right)
     // one; cells are split from top left to bottom right.
-    void add_strip(RingMesh& rings, Strip strip, int x, int y) const {
+    void add_strip(PixelRings& out, Strip strip, int x, int y) const {
         if (strip == Strip::kAlone) {
             const Id tl = vertex(x, y, 0), tr = vertex(x, y, 1), bl = vertex(x, y, 2), br = vertex(x, y, 3);
-            set(rings[tl], x, y, -0.5f, -0.5f, {bl, br, tr});
-            set(rings[tr], x, y, 0.5f, -0.5f, {tl, br});
-            set(rings[bl], x, y, -0.5f, 0.5f, {br, tl});
-            set(rings[br], x, y, 0.5f, 0.5f, {tr, tl, bl});
+            set(add(out, x, y), x, y, -0.5f, -0.5f, {bl, br, tr});
+            set(add(out, x, y), x, y, 0.5f, -0.5f, {tl, br});
+            set(add(out, x, y), x, y, -0.5f, 0.5f, {br, tl});
+            set(add(out, x, y), x, y, 0.5f, 0.5f, {tr, tl, bl});
             return;
         }
         const int dx = strip == Strip::kAlongX ? 1 : 0, dy = 1 - dx;
         const bool before = strip_at(grid_.mask, x - dx, y - dy) == strip,
                    after = strip_at(grid_.mask, x + dx, y + dy) == strip;
         const auto side = [&](int step, int n) { return vertex(x + step * dx, y + step * dy, n); };
-        Ring &first = rings[side(0, 0)], &second = rings[side(0, 1)];
+        Ring &first = add(out, x, y), &second = add(out, x, y);
         set(first, x, y, -0.5f * static_cast<float>(dy), -0.5f * static_cast<float>(dx), {});
         set(second, x, y, 0.5f * static_cast<float>(dy), 0.5f * static_cast<float>(dx), {});
         // Along a row: up is the first side. Along a column everything is mirrored at the falling diagonal,
@@ -120,13 +122,55 @@ class MaskedRings {
     }
 
     const GridMesh& grid_;
-    int width_, height_;
+    int width_;
 };
 
 }  // namespace
 
+PixelRings masked_pixel_rings(const GridMesh& grid, int x, int y) {
+    return MaskedRings(grid).at(x, y);
+}
+
+Vec2f vertex_place(const GridMesh& grid, Id vertex) {
+    const Id pixel = grid.pixel_of(vertex), w = static_cast<Id>(grid.feature.width);
+    const int x = static_cast<int>(pixel % w), y = static_cast<int>(pixel / w);
+    if (!grid.mask.empty() && strip_at(grid.mask, x, y) != Strip::kNoStrip) {
+        const PixelRings rings = masked_pixel_rings(grid, x, y);
+        for (std::size_t n = 0; n < rings.count; ++n)
+            if (rings.vertex[n] == vertex) return {rings.ring[n].x, rings.ring[n].y};
+    }
+    return {grid.origin_x + static_cast<float>(x), grid.origin_y + static_cast<float>(y)};
+}
+
+std::int64_t masked_face_count(const GridMesh& grid) {
+    const Mask& mask = grid.mask;
+    std::vector<std::int64_t> rows(static_cast<std::size_t>(mask.height), 0);
+    parallel_blocks(0, mask.height, 16, [&](int begin, int end) {
+        for (int y = begin; y < end; ++y)
+            for (int x = 0; x < mask.width; ++x) {
+                std::int64_t& faces = rows[static_cast<std::size_t>(y)];
+                const int corners =
+                    mask.at(x, y) + mask.at(x + 1, y) + mask.at(x, y + 1) + mask.at(x + 1, y + 1);
+                faces += std::max(0, corners - 2);
+                const Strip strip = strip_at(mask, x, y);
+                if (strip == Strip::kNoStrip) continue;
+                const int dx = strip == Strip::kAlongX ? 1 : 0;
+                if (strip == Strip::kAlone || strip_at(mask, x + dx, y + 1 - dx) == strip) faces += 2;
+            }
+    });
+    return std::accumulate(rows.begin(), rows.end(), std::int64_t{0});
+}
+
 RingMesh masked_rings(const GridMesh& grid) {
-    return MaskedRings(grid).make();
+    RingMesh rings(grid.vertex_count());
+    parallel_blocks(0, grid.feature.height, 16, [&](int begin, int end) {
+        for (int y = begin; y < end; ++y)
+            for (int x = 0; x < grid.feature.width; ++x) {
+                const PixelRings pixel = masked_pixel_rings(grid, x, y);
+                for (std::size_t n = 0; n < pixel.count; ++n) rings[pixel.vertex[n]] = pixel.ring[n];
+            }
+    });
+    return rings;
 }
 
 }  // namespace imgmesh

@@ -21,7 +21,7 @@ std::vector<Q> initial_quadrics(const GridMesh& grid, const RingMesh& rings, con
     else if (grid.mask.empty())
         return vertex_quadrics<Q::kChannels>(grid, gradients, params.geometry_weight);
     else
-        return vertex_quadrics<Q::kChannels>(grid, rings, gradients, params.geometry_weight);
+        return vertex_quadrics<Q::kChannels>(grid, rings, {}, gradients, params.geometry_weight);
 }
 
 /// Those of the mesh as it stands.

@@ -6,12 +6,9 @@
 #include <vector>
 
 #include "libcore/base/parallel.h"
-#include "libcore/collapse/edge_collapser.h"
+#include "libcore/collapse/tile_mesh.h"
 
 namespace imgmesh {
-
-// A tile of rings and quadrics stays in a core's own cache.
-inline constexpr int kStartTile = 64;
 
 // Of a threshold from one round of tiles to the next.
 inline constexpr float kTileWindow = 2.0f;
@@ -25,8 +22,8 @@ template <class Q>
 float start_threshold(const GridMesh& grid, const FeatureImage& gradients, const CollapseRules& rules,
                       double share);
 
-/// Collapses edges below `threshold` in every tile of the grid, which has no mask, as long as at most
-/// `share_that_goes` of its vertices go; vertices next to another tile stay.
+/// Collapses edges below `threshold` in every tile of the grid, as long as at most `share_that_goes` of its
+/// vertices go; vertices next to another tile stay, and those on the outline of a cut-out.
 ///
 /// left      out: what is left, vertices tile by tile, in the grid's order within each
 /// progress  is told how many vertices are gone so far
@@ -37,80 +34,8 @@ Tally start_in_tiles(const GridMesh& grid, const FeatureImage& gradients, const 
 
 namespace tile_start {
 
-struct Tiles {
-    int width, height;  // of the picture
-    int across = (width + kStartTile - 1) / kStartTile, down = (height + kStartTile - 1) / kStartTile;
-
-    int count() const { return across * down; }
-    int of(Id pixel) const {
-        const int x = static_cast<int>(pixel) % width, y = static_cast<int>(pixel) / width;
-        return y / kStartTile * across + x / kStartTile;
-    }
-    PixelRect rect(int tile) const {
-        const int left = tile % across * kStartTile, top = tile / across * kStartTile;
-        return {left, top, std::min(left + kStartTile, width), std::min(top + kStartTile, height)};
-    }
-};
-
 // In a part that keep_survivors() has made: a neighbour in another tile, by its pixel.
 inline constexpr Id kElsewhere = 1u << 31;
-
-// A tile while it collapses.
-template <class Q>
-struct TileMesh {
-    CollapseMesh<Q> mesh;    // the tile's own vertices row by row, then ghosts
-    std::size_t own = 0;     // so many
-    std::int64_t live = 0;   // of them
-    std::int64_t halved = 0; // where quadrics are to be rebuilt next
-};
-
-// The tile's part of the dense mesh. A vertex with a neighbour in another tile is sealed, and that neighbour
-// a ghost: a place and features, in no ring's middle.
-template <class Q>
-void fill(const GridMesh& grid, const FeatureImage& gradients, float lambda, const PixelRect& rect,
-          TileMesh<Q>& tile) {
-    const Id w = static_cast<Id>(grid.feature.width);
-    CollapseMesh<Q>& mesh = tile.mesh;
-    tile.own = static_cast<std::size_t>(rect.width()) * static_cast<std::size_t>(rect.height());
-    tile.live = static_cast<std::int64_t>(tile.own);
-    tile.halved = tile.live / 2;
-    mesh.rings.resize(tile.own);
-    mesh.pixel.resize(tile.own);
-    mesh.quadrics.resize(tile.own);
-    vertex_quadrics(grid, gradients, lambda, rect, mesh.quadrics.data());
-    const auto ghost = [&](int x, int y) {
-        const Id pixel = static_cast<Id>(y) * w + static_cast<Id>(x);
-        Ring& ring = mesh.rings.emplace_back();
-        Q& quadric = mesh.quadrics.emplace_back();
-        quadric.px = ring.x = grid.origin_x + static_cast<float>(x);
-        quadric.py = ring.y = grid.origin_y + static_cast<float>(y);
-        std::copy_n(grid.feature.pixel(pixel), Q::kChannels, quadric.s);
-        mesh.pixel.push_back(pixel);
-        return static_cast<Id>(mesh.rings.size() - 1);
-    };
-    const auto stride = static_cast<Id>(rect.width());
-    Id v = 0;
-    for (int y = rect.top; y < rect.bottom; ++y)
-        for (int x = rect.left; x < rect.right; ++x, ++v) {
-            mesh.pixel[v] = static_cast<Id>(y) * w + static_cast<Id>(x);
-            if (x > rect.left && x + 1 < rect.right && y > rect.top && y + 1 < rect.bottom) {
-                mesh.rings[v] = inner_ring(grid, x, y, v, stride);
-                continue;
-            }
-            Ring ring = grid_ring(grid, x, y);
-            for (int k = 0; k < ring.valence; ++k) {
-                Id& n = ring.neighbor[k];
-                const int nx = static_cast<int>(n % w), ny = static_cast<int>(n / w);
-                if (nx < rect.left || nx >= rect.right || ny < rect.top || ny >= rect.bottom) {
-                    n = ghost(nx, ny);
-                    ring.sealed = 1;
-                } else {
-                    n = static_cast<Id>((ny - rect.top) * rect.width() + nx - rect.left);
-                }
-            }
-            mesh.rings[v] = ring;
-        }
-}
 
 // Collapses the tile's edges below `threshold`, rebuilding quadrics at every halving of its vertices where
 // that is asked for. What their neighbours in other tiles look like is known then: they too are sealed.
@@ -127,7 +52,8 @@ Tally collapse_tile(EdgeCollapser<Q>& engine, const CollapseParams& params, Tile
         sum.postponed = kNever;
         sum.add(part);
         tile.live -= part.vertices;
-        if (!params.rebuild_quadrics || tile.live > tile.halved || sum.vertices >= may_go) return sum;
+        const bool halved = params.rebuild_quadrics && part.vertices > 0 && tile.live <= tile.halved;
+        if (!halved || sum.vertices >= may_go) return sum;
         const std::vector<Q> rebuilt = rebuilt_quadrics(tile.mesh.rings, tile.mesh.quadrics, params);
         std::copy_n(rebuilt.begin(), tile.own, tile.mesh.quadrics.begin());  // ghosts stay as they are
         tile.halved = tile.live / 2;
@@ -160,7 +86,7 @@ void keep_survivors(const TileMesh<Q>& tile, CollapseMesh<Q>& out, std::vector<I
 
 // Puts the tiles' parts together, and takes them apart meanwhile.
 template <class Q>
-CollapseMesh<Q> joined(const Tiles& tiles, std::vector<CollapseMesh<Q>>& parts,
+CollapseMesh<Q> joined(const StartTiles& tiles, std::vector<CollapseMesh<Q>>& parts,
                        const std::vector<Id>& number) {
     std::vector<Id> first(parts.size() + 1, 0);
     for (std::size_t t = 0; t < parts.size(); ++t)
@@ -188,7 +114,7 @@ CollapseMesh<Q> joined(const Tiles& tiles, std::vector<CollapseMesh<Q>>& parts,
 }
 
 // Tiles all over the picture.
-inline std::vector<int> some_tiles(const Tiles& tiles) {
+inline std::vector<int> some_tiles(const StartTiles& tiles) {
     const int count = std::clamp(tiles.count() / 32, 1, 16);
     std::vector<int> some;
     for (int n = 0; n < count; ++n) some.push_back((2 * n + 1) * tiles.count() / (2 * count));
@@ -213,7 +139,7 @@ template <class Q>
 float start_threshold(const GridMesh& grid, const FeatureImage& gradients, const CollapseRules& rules,
                       double share) {
     using namespace tile_start;
-    const Tiles tiles{grid.feature.width, grid.feature.height};
+    const StartTiles tiles(grid);
     const std::vector<int> some = some_tiles(tiles);
     std::vector<TileMesh<Q>> meshes(some.size());
     std::vector<float> medians(some.size());
@@ -222,11 +148,11 @@ float start_threshold(const GridMesh& grid, const FeatureImage& gradients, const
                         [&](int n, int) { body(static_cast<std::size_t>(n)); });
     };
     each([&](std::size_t n) {
-        fill(grid, gradients, rules.params.geometry_weight, tiles.rect(some[n]), meshes[n]);
+        fill_tile(grid, gradients, rules.params.geometry_weight, tiles.rect(some[n]), meshes[n]);
         medians[n] = median_cost(meshes[n].mesh, rules);
     });
     std::int64_t all = 0, gone = 0;
-    for (const TileMesh<Q>& tile : meshes) all += tile.live;
+    for (const TileMesh<Q>& tile : meshes) all += tile.live - tile.outline;
     std::nth_element(medians.begin(), medians.begin() + medians.size() / 2, medians.end());
     float threshold = std::max(medians[medians.size() / 2], std::numeric_limits<float>::min());
     for (float next = threshold;; next *= kTileWindow) {
@@ -250,16 +176,17 @@ Tally start_in_tiles(const GridMesh& grid, const FeatureImage& gradients, const 
                      float threshold, double share_that_goes, CollapseMesh<Q>& left,
                      const Progress& progress) {
     using namespace tile_start;
-    const Tiles tiles{grid.feature.width, grid.feature.height};
+    const StartTiles tiles(grid);
     std::vector<CollapseMesh<Q>> parts(static_cast<std::size_t>(tiles.count()));
     std::vector<Tally> tallies(parts.size());
-    std::vector<Id> number(grid.feature.pixel_count());
+    std::vector<Id> number(grid.vertex_count());
     const auto collapse_some = [&](int begin, int end) {
         TileMesh<Q> tile;
         EdgeCollapser<Q> engine(tile.mesh, rules);
         for (auto t = static_cast<std::size_t>(begin); t < static_cast<std::size_t>(end); ++t) {
-            fill(grid, gradients, rules.params.geometry_weight, tiles.rect(static_cast<int>(t)), tile);
-            const auto may_go = static_cast<std::int64_t>(share_that_goes * static_cast<double>(tile.live));
+            fill_tile(grid, gradients, rules.params.geometry_weight, tiles.rect(static_cast<int>(t)), tile);
+            const auto may_go =
+                static_cast<std::int64_t>(share_that_goes * static_cast<double>(tile.live - tile.outline));
             tallies[t] = collapse_tile(engine, rules.params, tile, threshold, may_go);
             keep_survivors(tile, parts[t], number);
         }

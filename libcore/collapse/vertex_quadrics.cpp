@@ -275,11 +275,14 @@ std::vector<Quadric<C>> quadrics_over(const RingMesh& rings, float lambda, const
 
 template <int C>
 std::vector<Quadric<C>> vertex_quadrics(const GridMesh& grid, const RingMesh& rings,
-                                        const FeatureImage& gradients, float lambda) {
+                                        const std::vector<Id>& number, const FeatureImage& gradients,
+                                        float lambda) {
+    const auto in_grid = [&](Id v) { return number.empty() ? v : number[v]; };
     return quadrics_over<C>(
-        rings, lambda, [&](Id v, float* s) { std::copy_n(grid.feature.pixel(v), C, s); },
+        rings, lambda, [&](Id v, float* s) { std::copy_n(grid.feature.pixel(in_grid(v)), C, s); },
         [&](Id v, int k, float* out) {
-            const float *from = gradients.pixel(v), *to = gradients.pixel(rings[v].neighbor[k]);
+            const float *from = gradients.pixel(in_grid(v)),
+                        *to = gradients.pixel(in_grid(rings[v].neighbor[k]));
             for (int c = 0; c < C; ++c) out[c] = to[c] - from[c];
         });
 }
@@ -305,12 +308,12 @@ template void vertex_quadrics<16>(const GridMesh&, const FeatureImage&, float, c
 template std::vector<Quadric<3>> vertex_quadrics<3>(const GridMesh&, const FeatureImage&, float);
 template std::vector<Quadric<8>> vertex_quadrics<8>(const GridMesh&, const FeatureImage&, float);
 template std::vector<Quadric<16>> vertex_quadrics<16>(const GridMesh&, const FeatureImage&, float);
-template std::vector<Quadric<3>> vertex_quadrics<3>(const GridMesh&, const RingMesh&, const FeatureImage&,
-                                                    float);
-template std::vector<Quadric<8>> vertex_quadrics<8>(const GridMesh&, const RingMesh&, const FeatureImage&,
-                                                    float);
-template std::vector<Quadric<16>> vertex_quadrics<16>(const GridMesh&, const RingMesh&, const FeatureImage&,
-                                                      float);
+template std::vector<Quadric<3>> vertex_quadrics<3>(const GridMesh&, const RingMesh&, const std::vector<Id>&,
+                                                    const FeatureImage&, float);
+template std::vector<Quadric<8>> vertex_quadrics<8>(const GridMesh&, const RingMesh&, const std::vector<Id>&,
+                                                    const FeatureImage&, float);
+template std::vector<Quadric<16>> vertex_quadrics<16>(const GridMesh&, const RingMesh&,
+                                                      const std::vector<Id>&, const FeatureImage&, float);
 template std::vector<Quadric<3>> current_quadrics<3>(const RingMesh&, const std::vector<Quadric<3>>&, float);
 template std::vector<Quadric<8>> current_quadrics<8>(const RingMesh&, const std::vector<Quadric<8>>&, float);
 template std::vector<Quadric<16>> current_quadrics<16>(const RingMesh&, const std::vector<Quadric<16>>&,

@@ -25,11 +25,15 @@ template <int C>
 void vertex_quadrics(const GridMesh& grid, const FeatureImage& gradients, float lambda, const PixelRect& rect,
                      Quadric<C>* out);
 
-/// The same for any grid mesh, with or without a mask; rings: ring_mesh(grid), gradients: of all its
-/// vertices.
+/// The same for any grid mesh, with or without a mask, or for part of it.
+///
+/// rings      of vertices of the dense mesh; of one without a ring only the place counts
+/// number     of each of them in the grid mesh; empty where it is the same
+/// gradients  of all the grid's vertices
 template <int C>
 std::vector<Quadric<C>> vertex_quadrics(const GridMesh& grid, const RingMesh& rings,
-                                        const FeatureImage& gradients, float lambda);
+                                        const std::vector<Id>& number, const FeatureImage& gradients,
+                                        float lambda);
 
 /// The same over the faces of the mesh as it stands, positions from `rings`, colours from the quadrics
 /// `before`.
