@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "libcore/base/error.h"
+#include "libcore/base/parallel_vector.h"
 #include "libcore/base/stopwatch.h"
 #include "libcore/build/mesh_ladder.h"
 #include "libcore/build/params.h"
@@ -77,6 +78,11 @@ struct Pipeline {
     BuildReport& report;
     const Progress& progress;
 
+    GridMesh grid() const {
+        return grid_mesh({feature.width, feature.height, feature.channels, parallel_copy(feature.data)},
+                         mask);
+    }
+
     std::vector<CollapseResult> collapse(const GridMesh& grid, const CollapseParams& limits,
                                          std::span<const CollapseTarget> targets,
                                          const CollapseHooks& hooks = {}) const {
@@ -139,7 +145,7 @@ struct Pipeline {
 void build_levels(const Pipeline& pipeline, const CollapseParams& limits,
                   std::span<const CollapseTarget> targets, MeshImage& mesh_image) {
     Stopwatch watch;
-    const GridMesh grid = grid_mesh(pipeline.feature, pipeline.mask);
+    const GridMesh grid = pipeline.grid();
     Tracking tracking(grid, pipeline.feature.width, pipeline.feature.height, pipeline.params);
     BuildReport& report = pipeline.report;
     report.seconds.collapse += watch.lap();
@@ -223,7 +229,7 @@ class RmsMeshes : public MeasuredMeshes {
 
 // The level that StopParams::rms asks for. limits.smoothing becomes what its collapse had.
 void build_to_rms(const Pipeline& pipeline, CollapseParams& limits, MeshImage& mesh_image) {
-    const GridMesh grid = grid_mesh(pipeline.feature, pipeline.mask);
+    const GridMesh grid = pipeline.grid();
     const double rms = *pipeline.params.stop.rms;
     mesh_image.levels.clear();
     // All of the dense mesh: strips of one pixel have more vertices than pixels.

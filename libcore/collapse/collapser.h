@@ -99,7 +99,6 @@ class Collapser {
 
     // The dense mesh, or what its tiles leave of it.
     void start(const CollapseTarget& target, const Progress& progress) {
-        const FeatureImage gradients = smoothed_vertices(grid_, params_.smoothing);
         if constexpr (kCanonical<Q>) {
             if (params_.tiles && !params_.total_priority) {
                 count_dense();
@@ -108,8 +107,8 @@ class Collapser {
                 const double share = std::max(grid_.mask.empty() ? kStartShare : kMaskedStartShare,
                                               kStartAbove * (1 - share_that_goes()));
                 if (share < kMostStartShare) {
-                    threshold_ = start_threshold<Q>(grid_, gradients, rules_, share);
-                    take(start_in_tiles(grid_, gradients, rules_, threshold_, share_that_goes(), mesh_,
+                    threshold_ = start_threshold<Q>(grid_, rules_, share);
+                    take(start_in_tiles(grid_, rules_, threshold_, share_that_goes(), mesh_,
                                         [&](std::int64_t gone) {
                                             if (progress) progress(fraction_done(gone), "collapse");
                                         }));
@@ -122,7 +121,8 @@ class Collapser {
             }
         }
         mesh_.rings = ring_mesh(grid_);
-        mesh_.quadrics = initial_quadrics<Q>(grid_, mesh_.rings, gradients, params_);
+        mesh_.quadrics = initial_quadrics<Q>(
+            grid_, mesh_.rings, smoothed_patch(grid_, params_.smoothing, whole_rect(grid_)), params_);
         count_dense();
         next_rebuild_ = vertices_ / 2;
         if (!grid_.mask.empty()) rules_.outline = &outline_.emplace(grid_, mesh_.rings, mesh_.pixel);

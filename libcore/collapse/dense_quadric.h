@@ -98,7 +98,7 @@ DenseQuadric<C> merged(const DenseQuadric<C>& i, const DenseQuadric<C>& j) {
 /// The dense form of vertex_quadrics(), of params' metric, weight and solver; C is 3, 8 or 16.
 template <int C>
 std::vector<DenseQuadric<C>> dense_quadrics(const GridMesh& grid, const RingMesh& rings,
-                                            const FeatureImage& gradients, const CollapseParams& params);
+                                            const FeaturePatch& gradients, const CollapseParams& params);
 /// And of current_quadrics().
 template <int C>
 std::vector<DenseQuadric<C>> dense_quadrics(const RingMesh& rings, const std::vector<DenseQuadric<C>>& before,

@@ -90,18 +90,22 @@ std::vector<DenseQuadric<C>> quadrics_of(const RingMesh& rings, const CollapsePa
 }
 
 template <int C>
-Eigen::Matrix<double, C, 1> features_at(const FeatureImage& image, Id v) {
-    return Eigen::Map<const Eigen::Matrix<float, C, 1>>(image.pixel(v)).template cast<double>();
+Eigen::Matrix<double, C, 1> features_at(const float* pixel) {
+    return Eigen::Map<const Eigen::Matrix<float, C, 1>>(pixel).template cast<double>();
 }
 
 }  // namespace
 
 template <int C>
 std::vector<DenseQuadric<C>> dense_quadrics(const GridMesh& grid, const RingMesh& rings,
-                                            const FeatureImage& gradients, const CollapseParams& params) {
+                                            const FeaturePatch& gradients, const CollapseParams& params) {
+    const Id w = static_cast<Id>(grid.feature.width);
     return quadrics_of<C>(
-        rings, params, [&](Id v) { return features_at<C>(grid.feature, v); },
-        [&](Id v) { return features_at<C>(gradients, v); });
+        rings, params, [&](Id v) { return features_at<C>(grid.feature.pixel(v)); },
+        [&](Id v) {
+            const Id pixel = grid.pixel_of(v);
+            return features_at<C>(gradients.pixel(static_cast<int>(pixel % w), static_cast<int>(pixel / w)));
+        });
 }
 
 template <int C>
@@ -115,11 +119,11 @@ std::vector<DenseQuadric<C>> dense_quadrics(const RingMesh& rings, const std::ve
     return quadrics_of<C>(rings, params, feature, feature);
 }
 
-template std::vector<DenseQuadric<3>> dense_quadrics(const GridMesh&, const RingMesh&, const FeatureImage&,
+template std::vector<DenseQuadric<3>> dense_quadrics(const GridMesh&, const RingMesh&, const FeaturePatch&,
                                                      const CollapseParams&);
-template std::vector<DenseQuadric<8>> dense_quadrics(const GridMesh&, const RingMesh&, const FeatureImage&,
+template std::vector<DenseQuadric<8>> dense_quadrics(const GridMesh&, const RingMesh&, const FeaturePatch&,
                                                      const CollapseParams&);
-template std::vector<DenseQuadric<16>> dense_quadrics(const GridMesh&, const RingMesh&, const FeatureImage&,
+template std::vector<DenseQuadric<16>> dense_quadrics(const GridMesh&, const RingMesh&, const FeaturePatch&,
                                                       const CollapseParams&);
 template std::vector<DenseQuadric<3>> dense_quadrics(const RingMesh&, const std::vector<DenseQuadric<3>>&,
                                                      const CollapseParams&);

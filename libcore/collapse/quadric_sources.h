@@ -12,9 +12,9 @@ namespace imgmesh {
 template <class Q>
 inline constexpr bool kCanonical = std::is_same_v<Q, Quadric<Q::kChannels>>;
 
-/// Those of the dense mesh; `rings` are the grid's, `gradients` its smoothed_vertices().
+/// Those of the dense mesh; `rings` are the grid's, `gradients` those of all of it.
 template <class Q>
-std::vector<Q> initial_quadrics(const GridMesh& grid, const RingMesh& rings, const FeatureImage& gradients,
+std::vector<Q> initial_quadrics(const GridMesh& grid, const RingMesh& rings, const FeaturePatch& gradients,
                                 const CollapseParams& params) {
     if constexpr (!kCanonical<Q>)
         return dense_quadrics<Q::kChannels>(grid, rings, gradients, params);

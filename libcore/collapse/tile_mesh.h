@@ -86,7 +86,7 @@ void add_ghosts(const GridMesh& grid, CollapseMesh<Q>& mesh) {
 
 // Without a mask, or where it leaves the tile and two pixels around it whole.
 template <class Q>
-void fill_whole(const GridMesh& grid, const FeatureImage& gradients, float lambda, const PixelRect& rect,
+void fill_whole(const GridMesh& grid, const FeaturePatch& gradients, float lambda, const PixelRect& rect,
                 CollapseMesh<Q>& mesh) {
     const Id w = static_cast<Id>(grid.feature.width), stride = static_cast<Id>(rect.width());
     const std::size_t own = stride * static_cast<std::size_t>(rect.height());
@@ -112,7 +112,7 @@ void fill_whole(const GridMesh& grid, const FeatureImage& gradients, float lambd
 }
 
 template <class Q>
-void fill_masked(const GridMesh& grid, const FeatureImage& gradients, float lambda, const PixelRect& rect,
+void fill_masked(const GridMesh& grid, const FeaturePatch& gradients, float lambda, const PixelRect& rect,
                  CollapseMesh<Q>& mesh) {
     mesh.rings.clear();
     mesh.pixel.clear();
@@ -152,11 +152,11 @@ inline bool whole(const GridMesh& grid, const PixelRect& rect) {
 
 }  // namespace tile_mesh
 
-/// Makes `tile` the part of the dense mesh that has the vertices of the pixels in `rect`. `gradients` and
-/// `lambda` as in vertex_quadrics().
+/// Makes `tile` the part of the dense mesh that has the vertices of the pixels in `rect`.
 template <class Q>
-void fill_tile(const GridMesh& grid, const FeatureImage& gradients, float lambda, const PixelRect& rect,
-               TileMesh<Q>& tile) {
+void fill_tile(const GridMesh& grid, const CollapseParams& params, const PixelRect& rect, TileMesh<Q>& tile) {
+    const FeaturePatch gradients = smoothed_patch(grid, params.smoothing, rect);
+    const float lambda = params.geometry_weight;
     if (tile_mesh::whole(grid, rect))
         tile_mesh::fill_whole(grid, gradients, lambda, rect, tile.mesh);
     else

@@ -65,7 +65,7 @@ Tally tile_round(CollapseMesh<Q>& mesh, const CollapseRules& rules, const RoundT
         }
     });
     std::vector<Tally> tallies(static_cast<std::size_t>(tiles.count()));
-    parallel_blocks(0, tiles.count(), 4, [&](int begin, int end) {
+    parallel_blocks(0, tiles.count(), 1, [&](int begin, int end) {
         EdgeCollapser<Q> engine(mesh, rules);
         for (auto t = static_cast<std::size_t>(begin); t < static_cast<std::size_t>(end); ++t) {
             const Id* vertices = listed.data() + first[t];

@@ -3,9 +3,12 @@
 #pragma once
 
 #include <algorithm>
+#include <atomic>
+#include <thread>
 #include <vector>
 
 #include "libcore/base/parallel.h"
+#include "libcore/base/parallel_vector.h"
 #include "libcore/collapse/tile_mesh.h"
 
 namespace imgmesh {
@@ -14,13 +17,12 @@ namespace imgmesh {
 inline constexpr float kTileWindow = 2.0f;
 
 // Tiles that one engine works off, one after the other.
-inline constexpr int kStartTilesPerBlock = 8;
+inline constexpr int kStartTilesPerBlock = 4;
 
 /// The threshold at which `share` of the vertices would be left, found out on some of the tiles; to a factor
 /// of kTileWindow, rather too low.
 template <class Q>
-float start_threshold(const GridMesh& grid, const FeatureImage& gradients, const CollapseRules& rules,
-                      double share);
+float start_threshold(const GridMesh& grid, const CollapseRules& rules, double share);
 
 /// Collapses edges below `threshold` in every tile of the grid, as long as at most `share_that_goes` of its
 /// vertices go; vertices next to another tile stay, and those on the outline of a cut-out.
@@ -28,9 +30,8 @@ float start_threshold(const GridMesh& grid, const FeatureImage& gradients, const
 /// left      out: what is left, vertices tile by tile, in the grid's order within each
 /// progress  is told how many vertices are gone so far
 template <class Q, class Progress>
-Tally start_in_tiles(const GridMesh& grid, const FeatureImage& gradients, const CollapseRules& rules,
-                     float threshold, double share_that_goes, CollapseMesh<Q>& left,
-                     const Progress& progress);
+Tally start_in_tiles(const GridMesh& grid, const CollapseRules& rules, float threshold,
+                     double share_that_goes, CollapseMesh<Q>& left, const Progress& progress);
 
 namespace tile_start {
 
@@ -92,9 +93,9 @@ CollapseMesh<Q> joined(const StartTiles& tiles, std::vector<CollapseMesh<Q>>& pa
     for (std::size_t t = 0; t < parts.size(); ++t)
         first[t + 1] = first[t] + static_cast<Id>(parts[t].rings.size());
     CollapseMesh<Q> whole;
-    whole.rings.resize(first.back());
-    whole.quadrics.resize(first.back());
-    whole.pixel.resize(first.back());
+    whole.rings = parallel_vector<Ring>(first.back());
+    whole.quadrics = parallel_vector<Q>(first.back());
+    whole.pixel = parallel_vector<Id>(first.back());
     parallel_blocks(0, tiles.count(), kStartTilesPerBlock, [&](int begin, int end) {
         for (auto t = static_cast<std::size_t>(begin); t < static_cast<std::size_t>(end); ++t) {
             CollapseMesh<Q> part = std::move(parts[t]);
@@ -136,8 +137,7 @@ float median_cost(CollapseMesh<Q>& mesh, const CollapseRules& rules) {
 }  // namespace tile_start
 
 template <class Q>
-float start_threshold(const GridMesh& grid, const FeatureImage& gradients, const CollapseRules& rules,
-                      double share) {
+float start_threshold(const GridMesh& grid, const CollapseRules& rules, double share) {
     using namespace tile_start;
     const StartTiles tiles(grid);
     const std::vector<int> some = some_tiles(tiles);
@@ -148,7 +148,7 @@ float start_threshold(const GridMesh& grid, const FeatureImage& gradients, const
                         [&](int n, int) { body(static_cast<std::size_t>(n)); });
     };
     each([&](std::size_t n) {
-        fill_tile(grid, gradients, rules.params.geometry_weight, tiles.rect(some[n]), meshes[n]);
+        fill_tile(grid, rules.params, tiles.rect(some[n]), meshes[n]);
         medians[n] = median_cost(meshes[n].mesh, rules);
     });
     std::int64_t all = 0, gone = 0;
@@ -172,34 +172,30 @@ float start_threshold(const GridMesh& grid, const FeatureImage& gradients, const
 }
 
 template <class Q, class Progress>
-Tally start_in_tiles(const GridMesh& grid, const FeatureImage& gradients, const CollapseRules& rules,
-                     float threshold, double share_that_goes, CollapseMesh<Q>& left,
-                     const Progress& progress) {
+Tally start_in_tiles(const GridMesh& grid, const CollapseRules& rules, float threshold,
+                     double share_that_goes, CollapseMesh<Q>& left, const Progress& progress) {
     using namespace tile_start;
     const StartTiles tiles(grid);
     std::vector<CollapseMesh<Q>> parts(static_cast<std::size_t>(tiles.count()));
     std::vector<Tally> tallies(parts.size());
-    std::vector<Id> number(grid.vertex_count());
-    const auto collapse_some = [&](int begin, int end) {
+    std::vector<Id> number = parallel_vector<Id>(grid.vertex_count());
+    std::atomic<std::int64_t> gone = 0;
+    const std::thread::id caller = std::this_thread::get_id();
+    parallel_blocks(0, tiles.count(), kStartTilesPerBlock, [&](int begin, int end) {
         TileMesh<Q> tile;
         EdgeCollapser<Q> engine(tile.mesh, rules);
         for (auto t = static_cast<std::size_t>(begin); t < static_cast<std::size_t>(end); ++t) {
-            fill_tile(grid, gradients, rules.params.geometry_weight, tiles.rect(static_cast<int>(t)), tile);
+            fill_tile(grid, rules.params, tiles.rect(static_cast<int>(t)), tile);
             const auto may_go =
                 static_cast<std::int64_t>(share_that_goes * static_cast<double>(tile.live - tile.outline));
             tallies[t] = collapse_tile(engine, rules.params, tile, threshold, may_go);
             keep_survivors(tile, parts[t], number);
+            gone += tallies[t].vertices;
         }
-    };
+        if (std::this_thread::get_id() == caller) progress(gone);
+    });
     Tally sum;
-    constexpr int kReports = 20;
-    const int step = (tiles.count() / kReports / kStartTilesPerBlock + 1) * kStartTilesPerBlock;
-    for (int begin = 0; begin < tiles.count(); begin += step) {
-        const int end = std::min(begin + step, tiles.count());
-        parallel_blocks(begin, end, kStartTilesPerBlock, collapse_some);
-        for (int t = begin; t < end; ++t) sum.add(tallies[static_cast<std::size_t>(t)]);
-        progress(sum.vertices);
-    }
+    for (const Tally& tally : tallies) sum.add(tally);
     left = joined(tiles, parts, number);
     return sum;
 }

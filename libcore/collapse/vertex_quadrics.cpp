@@ -83,17 +83,18 @@ Quadric<C> finished(const Accumulator<C, float>& sum, const Ring& ring, const fl
 }
 
 template <int C>
-Quadric<C> quadric_at(const GridMesh& grid, const FeatureImage& gradients, float lambda, int x, int y) {
+Quadric<C> quadric_at(const GridMesh& grid, const FeaturePatch& gradients, float lambda, int x, int y) {
     const Id w = static_cast<Id>(grid.feature.width);
     const Ring ring = grid_ring(grid, x, y);
     const Id v = static_cast<Id>(y) * w + static_cast<Id>(x);
     float d[kMaxValence][C], ox[kMaxValence], oy[kMaxValence];
-    const float* own = gradients.pixel(v);
+    const float* own = gradients.pixel(x, y);
     for (int k = 0; k < ring.valence; ++k) {
         const Id n = ring.neighbor[k];
-        ox[k] = static_cast<float>(static_cast<int>(n % w) - x);
-        oy[k] = static_cast<float>(static_cast<int>(n / w) - y);
-        for (int c = 0; c < C; ++c) d[k][c] = gradients.pixel(n)[c] - own[c];
+        const int nx = static_cast<int>(n % w), ny = static_cast<int>(n / w);
+        ox[k] = static_cast<float>(nx - x);
+        oy[k] = static_cast<float>(ny - y);
+        for (int c = 0; c < C; ++c) d[k][c] = gradients.pixel(nx, ny)[c] - own[c];
     }
     Accumulator<C, float> sum;
     for (int k = 0; k < ring.valence - (ring.border() ? 1 : 0); ++k) {
@@ -107,9 +108,7 @@ Quadric<C> quadric_at(const GridMesh& grid, const FeatureImage& gradients, float
 struct EightColors {
     Float8 c[3];
 
-    IMGMESH_INLINE EightColors(const FeatureImage& image, int x, int y) {
-        const float* first = image.pixel(static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) +
-                                         static_cast<std::size_t>(x));
+    IMGMESH_INLINE explicit EightColors(const float* first) {
         const Float8 p = load8(first), q = load8(first + 8), r = load8(first + 16);
         c[0] = __builtin_shufflevector(__builtin_shufflevector(p, q, 0, 3, 6, 9, 12, 15, 0, 0), r, 0, 1, 2, 3,
                                        4, 5, 10, 13);
@@ -129,15 +128,16 @@ IMGMESH_INLINE Float8 eight_falling(const GridMesh& grid, int x, int y) {
 
 // quadric_at() for (x, y) to (x + 7, y), none of them on a side. Of the cell that a pixel is a corner of, it
 // has one triangle with half the cell's sides for its own, or two that the diagonal from the pixel divides.
-IMGMESH_INLINE void eight_quadrics(const GridMesh& grid, const FeatureImage& gradients, float lambda, int x,
+IMGMESH_INLINE void eight_quadrics(const GridMesh& grid, const FeaturePatch& gradients, float lambda, int x,
                                    int y, Quadric<3>* out) {
     Accumulator<3, Float8> sum;
-    const EightColors here(gradients, x, y), east(gradients, x + 1, y), west(gradients, x - 1, y);
+    const EightColors here(gradients.pixel(x, y)), east(gradients.pixel(x + 1, y)),
+        west(gradients.pixel(x - 1, y));
     // The cells of one side of the row: `beside` is the row above (step -1) or below (1).
     for (const int step : {-1, 1}) {
         const float dy = static_cast<float>(step);
-        const EightColors beside(gradients, x, y + step), east_of(gradients, x + 1, y + step),
-            west_of(gradients, x - 1, y + step);
+        const EightColors beside(gradients.pixel(x, y + step)), east_of(gradients.pixel(x + 1, y + step)),
+            west_of(gradients.pixel(x - 1, y + step));
         const int row = step < 0 ? y - 1 : y;
         const Float8 falling_east = eight_falling(grid, x, row),
                      falling_west = eight_falling(grid, x - 1, row);
@@ -164,7 +164,7 @@ IMGMESH_INLINE void eight_quadrics(const GridMesh& grid, const FeatureImage& gra
             }
         }
     }
-    const EightColors own(grid.feature, x, y);
+    const EightColors own(grid.feature.pixel(x, y));
     Float8 members[16];
     sum.finish(grid.origin_x + static_cast<float>(x) + Float8{0, 1, 2, 3, 4, 5, 6, 7},
                Float8{} + (grid.origin_y + static_cast<float>(y)), own.c, lambda, members);
@@ -182,24 +182,24 @@ IMGMESH_INLINE void eight_quadrics(const GridMesh& grid, const FeatureImage& gra
 }
 
 // Pixels [x, right) of row y as long as there are eight of them inside the picture; returns where it stopped.
-IMGMESH_INLINE int row_of_eights(const GridMesh& grid, const FeatureImage& gradients, float lambda, int x,
+IMGMESH_INLINE int row_of_eights(const GridMesh& grid, const FeaturePatch& gradients, float lambda, int x,
                                  int y, int right, Quadric<3>* out) {
     for (; x + 8 <= right && x + 8 < grid.feature.width; x += 8, out += 8)
         eight_quadrics(grid, gradients, lambda, x, y, out);
     return x;
 }
-int row_portably(const GridMesh& grid, const FeatureImage& gradients, float lambda, int x, int y, int right,
+int row_portably(const GridMesh& grid, const FeaturePatch& gradients, float lambda, int x, int y, int right,
                  Quadric<3>* out) {
     return row_of_eights(grid, gradients, lambda, x, y, right, out);
 }
 #if defined(__x86_64__)
-__attribute__((target("avx2"))) int row_avx2(const GridMesh& grid, const FeatureImage& gradients,
+__attribute__((target("avx2"))) int row_avx2(const GridMesh& grid, const FeaturePatch& gradients,
                                              float lambda, int x, int y, int right, Quadric<3>* out) {
     return row_of_eights(grid, gradients, lambda, x, y, right, out);
 }
 #endif
 
-int inner_row(const GridMesh& grid, const FeatureImage& gradients, float lambda, int x, int y, int right,
+int inner_row(const GridMesh& grid, const FeaturePatch& gradients, float lambda, int x, int y, int right,
               Quadric<3>* out) {
     if (x < 1 || y < 1 || y + 1 >= grid.feature.height) return x;
 #if defined(__x86_64__)
@@ -212,7 +212,7 @@ int inner_row(const GridMesh& grid, const FeatureImage& gradients, float lambda,
 }  // namespace
 
 template <int C>
-void vertex_quadrics(const GridMesh& grid, const FeatureImage& gradients, float lambda, const PixelRect& rect,
+void vertex_quadrics(const GridMesh& grid, const FeaturePatch& gradients, float lambda, const PixelRect& rect,
                      Quadric<C>* out) {
     for (int y = rect.top; y < rect.bottom; ++y) {
         int x = rect.left;
@@ -229,7 +229,7 @@ void vertex_quadrics(const GridMesh& grid, const FeatureImage& gradients, float 
 }
 
 template <int C>
-std::vector<Quadric<C>> vertex_quadrics(const GridMesh& grid, const FeatureImage& gradients, float lambda) {
+std::vector<Quadric<C>> vertex_quadrics(const GridMesh& grid, const FeaturePatch& gradients, float lambda) {
     const int w = grid.feature.width;
     std::vector<Quadric<C>> quadrics(grid.feature.pixel_count());
     parallel_blocks(0, grid.feature.height, 16, [&](int first, int last) {
@@ -275,14 +275,18 @@ std::vector<Quadric<C>> quadrics_over(const RingMesh& rings, float lambda, const
 
 template <int C>
 std::vector<Quadric<C>> vertex_quadrics(const GridMesh& grid, const RingMesh& rings,
-                                        const std::vector<Id>& number, const FeatureImage& gradients,
+                                        const std::vector<Id>& number, const FeaturePatch& gradients,
                                         float lambda) {
     const auto in_grid = [&](Id v) { return number.empty() ? v : number[v]; };
+    const Id w = static_cast<Id>(grid.feature.width);
+    const auto at = [&](Id v) {
+        const Id pixel = grid.pixel_of(in_grid(v));
+        return gradients.pixel(static_cast<int>(pixel % w), static_cast<int>(pixel / w));
+    };
     return quadrics_over<C>(
         rings, lambda, [&](Id v, float* s) { std::copy_n(grid.feature.pixel(in_grid(v)), C, s); },
         [&](Id v, int k, float* out) {
-            const float *from = gradients.pixel(in_grid(v)),
-                        *to = gradients.pixel(in_grid(rings[v].neighbor[k]));
+            const float *from = at(v), *to = at(rings[v].neighbor[k]);
             for (int c = 0; c < C; ++c) out[c] = to[c] - from[c];
         });
 }
@@ -301,19 +305,19 @@ std::vector<Quadric<C>> current_quadrics(const RingMesh& rings, const std::vecto
         });
 }
 
-template void vertex_quadrics<3>(const GridMesh&, const FeatureImage&, float, const PixelRect&, Quadric<3>*);
-template void vertex_quadrics<8>(const GridMesh&, const FeatureImage&, float, const PixelRect&, Quadric<8>*);
-template void vertex_quadrics<16>(const GridMesh&, const FeatureImage&, float, const PixelRect&,
+template void vertex_quadrics<3>(const GridMesh&, const FeaturePatch&, float, const PixelRect&, Quadric<3>*);
+template void vertex_quadrics<8>(const GridMesh&, const FeaturePatch&, float, const PixelRect&, Quadric<8>*);
+template void vertex_quadrics<16>(const GridMesh&, const FeaturePatch&, float, const PixelRect&,
                                   Quadric<16>*);
-template std::vector<Quadric<3>> vertex_quadrics<3>(const GridMesh&, const FeatureImage&, float);
-template std::vector<Quadric<8>> vertex_quadrics<8>(const GridMesh&, const FeatureImage&, float);
-template std::vector<Quadric<16>> vertex_quadrics<16>(const GridMesh&, const FeatureImage&, float);
+template std::vector<Quadric<3>> vertex_quadrics<3>(const GridMesh&, const FeaturePatch&, float);
+template std::vector<Quadric<8>> vertex_quadrics<8>(const GridMesh&, const FeaturePatch&, float);
+template std::vector<Quadric<16>> vertex_quadrics<16>(const GridMesh&, const FeaturePatch&, float);
 template std::vector<Quadric<3>> vertex_quadrics<3>(const GridMesh&, const RingMesh&, const std::vector<Id>&,
-                                                    const FeatureImage&, float);
+                                                    const FeaturePatch&, float);
 template std::vector<Quadric<8>> vertex_quadrics<8>(const GridMesh&, const RingMesh&, const std::vector<Id>&,
-                                                    const FeatureImage&, float);
+                                                    const FeaturePatch&, float);
 template std::vector<Quadric<16>> vertex_quadrics<16>(const GridMesh&, const RingMesh&,
-                                                      const std::vector<Id>&, const FeatureImage&, float);
+                                                      const std::vector<Id>&, const FeaturePatch&, float);
 template std::vector<Quadric<3>> current_quadrics<3>(const RingMesh&, const std::vector<Quadric<3>>&, float);
 template std::vector<Quadric<8>> current_quadrics<8>(const RingMesh&, const std::vector<Quadric<8>>&, float);
 template std::vector<Quadric<16>> current_quadrics<16>(const RingMesh&, const std::vector<Quadric<16>>&,

@@ -10,6 +10,7 @@
 
 #include "libcore/base/error.h"
 #include "libcore/base/parallel.h"
+#include "libcore/base/parallel_vector.h"
 
 namespace imgmesh {
 namespace {
@@ -214,7 +215,7 @@ FeatureImage luv_image(const Image& image, Range range) {
         throw Error(ErrorCode::kUnsupported, "the picture has no colour: neither channels R, G, B nor Y");
     const DecodeTable decode(image.color_space);
     const bool tabulated = image.sample_type == SampleType::kUint8 && has_srgb_primaries(image.color_space);
-    FeatureImage out{image.width, image.height, 3, std::vector<float>(image.pixel_count() * 3)};
+    FeatureImage out{image.width, image.height, 3, parallel_vector<float>(image.pixel_count() * 3)};
     parallel_blocks(0, image.height, 16, [&](int first, int last) {
         for (int y = first; y < last; ++y) {
             const float* in = image.row(y).data();

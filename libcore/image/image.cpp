@@ -1,4 +1,5 @@
 #include "libcore/image/image.h"
+#include "libcore/base/parallel_vector.h"
 
 #include "libcore/base/error.h"
 
@@ -15,7 +16,7 @@ Image make_image(int width, int height, int channels) {
     image.width = width;
     image.height = height;
     image.channels = channels;
-    image.data.assign(image.pixel_count() * static_cast<std::size_t>(channels), 0.0f);
+    image.data = parallel_vector<float>(image.pixel_count() * static_cast<std::size_t>(channels));
     switch (channels) {
         case 1:
             image.channel_names = {"Y"};

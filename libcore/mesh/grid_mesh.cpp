@@ -27,7 +27,8 @@ FeatureImage doubled_sides(FeatureImage in) {
     return out;
 }
 
-constexpr int kRowsPerBlock = 32;
+// A small tile's rows and some around them are one block.
+constexpr int kRowsPerBlock = 80;
 
 // How many vertices pixel (x, y) has beside its first one.
 int further_vertices(const GridMesh& mesh, int x, int y) {
@@ -84,9 +85,8 @@ GridMesh grid_mesh(FeatureImage feature, Mask mask) {
     return mesh;
 }
 
-FeatureImage smoothed(const FeatureImage& feature, int passes) {
-    FeatureImage image = feature;
-    const int c = feature.channels, w = feature.width * c, h = feature.height;
+FeatureImage smoothed(FeatureImage image, int passes) {
+    const int c = image.channels, w = image.width * c, h = image.height;
     std::vector<float> other(image.data.size());
     for (int pass = 0; pass < passes; ++pass) {
         parallel_blocks(0, h, kRowsPerBlock, [&](int first, int last) {
@@ -115,24 +115,40 @@ FeatureImage smoothed(const FeatureImage& feature, int passes) {
     return image;
 }
 
-FeatureImage smoothed_vertices(const GridMesh& grid, int passes) {
-    if (grid.mask.empty()) return smoothed(grid.feature, passes);
-    // Smoothed colours times insides over smoothed insides.
-    const int c = grid.feature.channels;
-    FeatureImage weighted{grid.feature.width, grid.feature.height, c + 1, {}}, out = grid.feature;
-    weighted.data.assign(weighted.pixel_count() * static_cast<std::size_t>(c + 1), 0.0f);
-    for (std::size_t i = 0; i < weighted.pixel_count(); ++i) {
-        if (!grid.mask.contains(i)) continue;
-        std::copy_n(grid.feature.pixel(i), c, weighted.pixel(i));
-        weighted.pixel(i)[c] = 1;
+FeaturePatch smoothed_patch(const GridMesh& grid, int passes, const PixelRect& rect) {
+    const FeatureImage& feature = grid.feature;
+    const int c = feature.channels, reach = passes + 1;
+    const int left = std::max(0, rect.left - reach), top = std::max(0, rect.top - reach);
+    const int right = std::min(feature.width, rect.right + reach),
+              bottom = std::min(feature.height, rect.bottom + reach);
+    FeaturePatch patch{{right - left, bottom - top, c, {}}, left, top};
+    if (grid.mask.empty()) {
+        const auto row = static_cast<std::size_t>((right - left) * c);
+        patch.image.data.reserve(patch.image.pixel_count() * static_cast<std::size_t>(c));
+        for (int y = top; y < bottom; ++y)
+            patch.image.data.insert(patch.image.data.end(), feature.pixel(left, y),
+                                    feature.pixel(left, y) + row);
+        patch.image = smoothed(std::move(patch.image), passes);
+        return patch;
     }
-    weighted = smoothed(weighted, passes);
-    for (std::size_t i = 0; i < weighted.pixel_count(); ++i)
-        if (grid.mask.contains(i))
-            for (int k = 0; k < c; ++k) out.pixel(i)[k] = weighted.pixel(i)[k] / weighted.pixel(i)[c];
-    out.data.resize(out.pixel_count() * static_cast<std::size_t>(c));
-    append_copies(grid.copies, out);
-    return out;
+    // Smoothed colours times insides over smoothed insides.
+    FeatureImage weighted{right - left, bottom - top, c + 1, {}};
+    weighted.data.assign(weighted.pixel_count() * static_cast<std::size_t>(c + 1), 0.0f);
+    float* out = weighted.data.data();
+    for (int y = top; y < bottom; ++y)
+        for (int x = left; x < right; ++x, out += c + 1) {
+            if (!grid.mask.at(x, y)) continue;
+            std::copy_n(feature.pixel(x, y), c, out);
+            out[c] = 1;
+        }
+    weighted = smoothed(std::move(weighted), passes);
+    patch.image.data.assign(patch.image.pixel_count() * static_cast<std::size_t>(c), 0.0f);
+    for (std::size_t i = 0; i < weighted.pixel_count(); ++i) {
+        const float* sum = weighted.pixel(i);
+        if (sum[c] > 0)
+            for (int k = 0; k < c; ++k) patch.image.pixel(i)[k] = sum[k] / sum[c];
+    }
+    return patch;
 }
 
 }  // namespace imgmesh

@@ -44,10 +44,24 @@ GridMesh grid_mesh(FeatureImage feature, Mask mask = {});
 /// A copy smoothed by `passes` of the separable [1 2 1] / 4 filter, borders repeated. Gradients are taken
 /// from such a copy: most of the error of gradient-based quadrics is noise in per-pixel gradients
 /// (docs/paper-map.md).
-FeatureImage smoothed(const FeatureImage& feature, int passes);
+FeatureImage smoothed(FeatureImage image, int passes);
 
-/// The same for the vertices of `grid`: with a mask the filter's weights outside count as none, so that
-/// colours outside do not bleed in, and `data` goes on with those of grid.copies.
-FeatureImage smoothed_vertices(const GridMesh& grid, int passes);
+/// Part of a picture of features.
+struct FeaturePatch {
+    FeatureImage image;
+    int left = 0, top = 0;  ///< of it in the picture
+
+    /// In the picture's coordinates.
+    const float* pixel(int x, int y) const { return image.pixel(x - left, y - top); }
+};
+
+/// smoothed() of the pixels in `rect` and, inside the picture, of those beside it, from the grid's features
+/// around them. With a mask the filter's weights outside count as none, so that colours outside do not bleed
+/// in.
+FeaturePatch smoothed_patch(const GridMesh& grid, int passes, const PixelRect& rect);
+
+inline PixelRect whole_rect(const GridMesh& grid) {
+    return {0, 0, grid.feature.width, grid.feature.height};
+}
 
 }  // namespace imgmesh

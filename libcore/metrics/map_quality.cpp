@@ -5,6 +5,7 @@
 
 #include "libcore/base/error.h"
 #include "libcore/base/parallel.h"
+#include "libcore/base/parallel_vector.h"
 #include "libcore/metrics/metrics.h"
 
 namespace imgmesh {
@@ -70,7 +71,8 @@ void measure_pixels(const BaseMesh& mesh, const PixelMap& map, const std::vector
 }  // namespace
 
 std::vector<Vec2d> mapped_positions(const BaseMesh& mesh, const PixelMap& map) {
-    std::vector<Vec2d> image(map.coords.size(), Vec2d::Constant(std::numeric_limits<double>::quiet_NaN()));
+    std::vector<Vec2d> image =
+        parallel_vector<Vec2d>(map.coords.size(), Vec2d::Constant(std::numeric_limits<double>::quiet_NaN()));
     parallel_blocks(0, map.height, kGrainRows, [&](int first, int last) {
         const auto width = static_cast<std::size_t>(map.width);
         for (std::size_t i = std::size_t(first) * width; i < std::size_t(last) * width; ++i) {

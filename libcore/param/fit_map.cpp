@@ -4,6 +4,7 @@
 
 #include "libcore/base/error.h"
 #include "libcore/base/parallel.h"
+#include "libcore/base/parallel_vector.h"
 #include "libcore/image/color.h"
 #include "libcore/param/fit_colors.h"
 #include "libcore/param/relax.h"
@@ -14,11 +15,9 @@
 namespace imgmesh {
 namespace {
 
-// Where pixels lie, as a map whose weights are not yet rounded: what the colours are fitted to between the
+// Makes `map` say where pixels lie, weights not yet rounded: what the colours are fitted to between the
 // rounds.
-PixelMap unrounded_map(const MovingPixels& pixels, const std::vector<FaceField>& fields) {
-    PixelMap map{pixels.width, pixels.height, std::vector<PixelCoord>(pixels.face.size()),
-                 WeightPrecision::kFloat};
+void set_unrounded(const MovingPixels& pixels, const std::vector<FaceField>& fields, PixelMap& map) {
     parallel_blocks(0, map.height, 16, [&](int first, int last) {
         for (int y = first; y < last; ++y)
             for (int x = 0; x < map.width; ++x) {
@@ -29,7 +28,6 @@ PixelMap unrounded_map(const MovingPixels& pixels, const std::vector<FaceField>&
                                                   fields[face].v(p.x(), p.y())};
             }
     });
-    return map;
 }
 
 PixelMap stored(const BaseMesh& mesh, const MovingPixels& pixels, const std::vector<FaceField>& fields,
@@ -90,13 +88,18 @@ PixelMap fit_map(BaseMesh& mesh, const FeatureImage& feature, const FitParams& p
     colors.fit(trivial);
     // A strip of one pixel has no cell whose fold could be watched; its map stays trivial.
     const int rounds = params.color_weight > 0 && feature.width > 1 && feature.height > 1 ? params.rounds : 0;
+    PixelMap between;
+    if (rounds > 1) between = {pixels.width, pixels.height, parallel_copy(trivial.coords)};
     for (int round = 0; round < rounds; ++round) {
         if (progress) progress(static_cast<double>(round) / params.rounds, "map");
         const std::vector<FaceField> fields = face_fields(mesh);
         relax(pixels, fields, neighbors, feature, static_cast<float>(1 / params.color_weight), params.sweeps,
               further_fields(mesh, fields));
-        if (round + 1 < rounds) colors.fit(unrounded_map(pixels, fields));
+        if (round + 1 == rounds) break;
+        set_unrounded(pixels, fields, between);
+        colors.fit(between);
     }
+    between = {};
     PixelMap map = stored(mesh, pixels, face_fields(mesh), neighbors, params.bary);
     colors.fit(map);
     colors.round();

@@ -12,6 +12,7 @@
 #include <limits>
 
 #include "libcore/base/parallel.h"
+#include "libcore/base/parallel_vector.h"
 #include "libcore/base/simd.h"
 #include "libcore/mesh/mask_fans.h"
 
@@ -270,10 +271,14 @@ std::uint8_t freedom_of(const Mask& mask, int x, int y) {
 
 MovingPixels resting_pixels(const PixelMap& trivial, const Mask& mask) {
     MovingPixels pixels{trivial.width, trivial.height, {}, {}, {}, {}};
-    pixels.dx.assign(trivial.coords.size(), 0.0f);
-    pixels.dy.assign(trivial.coords.size(), 0.0f);
-    pixels.face.reserve(trivial.coords.size());
-    for (const PixelCoord& coord : trivial.coords) pixels.face.push_back(coord.face);
+    pixels.dx = parallel_vector<float>(trivial.coords.size());
+    pixels.dy = parallel_vector<float>(trivial.coords.size());
+    pixels.face = parallel_vector<Id>(trivial.coords.size());
+    parallel_blocks(0, trivial.height, 64, [&](int first, int last) {
+        for (int y = first; y < last; ++y)
+            for (int x = 0; x < trivial.width; ++x)
+                pixels.face[pixels.index(x, y)] = trivial.coords[pixels.index(x, y)].face;
+    });
     if (mask.empty()) return pixels;
     pixels.freedom.reserve(trivial.coords.size());
     for (int y = 0; y < trivial.height; ++y)

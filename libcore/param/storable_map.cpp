@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "libcore/base/parallel.h"
+#include "libcore/base/parallel_vector.h"
 #include "libcore/param/weight_grid.h"
 
 namespace imgmesh {
@@ -38,7 +39,7 @@ class Storing {
         map_.width = pixels.width;
         map_.height = pixels.height;
         map_.precision = precision;
-        map_.coords.resize(pixels.face.size());
+        map_.coords = parallel_vector<PixelCoord>(pixels.face.size());
     }
 
     std::optional<PixelMap> run() {

@@ -8,6 +8,7 @@
 #include <functional>
 
 #include "libcore/base/parallel.h"
+#include "libcore/base/parallel_vector.h"
 
 namespace imgmesh {
 namespace {
@@ -127,7 +128,7 @@ PixelMap rasterize(const BaseMesh& mesh, const SampleGrid& grid) {
     PixelMap map;
     map.width = static_cast<int>(grid.x.size());
     map.height = static_cast<int>(grid.y.size());
-    map.coords.resize(grid.x.size() * grid.y.size());
+    map.coords = parallel_vector<PixelCoord>(grid.x.size() * grid.y.size());
     const auto bands = sort_into_bands(mesh, grid, map.height);
     parallel_blocks(0, static_cast<int>(bands.size()), 1, [&](int band, int) {
         for (const FaceRows& rows : bands[static_cast<std::size_t>(band)])

@@ -225,7 +225,7 @@ TEST_CASE("collapse: rebuilt quadrics and total priority give sound meshes of th
 // On the dense mesh both say the same: the mesh is the picture.
 TEST_CASE("quadrics of the current mesh are those of the dense one before anything has collapsed") {
     const GridMesh grid = grid_mesh(sample_feature(Kind::kNoise, 9, 7));
-    const auto dense = vertex_quadrics<3>(grid, grid.feature, 2.5f);
+    const auto dense = vertex_quadrics<3>(grid, FeaturePatch{grid.feature}, 2.5f);
     const auto current = current_quadrics(ring_mesh(grid), dense, 2.5f);
     for (std::size_t v = 0; v < dense.size(); ++v) {
         const float x = static_cast<float>(v % 9) + 0.3f, y = static_cast<float>(v / 9) - 0.4f;

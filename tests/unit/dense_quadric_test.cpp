@@ -24,7 +24,7 @@ CollapseParams params_of(Metric metric, Solver solver = Solver::kClosed) {
 }
 
 std::vector<DenseQuadric<3>> quadrics_of(const GridMesh& grid, const CollapseParams& params) {
-    return dense_quadrics<3>(grid, ring_mesh(grid), grid.feature, params);
+    return dense_quadrics<3>(grid, ring_mesh(grid), FeaturePatch{grid.feature}, params);
 }
 
 // The definitions, face by face, each written as a distance and not as a matrix.
@@ -99,7 +99,7 @@ TEST_CASE("dense quadrics: the flattened one is the canonical one") {
         for (const Solver solver : kSolvers) {
             INFO(name_of(kind) << ", " << solver_name(solver));
             const GridMesh grid = grid_mesh(sample_feature(kind, 8, 8));
-            const FeatureImage smooth = smoothed(grid.feature, 1);
+            const FeaturePatch smooth{smoothed(grid.feature, 1)};
             const auto canonical = vertex_quadrics<3>(grid, smooth, kLambda);
             const auto dense =
                 dense_quadrics<3>(grid, ring_mesh(grid), smooth, params_of(Metric::kFlattened, solver));
@@ -203,8 +203,10 @@ TEST_CASE("dense_minimum: padded features of value zero change nothing") {
     for (const Metric metric : kMetrics)
         for (const Solver solver : kSolvers) {
             INFO(metric_name(metric) << ", " << solver_name(solver));
-            const auto three = dense_quadrics<3>(grid, rings, grid.feature, params_of(metric, solver));
-            const auto eight = dense_quadrics<8>(wide, rings, wide.feature, params_of(metric, solver));
+            const auto three =
+                dense_quadrics<3>(grid, rings, FeaturePatch{grid.feature}, params_of(metric, solver));
+            const auto eight =
+                dense_quadrics<8>(wide, rings, FeaturePatch{wide.feature}, params_of(metric, solver));
             const auto q = merged(three[6], three[12]);
             const auto p = merged(eight[6], eight[12]);
             CHECK(double(p.px) == doctest::Approx(double(q.px)).epsilon(1e-5));

@@ -103,7 +103,8 @@ TEST_CASE("vertex quadrics: equal to the sum over the faces that they stand for,
             INFO(name_of(kind) << ", " << passes << " passes");
             const GridMesh grid = grid_mesh(sample_feature(kind, 6, 5));
             const FeatureImage gradients = smoothed(grid.feature, passes);
-            const std::vector<Quadric<3>> quadrics = vertex_quadrics<3>(grid, gradients, kLambda);
+            const std::vector<Quadric<3>> quadrics =
+                vertex_quadrics<3>(grid, FeaturePatch{gradients}, kLambda);
             for (Id v = 0; v < quadrics.size(); ++v) {
                 BruteForce truth;
                 add_vertex(grid, gradients, v, truth);
@@ -115,7 +116,7 @@ TEST_CASE("vertex quadrics: equal to the sum over the faces that they stand for,
 TEST_CASE("vertex quadrics: of a strip one pixel wide") {
     std::mt19937 random(2);
     const GridMesh grid = grid_mesh(sample_feature(Kind::kNoise, 1, 5));
-    const std::vector<Quadric<3>> quadrics = vertex_quadrics<3>(grid, grid.feature, kLambda);
+    const std::vector<Quadric<3>> quadrics = vertex_quadrics<3>(grid, FeaturePatch{grid.feature}, kLambda);
     REQUIRE(quadrics.size() == 10);
     for (Id v = 0; v < quadrics.size(); ++v) {
         BruteForce truth;
@@ -130,7 +131,8 @@ TEST_CASE("merged: the sum of many vertices' quadrics is the sum of all of their
     for (const Kind kind : kAllKinds) {
         INFO(name_of(kind));
         const GridMesh grid = grid_mesh(sample_feature(kind, 9, 8));
-        const std::vector<Quadric<3>> quadrics = vertex_quadrics<3>(grid, grid.feature, kLambda);
+        const std::vector<Quadric<3>> quadrics =
+            vertex_quadrics<3>(grid, FeaturePatch{grid.feature}, kLambda);
         for (const std::size_t count : {2u, 3u, 30u}) {
             std::vector<Id> ids(count);
             for (Id& id : ids) id = static_cast<Id>(random() % quadrics.size());
@@ -144,7 +146,7 @@ TEST_CASE("merged: the sum of many vertices' quadrics is the sum of all of their
 TEST_CASE("merged: no nearby point is lower than the minimiser, and its value is the error") {
     std::mt19937 random(4);
     const GridMesh grid = grid_mesh(sample_feature(Kind::kNoise, 9, 8));
-    const std::vector<Quadric<3>> quadrics = vertex_quadrics<3>(grid, grid.feature, kLambda);
+    const std::vector<Quadric<3>> quadrics = vertex_quadrics<3>(grid, FeaturePatch{grid.feature}, kLambda);
     for (int trial = 0; trial < 50; ++trial) {
         const Id i = static_cast<Id>(random() % quadrics.size()),
                  j = static_cast<Id>(random() % quadrics.size());
@@ -167,7 +169,8 @@ TEST_CASE("merged_minimum: the increment is the least error of the sum less both
     std::mt19937 random(5);
     for (const Kind kind : kAllKinds) {
         const GridMesh grid = grid_mesh(sample_feature(kind, 9, 8));
-        const std::vector<Quadric<3>> quadrics = vertex_quadrics<3>(grid, grid.feature, kLambda);
+        const std::vector<Quadric<3>> quadrics =
+            vertex_quadrics<3>(grid, FeaturePatch{grid.feature}, kLambda);
         for (int trial = 0; trial < 20; ++trial) {
             const Quadric<3>&i = quadrics[random() % quadrics.size()],
                   &j = quadrics[random() % quadrics.size()];
@@ -188,7 +191,8 @@ TEST_CASE("star increments: those of merged_minimum, to the bit, for any number 
     std::mt19937 random(6);
     for (const Kind kind : kAllKinds) {
         const GridMesh grid = grid_mesh(sample_feature(kind, 9, 8));
-        std::vector<Quadric<3>> quadrics = vertex_quadrics<3>(grid, smoothed(grid.feature, 1), kLambda);
+        std::vector<Quadric<3>> quadrics =
+            vertex_quadrics<3>(grid, FeaturePatch{smoothed(grid.feature, 1)}, kLambda);
         for (std::size_t k = 0; k < 20; ++k)
             quadrics[k] = merged(quadrics[k], quadrics[random() % quadrics.size()]);
         Quadric<3> singular;
@@ -262,7 +266,7 @@ TEST_CASE("merged_minimum: a singular pair meets half way") {
 
 TEST_CASE("quadric: its best feature for a position is the best, and at() takes it") {
     const GridMesh grid = grid_mesh(sample_feature(Kind::kNoise, 5, 5));
-    const Quadric<3> q = vertex_quadrics<3>(grid, grid.feature, kLambda)[12];
+    const Quadric<3> q = vertex_quadrics<3>(grid, FeaturePatch{grid.feature}, kLambda)[12];
     const Point at{{2.75, 1.5},
                    {q.feature(0, 2.75f, 1.5f), q.feature(1, 2.75f, 1.5f), q.feature(2, 2.75f, 1.5f)}};
     CHECK(value(q, at) == doctest::Approx(double(q.at(2.75f, 1.5f))));

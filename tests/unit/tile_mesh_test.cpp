@@ -26,15 +26,15 @@ bool close(float a, float b) {
 
 // The tiles together must be the dense mesh as ring_mesh() and initial_quadrics() make it whole.
 void check_tiles(const GridMesh& grid) {
-    const FeatureImage gradients = smoothed_vertices(grid, 2);
     const CollapseParams params;
+    const FeaturePatch gradients = smoothed_patch(grid, params.smoothing, whole_rect(grid));
     const RingMesh rings = ring_mesh(grid);
     const auto quadrics = initial_quadrics<Quadric<3>>(grid, rings, gradients, params);
     std::vector<int> seen(rings.size(), 0);
     const StartTiles tiles(grid);
     TileMesh<Quadric<3>> tile;  // used again: nothing of one tile may stay in the next
     for (int t = 0; t < tiles.count(); ++t) {
-        fill_tile(grid, gradients, params.geometry_weight, tiles.rect(t), tile);
+        fill_tile(grid, params, tiles.rect(t), tile);
         const CollapseMesh<Quadric<3>>& mesh = tile.mesh;
         std::int64_t outline = 0;
         for (Id v = 0; v < tile.own; ++v) {

@@ -1,0 +1,41 @@
+// Large vectors whose memory the threads touch together: the kernel makes and clears pages when they are
+// touched first, which is most of the time that a fresh vector takes.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "libcore/base/parallel.h"
+
+namespace imgmesh {
+
+/// Touches the pages of fresh memory, whose content does not matter yet, on all threads.
+inline void touch_pages(void* memory, std::size_t bytes) {
+    constexpr std::size_t kPage = 4096, kGrain = 512;  // as many as a large page has
+    parallel_blocks(0, static_cast<int>(bytes / kPage), kGrain, [&](int first, int last) {
+        for (int page = first; page < last; ++page)
+            static_cast<volatile char*>(memory)[static_cast<std::size_t>(page) * kPage] = 0;
+    });
+}
+
+/// std::vector<T>(size, value).
+template <class T>
+std::vector<T> parallel_vector(std::size_t size, const T& value = {}) {
+    std::vector<T> vector;
+    vector.reserve(size);
+    touch_pages(vector.data(), size * sizeof(T));
+    vector.resize(size, value);
+    return vector;
+}
+
+/// A copy.
+template <class T>
+std::vector<T> parallel_copy(const std::vector<T>& from) {
+    std::vector<T> vector;
+    vector.reserve(from.size());
+    touch_pages(vector.data(), from.size() * sizeof(T));
+    vector.assign(from.begin(), from.end());
+    return vector;
+}
+
+}  // namespace imgmesh
