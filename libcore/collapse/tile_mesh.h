@@ -90,6 +90,9 @@ void fill_whole(const GridMesh& grid, const FeaturePatch& gradients, float lambd
                 CollapseMesh<Q>& mesh) {
     const Id w = static_cast<Id>(grid.feature.width), stride = static_cast<Id>(rect.width());
     const std::size_t own = stride * static_cast<std::size_t>(rect.height());
+    const std::size_t most = own + 6 * (stride + static_cast<std::size_t>(rect.height()));  // with ghosts
+    mesh.rings.reserve(most);
+    mesh.quadrics.reserve(most);
     mesh.rings.resize(own);
     mesh.pixel.resize(own);
     mesh.quadrics.resize(own);

@@ -11,19 +11,42 @@
 namespace imgmesh {
 namespace {
 
-constexpr int kGrainRows = 16;
+constexpr int kGrainRows = 32;
 
 double area2(const Vec2d& a, const Vec2d& b, const Vec2d& c) {
     const Vec2d ab = b - a, ac = c - a;
     return ab.y() * ac.x() - ab.x() * ac.y();  // as signed_area2()
 }
 
+// Where the mesh has a pixel; not a number for one without a face.
+Vec2d mapped_position(const BaseMesh& mesh, const PixelCoord& coord) {
+    if (coord.face >= mesh.faces.size()) return Vec2d::Constant(std::numeric_limits<double>::quiet_NaN());
+    const auto [a, b, c] = mesh.faces[coord.face];
+    const double u = coord.u, v = coord.v;
+    return (1 - u - v) * mesh.position[a].cast<double>() + u * mesh.position[b].cast<double>() +
+           v * mesh.position[c].cast<double>();
+}
+
+// The mapped positions of some rows of pixels.
+struct MappedRows {
+    int width, first;
+    std::vector<Vec2d> image;
+
+    MappedRows(const BaseMesh& mesh, const PixelMap& map, int begin, int end)
+        : width(map.width), first(begin) {
+        image.reserve(static_cast<std::size_t>(end - begin) * static_cast<std::size_t>(width));
+        for (int y = begin; y < end; ++y)
+            for (const PixelCoord& coord : map.row(y)) image.push_back(mapped_position(mesh, coord));
+    }
+    const Vec2d& at(int x, int y) const {
+        return image[static_cast<std::size_t>(y - first) * static_cast<std::size_t>(width) + std::size_t(x)];
+    }
+};
+
 // Triangles and steps of the grid row between pixel rows y and y + 1. A position that is not finite makes
 // every comparison with it false, so that its triangles and steps do not count. q.max_jump is squared here.
-void measure_row(const std::vector<Vec2d>& image, int width, int height, int y, MapQuality& q) {
-    const auto at = [&](int x, int row) -> const Vec2d& {
-        return image[static_cast<std::size_t>(row) * static_cast<std::size_t>(width) + std::size_t(x)];
-    };
+void measure_row(const MappedRows& rows, int width, int height, int y, MapQuality& q) {
+    const auto at = [&](int x, int row) -> const Vec2d& { return rows.at(x, row); };
     const auto triangle = [&](const Vec2d& a, const Vec2d& b, const Vec2d& c) {
         const double area = area2(a, b, c);
         q.flipped_triangles += area <= 0;
@@ -47,11 +70,10 @@ void measure_row(const std::vector<Vec2d>& image, int width, int height, int y, 
 }
 
 // The pixels of row y. q.mean_displacement is a sum here, over `mapped` pixels.
-void measure_pixels(const BaseMesh& mesh, const PixelMap& map, const std::vector<Vec2d>& image, bool has_mask,
-                    int y, MapQuality& q, std::int64_t& mapped) {
-    const auto width = static_cast<std::size_t>(map.width), begin = static_cast<std::size_t>(y) * width;
-    for (std::size_t i = begin; i < begin + width; ++i) {
-        const PixelCoord& c = map.coords[i];
+void measure_pixels(const BaseMesh& mesh, const PixelMap& map, const MappedRows& rows, bool has_mask, int y,
+                    MapQuality& q, std::int64_t& mapped) {
+    for (int x = 0; x < map.width; ++x) {
+        const PixelCoord& c = map.row(y)[static_cast<std::size_t>(x)];
         if (has_mask && c.face == kNone) continue;
         ++q.pixels;
         if (c.face >= mesh.faces.size()) {
@@ -60,7 +82,7 @@ void measure_pixels(const BaseMesh& mesh, const PixelMap& map, const std::vector
         }
         // Infinite weights fail one of the three as well: u + v <= 1 bounds what u, v >= 0 leaves open.
         if (!(c.u >= 0 && c.v >= 0 && double(c.u) + double(c.v) <= 1)) ++q.outside_simplex;
-        const double distance = (image[i] - Vec2d(double(i - begin), double(y))).norm();
+        const double distance = (rows.at(x, y) - Vec2d(x, y)).norm();
         if (!std::isfinite(distance)) continue;
         ++mapped;
         q.mean_displacement += distance;
@@ -71,24 +93,16 @@ void measure_pixels(const BaseMesh& mesh, const PixelMap& map, const std::vector
 }  // namespace
 
 std::vector<Vec2d> mapped_positions(const BaseMesh& mesh, const PixelMap& map) {
-    std::vector<Vec2d> image =
-        parallel_vector<Vec2d>(map.coords.size(), Vec2d::Constant(std::numeric_limits<double>::quiet_NaN()));
+    std::vector<Vec2d> image = parallel_vector<Vec2d>(map.coords.size(), Vec2d::Zero());
     parallel_blocks(0, map.height, kGrainRows, [&](int first, int last) {
         const auto width = static_cast<std::size_t>(map.width);
-        for (std::size_t i = std::size_t(first) * width; i < std::size_t(last) * width; ++i) {
-            const PixelCoord& coord = map.coords[i];
-            if (coord.face >= mesh.faces.size()) continue;
-            const auto [a, b, c] = mesh.faces[coord.face];
-            const double u = coord.u, v = coord.v;
-            image[i] = (1 - u - v) * mesh.position[a].cast<double>() + u * mesh.position[b].cast<double>() +
-                       v * mesh.position[c].cast<double>();
-        }
+        for (std::size_t i = std::size_t(first) * width; i < std::size_t(last) * width; ++i)
+            image[i] = mapped_position(mesh, map.coords[i]);
     });
     return image;
 }
 
 MapQuality map_quality(const BaseMesh& mesh, const PixelMap& map, bool has_mask) {
-    const std::vector<Vec2d> image = mapped_positions(mesh, map);
     struct Part {
         MapQuality q;
         std::int64_t mapped = 0;
@@ -97,9 +111,10 @@ MapQuality map_quality(const BaseMesh& mesh, const PixelMap& map, bool has_mask)
     parallel_blocks(0, map.height, kGrainRows, [&](int first, int last) {
         Part& part = parts[static_cast<std::size_t>(first / kGrainRows)];
         part.q.min_area2 = std::numeric_limits<double>::infinity();
+        const MappedRows rows(mesh, map, first, std::min(last + 1, map.height));
         for (int y = first; y < last; ++y) {
-            measure_row(image, map.width, map.height, y, part.q);
-            measure_pixels(mesh, map, image, has_mask, y, part.q, part.mapped);
+            measure_row(rows, map.width, map.height, y, part.q);
+            measure_pixels(mesh, map, rows, has_mask, y, part.q, part.mapped);
         }
     });
     MapQuality q;

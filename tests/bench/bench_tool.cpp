@@ -24,6 +24,7 @@
 #include "libcore/param/trivial_map.h"
 #include "tests/bench/bench_stages.h"
 #include "tests/bench/raw_files.h"
+#include "tools/common/large_pages.h"
 
 using namespace imgmesh;
 using namespace imgmesh::bench;
@@ -123,6 +124,7 @@ int measure(const Arguments& a) {
 }  // namespace
 
 int main(int argc, char** argv) {
+    use_large_pages();  // as the tools do
     const std::map<std::string, std::function<int(const Arguments&)>> commands = {
         {"mosaic", mosaic}, {"stages", stages}, {"features", features}, {"measure", measure}};
     const auto at = argc > 1 ? commands.find(argv[1]) : commands.end();
