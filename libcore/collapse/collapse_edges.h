@@ -30,8 +30,8 @@ struct CollapseParams {
     Solver solver = Solver::kClosed;
     float geometry_weight = 3.0f;  ///< lambda, against colour [feature^2 / px^2]; > 0; kHoppe has none
     int smoothing = 2;             ///< passes of `smoothed` on the copy that gradients are taken from
-    /// quadrics are taken anew from the mesh whenever its vertices have halved, instead of summed up from the
-    /// pixels on
+    /// quadrics are taken anew from the mesh whenever its vertices have nearly halved, instead of summed up
+    /// from the pixels on
     bool rebuild_quadrics = false;
     bool total_priority = false;  ///< edges go by the total error (the paper), not by what a merge adds to it
     /// while the goal is far, edges go tile by tile, on all threads: faster, but seams show in the order. Not

@@ -108,7 +108,7 @@ class Collapser {
                                               kStartAbove * (1 - share_that_goes()));
                 if (share < kMostStartShare) {
                     threshold_ = start_threshold<Q>(grid_, rules_, share);
-                    take(start_in_tiles(grid_, rules_, threshold_, share_that_goes(), mesh_,
+                    take(start_in_tiles(grid_, rules_, threshold_, share, share_that_goes(), mesh_,
                                         [&](std::int64_t gone) {
                                             if (progress) progress(fraction_done(gone), "collapse");
                                         }));

@@ -18,6 +18,8 @@ inline constexpr float kTileWindow = 2.0f;
 
 // Tiles that one engine works off, one after the other.
 inline constexpr int kStartTilesPerBlock = 4;
+// Tiles whose survivors are kept one by one before they are put together.
+inline constexpr int kStartTilesAtATime = 512;
 
 /// The threshold at which `share` of the vertices would be left, found out on some of the tiles; to a factor
 /// of kTileWindow, rather too low.
@@ -27,15 +29,16 @@ float start_threshold(const GridMesh& grid, const CollapseRules& rules, double s
 /// Collapses edges below `threshold` in every tile of the grid, as long as at most `share_that_goes` of its
 /// vertices go; vertices next to another tile stay, and those on the outline of a cut-out.
 ///
+/// share     of the vertices that is expected to be left
 /// left      out: what is left, vertices tile by tile, in the grid's order within each
 /// progress  is told how many vertices are gone so far
 template <class Q, class Progress>
-Tally start_in_tiles(const GridMesh& grid, const CollapseRules& rules, float threshold,
+Tally start_in_tiles(const GridMesh& grid, const CollapseRules& rules, float threshold, double share,
                      double share_that_goes, CollapseMesh<Q>& left, const Progress& progress);
 
 namespace tile_start {
 
-// In a part that keep_survivors() has made: a neighbour in another tile, by its pixel.
+// Among the neighbours in what survivors() returns: a neighbour in another tile, by its pixel.
 inline constexpr Id kElsewhere = 1u << 31;
 
 // Collapses the tile's edges below `threshold`, rebuilding quadrics at every halving of its vertices where
@@ -61,12 +64,13 @@ Tally collapse_tile(EdgeCollapser<Q>& engine, const CollapseParams& params, Tile
     }
 }
 
-// Appends what has survived to `out`, numbered from 0 on, and writes these numbers to number[pixel].
+// What has survived, numbered from 0 on; writes these numbers to number[vertex].
 template <class Q>
-void keep_survivors(const TileMesh<Q>& tile, CollapseMesh<Q>& out, std::vector<Id>& number) {
+CollapseMesh<Q> survivors(const TileMesh<Q>& tile, std::vector<Id>& number) {
     const CollapseMesh<Q>& mesh = tile.mesh;
     const std::vector<Id> live = live_list(mesh.rings);
     for (Id n = 0; n < live.size(); ++n) number[mesh.pixel[live[n]]] = n;
+    CollapseMesh<Q> out;
     out.rings.reserve(live.size());
     out.quadrics.reserve(live.size());
     out.pixel.reserve(live.size());
@@ -83,35 +87,27 @@ void keep_survivors(const TileMesh<Q>& tile, CollapseMesh<Q>& out, std::vector<I
         out.quadrics.push_back(mesh.quadrics[v]);
         out.pixel.push_back(mesh.pixel[v]);
     }
+    return out;
 }
 
-// Puts the tiles' parts together, and takes them apart meanwhile.
-template <class Q>
-CollapseMesh<Q> joined(const StartTiles& tiles, std::vector<CollapseMesh<Q>>& parts,
-                       const std::vector<Id>& number) {
-    std::vector<Id> first(parts.size() + 1, 0);
-    for (std::size_t t = 0; t < parts.size(); ++t)
-        first[t + 1] = first[t] + static_cast<Id>(parts[t].rings.size());
-    CollapseMesh<Q> whole;
-    whole.rings = parallel_vector<Ring>(first.back());
-    whole.quadrics = parallel_vector<Q>(first.back());
-    whole.pixel = parallel_vector<Id>(first.back());
+template <class T>
+void append(std::vector<T>& to, const std::vector<T>& part) {
+    to.insert(to.end(), part.begin(), part.end());
+}
+
+// Names neighbours by their place in the whole: first[t] is where the vertices of tile t begin.
+inline void join(const StartTiles& tiles, const std::vector<Id>& first, const std::vector<Id>& number,
+                 RingMesh& rings) {
     parallel_blocks(0, tiles.count(), kStartTilesPerBlock, [&](int begin, int end) {
-        for (auto t = static_cast<std::size_t>(begin); t < static_cast<std::size_t>(end); ++t) {
-            CollapseMesh<Q> part = std::move(parts[t]);
-            for (Ring& ring : part.rings)
-                for (int k = 0; k < ring.valence; ++k) {
-                    Id& n = ring.neighbor[k];
-                    const Id pixel = n & ~kElsewhere;
-                    n = n & kElsewhere ? first[static_cast<std::size_t>(tiles.of(pixel))] + number[pixel]
+        for (auto t = static_cast<std::size_t>(begin); t < static_cast<std::size_t>(end); ++t)
+            for (Id v = first[t]; v < first[t + 1]; ++v)
+                for (int k = 0; k < rings[v].valence; ++k) {
+                    Id& n = rings[v].neighbor[k];
+                    const Id vertex = n & ~kElsewhere;
+                    n = n & kElsewhere ? first[static_cast<std::size_t>(tiles.of(vertex))] + number[vertex]
                                        : first[t] + n;
                 }
-            std::copy(part.rings.begin(), part.rings.end(), whole.rings.begin() + first[t]);
-            std::copy(part.quadrics.begin(), part.quadrics.end(), whole.quadrics.begin() + first[t]);
-            std::copy(part.pixel.begin(), part.pixel.end(), whole.pixel.begin() + first[t]);
-        }
     });
-    return whole;
 }
 
 // Tiles all over the picture.
@@ -172,31 +168,48 @@ float start_threshold(const GridMesh& grid, const CollapseRules& rules, double s
 }
 
 template <class Q, class Progress>
-Tally start_in_tiles(const GridMesh& grid, const CollapseRules& rules, float threshold,
+Tally start_in_tiles(const GridMesh& grid, const CollapseRules& rules, float threshold, double share,
                      double share_that_goes, CollapseMesh<Q>& left, const Progress& progress) {
     using namespace tile_start;
     const StartTiles tiles(grid);
-    std::vector<CollapseMesh<Q>> parts(static_cast<std::size_t>(tiles.count()));
-    std::vector<Tally> tallies(parts.size());
+    // Room that is not touched costs nothing.
+    const auto expected = static_cast<std::size_t>(1.3 * share * static_cast<double>(grid.vertex_count()));
+    left.rings.reserve(expected);
+    left.quadrics.reserve(expected);
+    left.pixel.reserve(expected);
+    std::vector<Id> first(static_cast<std::size_t>(tiles.count()) + 1, 0);
     std::vector<Id> number = parallel_vector<Id>(grid.vertex_count());
+    Tally sum;
     std::atomic<std::int64_t> gone = 0;
     const std::thread::id caller = std::this_thread::get_id();
-    parallel_blocks(0, tiles.count(), kStartTilesPerBlock, [&](int begin, int end) {
-        TileMesh<Q> tile;
-        EdgeCollapser<Q> engine(tile.mesh, rules);
-        for (auto t = static_cast<std::size_t>(begin); t < static_cast<std::size_t>(end); ++t) {
-            fill_tile(grid, rules.params, tiles.rect(static_cast<int>(t)), tile);
-            const auto may_go =
-                static_cast<std::int64_t>(share_that_goes * static_cast<double>(tile.live - tile.outline));
-            tallies[t] = collapse_tile(engine, rules.params, tile, threshold, may_go);
-            keep_survivors(tile, parts[t], number);
-            gone += tallies[t].vertices;
+    // Some tiles at a time, so that their parts' memory serves again and again.
+    for (int begin = 0; begin < tiles.count(); begin += kStartTilesAtATime) {
+        const int end = std::min(begin + kStartTilesAtATime, tiles.count());
+        std::vector<CollapseMesh<Q>> parts(static_cast<std::size_t>(end - begin));
+        std::vector<Tally> tallies(parts.size());
+        parallel_blocks(begin, end, kStartTilesPerBlock, [&](int from, int to) {
+            TileMesh<Q> tile;
+            EdgeCollapser<Q> engine(tile.mesh, rules);
+            for (int t = from; t < to; ++t) {
+                const auto n = static_cast<std::size_t>(t - begin);
+                fill_tile(grid, rules.params, tiles.rect(t), tile);
+                const auto may_go = static_cast<std::int64_t>(share_that_goes *
+                                                              static_cast<double>(tile.live - tile.outline));
+                tallies[n] = collapse_tile(engine, rules.params, tile, threshold, may_go);
+                parts[n] = survivors(tile, number);
+                gone += tallies[n].vertices;
+            }
+            if (std::this_thread::get_id() == caller) progress(gone);
+        });
+        for (std::size_t n = 0; n < parts.size(); ++n) {
+            sum.add(tallies[n]);
+            append(left.rings, parts[n].rings);
+            append(left.quadrics, parts[n].quadrics);
+            append(left.pixel, parts[n].pixel);
+            first[static_cast<std::size_t>(begin) + n + 1] = static_cast<Id>(left.rings.size());
         }
-        if (std::this_thread::get_id() == caller) progress(gone);
-    });
-    Tally sum;
-    for (const Tally& tally : tallies) sum.add(tally);
-    left = joined(tiles, parts, number);
+    }
+    join(tiles, first, number, left.rings);
     return sum;
 }
 
