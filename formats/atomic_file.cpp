@@ -60,15 +60,23 @@ void forget_temporary(const char* path) {
     while (g_ending) ::pause();
 }
 
-// Async-signal-safe: lock-free atomics, nanosleep, unlink, raise. A thread that switches over holds signals
-// off, so whoever is waited for here is another thread.
+// Async-signal-safe: lock-free atomics, nanosleep, unlink, sigaction, pthread_sigmask, raise.
 extern "C" void remove_temporaries_and_end(int signal) {
-    g_ending = true;
+    if (g_ending.exchange(true)) return;  // one more signal must not cut the work for the first one short
+    // A thread that switches over holds signals off, so whoever is waited for here is another thread. Not for
+    // ever: it may want what this one has locked.
     constexpr timespec kMillisecond = {0, 1'000'000};
-    while (g_switches > 0) ::nanosleep(&kMillisecond, nullptr);
+    for (int n = 0; n < 10'000 && g_switches > 0; ++n) ::nanosleep(&kMillisecond, nullptr);
     for (std::atomic<const char*>& slot : g_temporaries)
         if (const char* path = slot.exchange(nullptr)) ::unlink(path);
-    ::raise(signal);  // SA_RESETHAND and SA_NODEFER: the default action, at once
+    struct sigaction action = {};
+    action.sa_handler = SIG_DFL;
+    ::sigaction(signal, &action, nullptr);
+    sigset_t one;
+    ::sigemptyset(&one);
+    ::sigaddset(&one, signal);
+    ::pthread_sigmask(SIG_UNBLOCK, &one, nullptr);
+    ::raise(signal);
 }
 
 constexpr std::array kEndingSignals = {SIGINT, SIGTERM, SIGHUP};
@@ -209,7 +217,6 @@ void remove_temporaries_on_signals() {
         if (::sigaction(signal, nullptr, &action) != 0 || action.sa_handler != SIG_DFL) continue;
         action = {};
         action.sa_handler = remove_temporaries_and_end;
-        action.sa_flags = static_cast<int>(SA_RESETHAND) | SA_NODEFER;
         ::sigaction(signal, &action, nullptr);
     }
 }

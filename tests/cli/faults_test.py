@@ -107,15 +107,20 @@ class Faults(CliCase):
 
     def test_ended_by_a_signal_leaves_no_file(self):
         before = self.files()
-        for name, number, moment in (("c.glb", signal.SIGTERM, "."), ("c.gltf", signal.SIGINT, "."),
-                                     ("c.gltf", signal.SIGTERM, "."), ("c.gltf", signal.SIGHUP, "."),
-                                     # While new files stand beside old ones: all are switched, or none.
-                                     ("c.gltf", signal.SIGTERM, "c"), ("c.gltf", signal.SIGINT, "c")):
+        for name, number, moment, times in (("c.glb", signal.SIGTERM, ".", 1), ("c.gltf", signal.SIGINT, ".", 1),
+                                            ("c.gltf", signal.SIGTERM, ".", 1), ("c.gltf", signal.SIGHUP, ".", 1),
+                                            # While new files stand beside old ones: all are switched, or none.
+                                            ("c.gltf", signal.SIGTERM, "c", 1), ("c.gltf", signal.SIGINT, "c", 1),
+                                            # Somebody impatient.
+                                            ("c.glb", signal.SIGINT, ".", 3), ("c.gltf", signal.SIGINT, ".", 3),
+                                            ("c.gltf", signal.SIGTERM, "c", 3), ("c.gltf", signal.SIGINT, "c", 3)):
             process = self.start(name)
             while process.poll() is None and not any(file.startswith(moment) for file in
                                                      set(os.listdir(self.folder)) - {*before, "alone"}):
                 pass
-            process.send_signal(number)
+            for _ in range(times):
+                process.send_signal(number)
+                time.sleep(0.0005)
             process.wait(60)
             self.assertFalse([f for f in self.files() if f.startswith(".")])
             if self.files() != before:  # the signal came after the last rename
