@@ -117,8 +117,8 @@ void write_glb(const std::string& path, Asset& asset, const std::vector<std::uin
 void write_gltf(const std::string& path, Asset& asset, const std::vector<std::uint8_t>& buffer,
                 const std::vector<std::uint8_t>& layers, const ContainerOptions& options) {
     const std::vector<std::string> old_files = companions_of(path);
-    std::optional<SwitchOver>
-        switch_over;  // ends after the files: one placed in vain must go before a signal
+    // Ends after the files below do: one placed in vain must go before a signal.
+    std::optional<SwitchOver> switch_over;
     AtomicFile gltf(path, options.overwrite);
     CompanionFile bin(path, ".bin", buffer);
     std::optional<CompanionFile> exr;

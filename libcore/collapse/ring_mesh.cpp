@@ -55,12 +55,6 @@ RingMesh ring_mesh(const GridMesh& grid) {
     return rings;
 }
 
-std::int64_t live_vertices(const RingMesh& rings) {
-    std::int64_t count = 0;
-    for (const Ring& ring : rings) count += ring.live();
-    return count;
-}
-
 std::int64_t face_count(const RingMesh& rings) {
     std::int64_t corners = 0;
     for (const Ring& ring : rings)

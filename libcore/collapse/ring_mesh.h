@@ -70,7 +70,6 @@ inline Ring inner_ring(const GridMesh& grid, int x, int y, Id self, Id stride) {
 /// The rings of all vertices of a grid mesh.
 RingMesh ring_mesh(const GridMesh& grid);
 
-std::int64_t live_vertices(const RingMesh& rings);
 std::int64_t face_count(const RingMesh& rings);
 
 /// Neighbours of the vertex that would replace the edge (i, j), in the order of Ring::neighbor.

@@ -94,7 +94,8 @@ std::vector<StageRow> measure_stages(const std::string& path, const std::string&
     const std::vector<CollapseTarget> targets = collapse_targets(params, pixels);
     const CollapseParams limits = collapse_params(params, targets.front(), pixels);
     bench.stage("quadrics", [&] {
-        return vertex_quadrics<3>(grid, smoothed_patch(grid, limits.smoothing, whole_rect(grid)), limits.geometry_weight);
+        return vertex_quadrics<3>(grid, smoothed_patch(grid, limits.smoothing, whole_rect(grid)),
+                                  limits.geometry_weight);
     });
     const CollapseResult collapsed =
         bench.stage("collapse", [&] { return collapse_edges(grid, limits, targets.front()); });

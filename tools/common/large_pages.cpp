@@ -14,10 +14,10 @@ void use_large_pages() {}
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 namespace {
 
-constexpr std::size_t kPage = std::size_t{1} << 21, kLeast = kPage;
+constexpr std::size_t kPage = std::size_t{1} << 21;
 
 void* allocate(std::size_t size, std::size_t alignment) {
-    const bool large = size >= kLeast;
+    const bool large = size >= kPage;
     if (large) alignment = std::max(alignment, kPage);
     for (;;) {
         void* block = nullptr;
