@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Fails on an include against tools -> formats -> libcore.
+"""Fails on an include against tools -> formats -> libcore, or against the ranks of the rooms in a layer.
 
 check_includes.py [ROOT]     prints each wrong include of the tree, exit 1 if there is one
 check_includes.py --self-test   plants includes, wrong and right, into small trees and expects each to be judged so
@@ -12,13 +12,36 @@ from pathlib import Path
 INCLUDE = re.compile(r'^\s*#\s*include\s*[<"]([^>"]+)[>"]', re.MULTILINE)
 SOURCES = {".h", ".hpp", ".cpp", ".inl"}
 
-# Which part of libcore formats may know: values, no algorithms.
-VALUES = re.compile(r"libcore/(base/|image/|mesh/|param/pixel_map\.h$|param/mesh_image\.h$|warp/warp_edits\.h$)")
+# Rooms of a layer, from the lowest rank up. A file includes rooms of lower rank and its own room, nothing else: rooms of
+# one rank do not know each other.
+RANKS = {
+    "libcore": [["base"], ["image"], ["mesh"],
+                ["simplify", "param", "refine", "recon", "segment", "warp", "metrics"], ["pipeline"]],
+    "formats": [["files"], ["findings"], ["exr"], ["picture", "gltf"], ["container"], ["export"]],
+}
+RANK_OF = {layer: {room: rank for rank, rooms in enumerate(ranks) for room in rooms} for layer, ranks in RANKS.items()}
+
+# Which parts of libcore formats may know: values and what is computed of them row by row, no algorithms.
+VALUES = re.compile(r"libcore/(base/|image/|mesh/(base_mesh|mesh_image|pixel_map)\.h$|warp/warp_edits\.h$)")
 # Libraries by the names of their headers.
 TBB = re.compile(r"(oneapi/)?tbb(/|\.h$)")
 FILE_LIBRARIES = re.compile(r"OpenEXR/|Imath/|Imf\w*\.h|OpenImageIO/|png\.h$|libdeflate\.h$|draco/|tiny_gltf|tinygltf|nlohmann/|webp/|json/")
 COMMAND_LINE = re.compile(r"CLI/|CLI11")
 STREAMS = re.compile(r"(fstream|filesystem|cstdio|stdio\.h)$")
+
+
+def against_ranks(rank_of, path, include):
+    """Why a file may not include another of its layer; both relative to the layer."""
+    if len(path) < 2 or path[0] not in rank_of:
+        return f"{'/'.join(path)} is in no room: {', '.join(rank_of)}"
+    own, other = path[0], include[0]
+    if other == own:
+        return None
+    if other not in rank_of:
+        return f"there is no room {other}"
+    if rank_of[other] == rank_of[own]:
+        return f"rooms of one rank do not know each other: {own}, {other}"
+    return f"{own} is below {other}" if rank_of[other] > rank_of[own] else None
 
 
 def wrong(path, include):
@@ -41,6 +64,8 @@ def wrong(path, include):
             return "formats knows no command line"
         if include.startswith("libcore/") and not VALUES.match(include):
             return "formats includes libcore's values, not its algorithms"
+    if include.startswith(f"{layer}/") and layer in RANKS:
+        return against_ranks(RANK_OF[layer], path.parts[1:], Path(include).parts[1:])
     if layer == "tools" and include.startswith("tests/"):
         return "tools know no tests"
     return None
@@ -80,7 +105,7 @@ def findings(root):
 
 # (file, include, whether it is wrong)
 CASES = [
-    ("libcore/mesh/a.h", "formats/container.h", True),
+    ("libcore/mesh/a.h", "formats/container/container.h", True),
     ("libcore/mesh/a.cpp", "tools/common/options.h", True),
     ("libcore/mesh/a.cpp", "CLI/CLI.hpp", True),
     ("libcore/mesh/a.cpp", "tiny_gltf.h", True),
@@ -94,21 +119,32 @@ CASES = [
     ("libcore/mesh/a.cpp", "tbb/parallel_for.h", True),
     ("libcore/base/parallel.cpp", "tbb/parallel_for.h", False),
     ("libcore/mesh/a.cpp", "Eigen/Core", False),
-    ("libcore/mesh/a.cpp", "libcore/collapse/collapse.h", False),
+    ("libcore/mesh/a.cpp", "libcore/image/image.h", False),
+    ("libcore/mesh/a.cpp", "libcore/mesh/base_mesh.h", False),
+    ("libcore/mesh/a.cpp", "libcore/simplify/simplify.h", True),
+    ("libcore/param/a.cpp", "libcore/recon/draw.h", True),
+    ("libcore/pipeline/a.cpp", "libcore/simplify/simplify.h", False),
+    ("libcore/base/a.cpp", "libcore/image/image.h", True),
+    ("libcore/attic/a.cpp", "libcore/base/types.h", True),
+    ("libcore/warp/a.cpp", "libcore/attic/a.h", True),
+    ("libcore/a.cpp", "libcore/base/types.h", True),
+    ("formats/gltf/a.cpp", "formats/findings/findings.h", False),
+    ("formats/gltf/a.cpp", "formats/container/container.h", True),
+    ("formats/gltf/a.cpp", "formats/picture/exif.h", True),
     ("formats/a.cpp", "tools/common/options.h", True),
     ("formats/a.cpp", "CLI/CLI.hpp", True),
-    ("formats/a.cpp", "libcore/collapse/collapse.h", True),
-    ("formats/a.cpp", "libcore/param/tracker.h", True),
+    ("formats/gltf/a.cpp", "libcore/simplify/simplify.h", True),
+    ("formats/gltf/a.cpp", "libcore/param/track.h", True),
     ("formats/a.cpp", "oneapi/tbb/task_arena.h", True),
-    ("formats/a.cpp", "libcore/param/pixel_map.h", False),
-    ("formats/a.cpp", "libcore/param/mesh_image.h", False),
-    ("formats/a.cpp", "libcore/base/error.h", False),
-    ("formats/a.cpp", "libcore/warp/warp_edits.h", False),
-    ("formats/a.cpp", "libcore/warp/warp_image.h", True),
+    ("formats/gltf/a.cpp", "libcore/mesh/pixel_map.h", False),
+    ("formats/gltf/a.cpp", "libcore/mesh/mesh_image.h", False),
+    ("formats/gltf/a.cpp", "libcore/base/error.h", False),
+    ("formats/gltf/a.cpp", "libcore/warp/warp_edits.h", False),
+    ("formats/gltf/a.cpp", "libcore/warp/warp_image.h", True),
     ("formats/a.h", "OpenEXR/ImfHeader.h", False),
     ("formats/a.cpp", "nlohmann/json.hpp", False),
     ("tools/a.cpp", "CLI/CLI.hpp", False),
-    ("tools/a.cpp", "libcore/build/build.h", False),
+    ("tools/a.cpp", "libcore/pipeline/build.h", False),
     ("tools/a.cpp", "tests/support/temporary_folder.h", True),
     ("tools/a.cpp", "tbb/parallel_for.h", True),
 ]
@@ -137,8 +173,8 @@ def self_test():
         failed += failures({name: f"// a file\n#include <{include}>\n"}, is_wrong)
         failed += failures({name: f'// a file\n  #  include "{include}"  // why\n'}, is_wrong)
     for include, is_wrong in LEAK_CASES:
-        failed += failures({"tools/a.cpp": '#include "formats/a.h"\n', "formats/a.h": '#include "formats/b.h"\n',
-                            "formats/b.h": f"#include <{include}>\n"}, is_wrong)
+        failed += failures({"tools/a.cpp": '#include "formats/gltf/a.h"\n', "formats/gltf/a.h": '#include "formats/gltf/b.h"\n',
+                            "formats/gltf/b.h": f"#include <{include}>\n"}, is_wrong)
     return failed
 
 

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "libcore/base/error.h"
-#include "libcore/build/params.h"
+#include "libcore/pipeline/params.h"
 
 namespace imgmesh {
 namespace {

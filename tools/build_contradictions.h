@@ -3,7 +3,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include "libcore/build/build.h"
+#include "libcore/pipeline/build.h"
 
 namespace imgmesh {
 

@@ -5,14 +5,14 @@
 #include <optional>
 #include <ostream>
 
-#include "formats/container.h"
-#include "formats/image_io.h"
+#include "formats/container/container.h"
+#include "formats/picture/image_io.h"
 #include "libcore/base/parallel.h"
 #include "libcore/base/stopwatch.h"
-#include "libcore/build/build.h"
-#include "libcore/build/presets.h"
 #include "libcore/image/color.h"
 #include "libcore/metrics/metrics.h"
+#include "libcore/pipeline/build.h"
+#include "libcore/pipeline/presets.h"
 #include "tools/build_contradictions.h"
 #include "tools/common/channel_list.h"
 #include "tools/common/names.h"

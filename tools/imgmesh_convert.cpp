@@ -3,10 +3,10 @@
 #include <optional>
 #include <ostream>
 
-#include "formats/atomic_file.h"
-#include "formats/container.h"
-#include "formats/image_io.h"
-#include "formats/mesh_export.h"
+#include "formats/container/container.h"
+#include "formats/export/mesh_export.h"
+#include "formats/files/atomic_file.h"
+#include "formats/picture/image_io.h"
 #include "libcore/image/feature_space.h"
 #include "libcore/recon/draw.h"
 #include "tools/common/limits.h"

@@ -2,8 +2,8 @@
 #include <map>
 #include <ostream>
 
-#include "formats/container.h"
-#include "formats/validate.h"
+#include "formats/container/container.h"
+#include "formats/container/validate.h"
 #include "libcore/image/color.h"
 #include "libcore/metrics/metrics.h"
 #include "tools/common/limits.h"

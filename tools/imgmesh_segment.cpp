@@ -1,11 +1,11 @@
 // imgmesh-segment: a container in, labelled regions out.
 #include <ostream>
 
-#include "formats/atomic_file.h"
-#include "formats/container.h"
-#include "formats/image_io.h"
-#include "formats/label_files.h"
-#include "formats/region_gltf.h"
+#include "formats/container/container.h"
+#include "formats/export/label_files.h"
+#include "formats/files/atomic_file.h"
+#include "formats/gltf/region_gltf.h"
+#include "formats/picture/image_io.h"
 #include "libcore/image/color.h"
 #include "libcore/image/feature_space.h"
 #include "libcore/segment/contour_map.h"

@@ -6,10 +6,10 @@
 #include <optional>
 #include <ostream>
 
-#include "formats/container.h"
-#include "formats/edit_file.h"
-#include "formats/exr_parts.h"
-#include "formats/image_io.h"
+#include "formats/container/container.h"
+#include "formats/container/edit_file.h"
+#include "formats/exr/exr_parts.h"
+#include "formats/picture/image_io.h"
 #include "libcore/warp/retarget.h"
 #include "libcore/warp/solve_edits.h"
 #include "libcore/warp/warp_image.h"

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "libcore/image/image.h"
-#include "libcore/param/mesh_image.h"
+#include "libcore/mesh/mesh_image.h"
 
 namespace imgmesh {
 

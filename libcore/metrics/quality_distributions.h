@@ -2,8 +2,8 @@
 // extremes.
 #pragma once
 
+#include "libcore/mesh/mesh_image.h"
 #include "libcore/metrics/distribution.h"
-#include "libcore/param/mesh_image.h"
 
 namespace imgmesh {
 

@@ -8,7 +8,7 @@
 
 namespace imgmesh {
 
-/// No ring has more vertices (libcore/collapse/ring_mesh.h).
+/// No ring has more vertices (libcore/mesh/ring_mesh.h).
 inline constexpr std::size_t kMaxFlatRing = 12;
 
 /// Where the vertices of a ring lie when its pivot is at the origin, counter-clockwise (x right, y *up*).

@@ -6,7 +6,7 @@
 
 #include "libcore/base/parallel.h"
 #include "libcore/image/channel_count.h"
-#include "libcore/mesh/vertex_classes.h"
+#include "libcore/mesh/vertex_coloring.h"
 
 namespace imgmesh {
 namespace {

@@ -4,7 +4,7 @@
 #include "libcore/image/feature_space.h"
 #include "libcore/image/image.h"
 #include "libcore/mesh/base_mesh.h"
-#include "libcore/param/pixel_map.h"
+#include "libcore/mesh/pixel_map.h"
 
 namespace imgmesh {
 

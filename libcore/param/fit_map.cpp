@@ -6,11 +6,11 @@
 #include "libcore/base/parallel.h"
 #include "libcore/base/parallel_vector.h"
 #include "libcore/image/color.h"
+#include "libcore/mesh/trivial_map.h"
+#include "libcore/mesh/weight_grid.h"
 #include "libcore/param/fit_colors.h"
+#include "libcore/param/quantize_map.h"
 #include "libcore/param/relax.h"
-#include "libcore/param/storable_map.h"
-#include "libcore/param/trivial_map.h"
-#include "libcore/param/weight_grid.h"
 
 namespace imgmesh {
 namespace {

@@ -8,7 +8,7 @@
 #include "libcore/image/image.h"
 #include "libcore/image/mask.h"
 #include "libcore/mesh/base_mesh.h"
-#include "libcore/param/pixel_map.h"
+#include "libcore/mesh/pixel_map.h"
 
 namespace imgmesh {
 

@@ -6,8 +6,9 @@
 
 #include "libcore/image/image.h"
 #include "libcore/image/mask.h"
-#include "libcore/param/face_field.h"
-#include "libcore/param/pixel_map.h"
+#include "libcore/mesh/adjacency.h"
+#include "libcore/mesh/face_field.h"
+#include "libcore/mesh/pixel_map.h"
 
 namespace imgmesh {
 

@@ -7,8 +7,8 @@
 #include <cassert>
 #include <cmath>
 
+#include "libcore/mesh/weight_grid.h"
 #include "libcore/param/collapse_flattening.h"
-#include "libcore/param/weight_grid.h"
 
 namespace imgmesh {
 namespace {

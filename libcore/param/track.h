@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "libcore/mesh/base_mesh.h"
-#include "libcore/param/pixel_map.h"
+#include "libcore/mesh/pixel_map.h"
 #include "libcore/param/tracked_mesh.h"
 
 namespace imgmesh {

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "libcore/collapse/ring_mesh.h"
-#include "libcore/param/trivial_map.h"
+#include "libcore/mesh/ring_mesh.h"
+#include "libcore/mesh/trivial_map.h"
 
 namespace imgmesh {
 

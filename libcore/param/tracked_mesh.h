@@ -12,7 +12,7 @@ namespace imgmesh {
 
 /// The faces around a vertex, counter-clockwise: face[k] has the corners (center, ring[k], ring[k + 1]).
 struct Star {
-    static constexpr int kMax = 12;  ///< as in libcore/collapse/ring_mesh.h
+    static constexpr int kMax = 12;  ///< as in libcore/mesh/ring_mesh.h
 
     Id center = kNone;
     std::array<Id, kMax> ring{}, face{};

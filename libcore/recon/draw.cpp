@@ -8,10 +8,10 @@
 
 #include "libcore/base/error.h"
 #include "libcore/base/parallel.h"
+#include "libcore/image/luv_encoder.h"
+#include "libcore/mesh/raster.h"
 #include "libcore/recon/level_colors.h"
-#include "libcore/recon/luv_encoder.h"
 #include "libcore/recon/patch_colors.h"
-#include "libcore/recon/raster.h"
 #include "libcore/recon/visit_lightness.h"
 
 namespace imgmesh {

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "libcore/image/image.h"
-#include "libcore/param/mesh_image.h"
+#include "libcore/mesh/mesh_image.h"
 
 namespace imgmesh {
 

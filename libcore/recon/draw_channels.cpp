@@ -7,8 +7,8 @@
 #include "libcore/base/error.h"
 #include "libcore/base/parallel.h"
 #include "libcore/image/feature_space.h"
+#include "libcore/mesh/raster.h"
 #include "libcore/recon/level_colors.h"
-#include "libcore/recon/raster.h"
 
 namespace imgmesh {
 namespace {

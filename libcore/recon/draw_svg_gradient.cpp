@@ -7,9 +7,9 @@
 #include <cmath>
 
 #include "libcore/base/error.h"
+#include "libcore/image/luv_encoder.h"
 #include "libcore/recon/draw.h"
 #include "libcore/recon/level_colors.h"
-#include "libcore/recon/luv_encoder.h"
 #include "libcore/recon/svg_text.h"
 
 namespace imgmesh {

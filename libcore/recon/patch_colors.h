@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "libcore/mesh/base_mesh.h"
-#include "libcore/param/pixel_map.h"
+#include "libcore/mesh/pixel_map.h"
 
 namespace imgmesh {
 

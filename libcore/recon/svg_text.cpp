@@ -3,7 +3,7 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "libcore/recon/luv_encoder.h"
+#include "libcore/image/luv_encoder.h"
 
 namespace imgmesh {
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "libcore/param/face_field.h"
+#include "libcore/mesh/adjacency.h"
 
 namespace imgmesh {
 namespace {

@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "libcore/image/color.h"
+#include "libcore/mesh/vertex_coloring.h"
 #include "libcore/refine/for_each_id.h"
-#include "libcore/mesh/vertex_classes.h"
 
 namespace imgmesh {
 

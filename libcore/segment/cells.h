@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "libcore/param/pixel_map.h"
+#include "libcore/mesh/pixel_map.h"
 
 namespace imgmesh {
 

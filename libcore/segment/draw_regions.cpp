@@ -4,7 +4,7 @@
 #include <functional>
 
 #include "libcore/base/parallel.h"
-#include "libcore/recon/luv_encoder.h"
+#include "libcore/image/luv_encoder.h"
 
 namespace imgmesh {
 namespace {

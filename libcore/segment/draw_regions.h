@@ -2,7 +2,7 @@
 #pragma once
 
 #include "libcore/image/image.h"
-#include "libcore/param/mesh_image.h"
+#include "libcore/mesh/mesh_image.h"
 #include "libcore/segment/labels.h"
 
 namespace imgmesh {

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "libcore/mesh/base_mesh.h"
-#include "libcore/param/pixel_map.h"
+#include "libcore/mesh/pixel_map.h"
 #include "libcore/segment/labels.h"
 
 namespace imgmesh {

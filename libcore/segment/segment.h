@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "libcore/base/progress.h"
-#include "libcore/param/mesh_image.h"
+#include "libcore/mesh/mesh_image.h"
 #include "libcore/segment/labels.h"
 
 namespace imgmesh {

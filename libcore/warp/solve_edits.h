@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "libcore/param/mesh_image.h"
+#include "libcore/mesh/mesh_image.h"
 #include "libcore/warp/warp_edits.h"
 
 namespace imgmesh {

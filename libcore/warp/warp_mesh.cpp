@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "libcore/base/error.h"
-#include "libcore/param/trivial_map.h"
+#include "libcore/mesh/trivial_map.h"
 
 namespace imgmesh {
 namespace {

@@ -1,7 +1,7 @@
 // The warped picture as meshes.
 #pragma once
 
-#include "libcore/param/mesh_image.h"
+#include "libcore/mesh/mesh_image.h"
 #include "libcore/warp/solve_edits.h"
 
 namespace imgmesh {

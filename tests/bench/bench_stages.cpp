@@ -3,21 +3,21 @@
 #include <filesystem>
 #include <utility>
 
-#include "formats/container.h"
-#include "formats/exr_layers.h"
-#include "formats/image_io.h"
+#include "formats/container/container.h"
+#include "formats/exr/exr_layers.h"
+#include "formats/picture/image_io.h"
 #include "libcore/base/error.h"
-#include "libcore/build/params.h"
-#include "libcore/build/refine_level.h"
-#include "libcore/collapse/collapse_edges.h"
-#include "libcore/collapse/vertex_quadrics.h"
 #include "libcore/image/feature_space.h"
 #include "libcore/mesh/grid_mesh.h"
+#include "libcore/mesh/trivial_map.h"
 #include "libcore/metrics/metrics.h"
 #include "libcore/param/fit_colors.h"
 #include "libcore/param/fit_map.h"
-#include "libcore/param/trivial_map.h"
+#include "libcore/pipeline/params.h"
+#include "libcore/pipeline/refine_level.h"
 #include "libcore/recon/draw.h"
+#include "libcore/simplify/simplify.h"
+#include "libcore/simplify/vertex_quadrics.h"
 
 namespace imgmesh::bench {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "libcore/build/build.h"
+#include "libcore/pipeline/build.h"
 #include "tests/bench/usage_meter.h"
 
 namespace imgmesh::bench {

@@ -14,17 +14,17 @@
 #include <string>
 #include <vector>
 
-#include "formats/image_io.h"
+#include "formats/picture/image_io.h"
 #include "libcore/base/error.h"
 #include "libcore/base/parallel.h"
-#include "libcore/build/presets.h"
 #include "libcore/image/feature_space.h"
+#include "libcore/mesh/trivial_map.h"
 #include "libcore/metrics/metrics.h"
 #include "libcore/param/fit_colors.h"
-#include "libcore/param/trivial_map.h"
+#include "libcore/pipeline/presets.h"
 #include "tests/bench/bench_stages.h"
 #include "tests/bench/raw_files.h"
-#include "tools/common/large_pages.h"
+#include "tools/common/huge_pages.h"
 
 using namespace imgmesh;
 using namespace imgmesh::bench;

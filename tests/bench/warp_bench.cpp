@@ -10,7 +10,7 @@
 #include <numeric>
 
 #include "libcore/base/parallel.h"
-#include "libcore/param/trivial_map.h"
+#include "libcore/mesh/trivial_map.h"
 #include "libcore/warp/arap.h"
 #include "libcore/warp/warp_image.h"
 #include "tests/support/meshes.h"

@@ -5,7 +5,7 @@
 #include <iostream>
 #include <map>
 
-#include "formats/finding_codes.h"
+#include "formats/findings/finding_codes.h"
 #include "libcore/base/error.h"
 #include "tests/conformance/cases.h"
 

@@ -12,8 +12,8 @@
 #include <fstream>
 #include <iterator>
 
-#include "formats/draco_mesh.h"
-#include "formats/glb.h"
+#include "formats/gltf/draco_mesh.h"
+#include "formats/gltf/glb.h"
 #include "tests/support/small_pictures.h"
 
 namespace imgmesh::conformance {

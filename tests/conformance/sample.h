@@ -11,10 +11,10 @@
 #include <string>
 #include <vector>
 
-#include "formats/container.h"
-#include "formats/exr_layers.h"
-#include "formats/gltf_asset.h"
-#include "formats/stored_mesh.h"
+#include "formats/container/container.h"
+#include "formats/exr/exr_layers.h"
+#include "formats/gltf/gltf_asset.h"
+#include "formats/gltf/stored_mesh.h"
 
 namespace imgmesh::conformance {
 

@@ -4,8 +4,8 @@
 #include <cstring>
 #include <nlohmann/json.hpp>
 
-#include "formats/findings.h"
-#include "formats/glb.h"
+#include "formats/findings/findings.h"
+#include "formats/gltf/glb.h"
 
 namespace imgmesh::fuzz {
 namespace {

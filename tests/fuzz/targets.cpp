@@ -7,11 +7,11 @@
 #include <filesystem>
 #include <stdexcept>
 
-#include "formats/atomic_file.h"
-#include "formats/container.h"
-#include "formats/edit_file.h"
-#include "formats/image_io.h"
-#include "formats/validate.h"
+#include "formats/container/container.h"
+#include "formats/container/edit_file.h"
+#include "formats/container/validate.h"
+#include "formats/files/atomic_file.h"
+#include "formats/picture/image_io.h"
 #include "libcore/base/error.h"
 #include "tests/support/random_mesh_image.h"
 #include "tests/support/small_pictures.h"

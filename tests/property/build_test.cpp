@@ -6,10 +6,10 @@
 
 #include "libcore/base/error.h"
 #include "libcore/base/parallel.h"
-#include "libcore/build/build.h"
 #include "libcore/image/color.h"
+#include "libcore/mesh/trivial_map.h"
 #include "libcore/metrics/metrics.h"
-#include "libcore/param/trivial_map.h"
+#include "libcore/pipeline/build.h"
 #include "tests/support/sample_pictures.h"
 
 using namespace imgmesh;

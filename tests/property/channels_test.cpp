@@ -5,11 +5,11 @@
 #include <cmath>
 
 #include "libcore/base/error.h"
-#include "libcore/build/build.h"
-#include "libcore/collapse/collapse_edges.h"
 #include "libcore/metrics/metrics.h"
 #include "libcore/param/fit_map.h"
+#include "libcore/pipeline/build.h"
 #include "libcore/recon/draw_channels.h"
+#include "libcore/simplify/simplify.h"
 #include "tests/support/sample_pictures.h"
 
 using namespace imgmesh;

@@ -4,12 +4,12 @@
 #include <cmath>
 
 #include "libcore/base/parallel.h"
-#include "libcore/build/build.h"
-#include "libcore/collapse/collapse_edges.h"
+#include "libcore/mesh/trivial_map.h"
 #include "libcore/metrics/metrics.h"
-#include "libcore/param/trivial_map.h"
+#include "libcore/pipeline/build.h"
 #include "libcore/refine/refine.h"
 #include "libcore/refine/refiner.h"
+#include "libcore/simplify/simplify.h"
 #include "tests/support/meshes.h"
 #include "tests/support/sample_masks.h"
 #include "tests/support/sample_pictures.h"

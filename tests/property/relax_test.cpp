@@ -4,9 +4,9 @@
 #include <cmath>
 
 #include "libcore/base/parallel.h"
-#include "libcore/collapse/collapse_edges.h"
+#include "libcore/mesh/trivial_map.h"
 #include "libcore/param/relax.h"
-#include "libcore/param/trivial_map.h"
+#include "libcore/simplify/simplify.h"
 #include "tests/support/sample_pictures.h"
 
 using namespace imgmesh;

@@ -5,9 +5,9 @@
 #include <functional>
 
 #include "libcore/base/error.h"
-#include "libcore/build/build.h"
-#include "libcore/build/mesh_ladder.h"
-#include "libcore/build/rms_search.h"
+#include "libcore/pipeline/build.h"
+#include "libcore/pipeline/lod_meshes.h"
+#include "libcore/pipeline/rms_search.h"
 #include "tests/support/sample_pictures.h"
 
 using namespace imgmesh;

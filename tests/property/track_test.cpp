@@ -3,10 +3,10 @@
 
 #include <cmath>
 
-#include "libcore/collapse/collapse_edges.h"
 #include "libcore/metrics/metrics.h"
 #include "libcore/param/track.h"
 #include "libcore/param/track_start.h"
+#include "libcore/simplify/simplify.h"
 #include "tests/support/sample_pictures.h"
 
 using namespace imgmesh;

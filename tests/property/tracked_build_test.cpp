@@ -5,11 +5,11 @@
 
 #include "libcore/base/error.h"
 #include "libcore/base/parallel.h"
-#include "libcore/build/build.h"
 #include "libcore/image/color.h"
+#include "libcore/mesh/trivial_map.h"
 #include "libcore/metrics/metrics.h"
 #include "libcore/param/fit_map.h"
-#include "libcore/param/trivial_map.h"
+#include "libcore/pipeline/build.h"
 #include "tests/support/sample_pictures.h"
 
 using namespace imgmesh;

@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "formats/atomic_file.h"
-#include "formats/container.h"
+#include "formats/container/container.h"
+#include "formats/files/atomic_file.h"
 #include "libcore/base/error.h"
 #include "tests/support/random_mesh_image.h"
 #include "tests/support/temporary_folder.h"

@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include "libcore/collapse/ring_mesh.h"
 #include "libcore/mesh/grid_mesh.h"
+#include "libcore/mesh/ring_mesh.h"
 
 namespace imgmesh::test {
 

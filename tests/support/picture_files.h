@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "formats/image_io.h"
+#include "formats/picture/image_io.h"
 #include "libcore/base/error.h"
 
 /// Random codes of `levels` (255 or 65535), so that integer formats hold them exactly.

@@ -6,7 +6,7 @@
 #include <random>
 
 #include "libcore/image/color.h"
-#include "libcore/param/mesh_image.h"
+#include "libcore/mesh/mesh_image.h"
 
 namespace imgmesh {
 

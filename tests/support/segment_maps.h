@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "libcore/param/mesh_image.h"
+#include "libcore/mesh/mesh_image.h"
 
 namespace imgmesh::test {
 

@@ -5,8 +5,8 @@
 #include <functional>
 #include <random>
 
-#include "libcore/param/mesh_image.h"
-#include "libcore/param/trivial_map.h"
+#include "libcore/mesh/mesh_image.h"
+#include "libcore/mesh/trivial_map.h"
 #include "libcore/warp/displacement.h"
 #include "tests/support/meshes.h"
 

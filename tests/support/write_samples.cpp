@@ -6,8 +6,8 @@
 #include <fstream>
 #include <iostream>
 
-#include "formats/container.h"
-#include "formats/region_gltf.h"
+#include "formats/container/container.h"
+#include "formats/gltf/region_gltf.h"
 #include "tests/support/random_mesh_image.h"
 #include "tests/support/small_pictures.h"
 

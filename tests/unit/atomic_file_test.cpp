@@ -1,4 +1,4 @@
-#include "formats/atomic_file.h"
+#include "formats/files/atomic_file.h"
 
 #include <doctest/doctest.h>
 #include <sys/wait.h>

@@ -6,12 +6,12 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "formats/atomic_file.h"
-#include "formats/container.h"
-#include "formats/file_uri.h"
-#include "formats/finding_codes.h"
-#include "formats/glb.h"
-#include "formats/gltf_asset.h"
+#include "formats/container/container.h"
+#include "formats/files/atomic_file.h"
+#include "formats/findings/finding_codes.h"
+#include "formats/gltf/file_uri.h"
+#include "formats/gltf/glb.h"
+#include "formats/gltf/gltf_asset.h"
 #include "libcore/base/error.h"
 #include "tests/support/broken_container.h"
 #include "tests/support/random_mesh_image.h"

@@ -1,12 +1,12 @@
-#include "formats/container.h"
+#include "formats/container/container.h"
 
 #include <doctest/doctest.h>
 
 #include <filesystem>
 #include <map>
 
-#include "formats/atomic_file.h"
-#include "formats/validate.h"
+#include "formats/container/validate.h"
+#include "formats/files/atomic_file.h"
 #include "libcore/base/error.h"
 #include "libcore/image/feature_space.h"
 #include "tests/support/random_mesh_image.h"

@@ -4,8 +4,8 @@
 #include <set>
 #include <string_view>
 
-#include "formats/finding_codes.h"
-#include "formats/validate.h"
+#include "formats/container/validate.h"
+#include "formats/findings/finding_codes.h"
 #include "tests/support/broken_container.h"
 #include "tests/support/small_pictures.h"
 

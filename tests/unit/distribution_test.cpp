@@ -5,10 +5,10 @@
 #include <cmath>
 #include <limits>
 
+#include "libcore/mesh/trivial_map.h"
 #include "libcore/metrics/metrics.h"
 #include "libcore/metrics/quality_distributions.h"
 #include "libcore/metrics/triangle_shape.h"
-#include "libcore/param/trivial_map.h"
 #include "tests/support/meshes.h"
 
 using namespace imgmesh;

@@ -1,8 +1,8 @@
-#include "formats/draco_mesh.h"
+#include "formats/gltf/draco_mesh.h"
 
 #include <doctest/doctest.h>
 
-#include "formats/finding_codes.h"
+#include "formats/findings/finding_codes.h"
 #include "libcore/base/error.h"
 #include "tests/support/random_mesh_image.h"
 

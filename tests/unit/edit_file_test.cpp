@@ -1,5 +1,5 @@
 // Files of edits: the reader agrees with the schema, and says where a file is wrong.
-#include "formats/edit_file.h"
+#include "formats/container/edit_file.h"
 
 #include <doctest/doctest.h>
 

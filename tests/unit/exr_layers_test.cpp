@@ -1,4 +1,4 @@
-#include "formats/exr_layers.h"
+#include "formats/exr/exr_layers.h"
 
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>
@@ -10,8 +10,8 @@
 #include <ImfTiledOutputFile.h>
 #include <doctest/doctest.h>
 
-#include "formats/atomic_file.h"
-#include "formats/finding_codes.h"
+#include "formats/files/atomic_file.h"
+#include "formats/findings/finding_codes.h"
 #include "libcore/base/error.h"
 #include "tests/support/random_mesh_image.h"
 #include "tests/support/temporary_folder.h"

@@ -5,12 +5,12 @@
 #include <random>
 
 #include "libcore/base/error.h"
-#include "libcore/collapse/collapse_edges.h"
 #include "libcore/image/color.h"
+#include "libcore/mesh/trivial_map.h"
 #include "libcore/metrics/metrics.h"
 #include "libcore/param/fit_colors.h"
 #include "libcore/param/fit_map.h"
-#include "libcore/param/trivial_map.h"
+#include "libcore/simplify/simplify.h"
 #include "tests/support/meshes.h"
 #include "tests/support/sample_pictures.h"
 

@@ -1,4 +1,4 @@
-#include "formats/label_files.h"
+#include "formats/export/label_files.h"
 
 #include <OpenEXR/ImfChannelList.h>
 #include <OpenEXR/ImfFrameBuffer.h>

@@ -4,8 +4,8 @@
 #include <limits>
 
 #include "libcore/base/error.h"
+#include "libcore/mesh/trivial_map.h"
 #include "libcore/metrics/metrics.h"
-#include "libcore/param/trivial_map.h"
 #include "tests/support/meshes.h"
 
 using namespace imgmesh;

@@ -6,8 +6,8 @@
 
 #include <cstring>
 
-#include "formats/image_io.h"
-#include "formats/picture_probe.h"
+#include "formats/picture/image_io.h"
+#include "formats/picture/picture_probe.h"
 #include "tests/support/picture_files.h"
 #include "tests/support/temporary_folder.h"
 

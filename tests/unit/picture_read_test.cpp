@@ -10,8 +10,8 @@
 
 #include <limits>
 
-#include "formats/icc_profile.h"
-#include "formats/image_io.h"
+#include "formats/picture/icc_profile.h"
+#include "formats/picture/image_io.h"
 #include "tests/support/picture_files.h"
 #include "tests/support/temporary_folder.h"
 

@@ -3,7 +3,7 @@
 #include <signal.h>
 #include <sys/resource.h>
 
-#include "formats/image_io.h"
+#include "formats/picture/image_io.h"
 #include "libcore/image/color.h"
 #include "tests/support/picture_files.h"
 #include "tests/support/temporary_folder.h"

@@ -4,7 +4,7 @@
 
 #include <cstdio>
 
-#include "formats/image_io.h"
+#include "formats/picture/image_io.h"
 #include "libcore/base/parallel.h"
 #include "tests/support/picture_files.h"
 #include "tests/support/temporary_folder.h"

@@ -5,8 +5,8 @@
 #include <Eigen/LU>
 #include <random>
 
-#include "libcore/collapse/star.h"
-#include "libcore/collapse/vertex_quadrics.h"
+#include "libcore/simplify/star.h"
+#include "libcore/simplify/vertex_quadrics.h"
 #include "tests/support/grid_faces.h"
 #include "tests/support/sample_pictures.h"
 

@@ -1,8 +1,8 @@
 #include <doctest/doctest.h>
 
 #include "libcore/base/parallel.h"
-#include "libcore/param/trivial_map.h"
-#include "libcore/recon/raster.h"
+#include "libcore/mesh/raster.h"
+#include "libcore/mesh/trivial_map.h"
 #include "tests/support/meshes.h"
 
 using namespace imgmesh;

@@ -4,12 +4,12 @@
 #include <cmath>
 #include <random>
 
+#include "libcore/mesh/face_field.h"
+#include "libcore/mesh/vertex_coloring.h"
 #include "libcore/metrics/metrics.h"
-#include "libcore/param/face_field.h"
 #include "libcore/refine/face_spans.h"
 #include "libcore/refine/pixel_sums.h"
 #include "libcore/refine/refine_mesh.h"
-#include "libcore/mesh/vertex_classes.h"
 #include "tests/support/meshes.h"
 #include "tests/support/sample_pictures.h"
 

@@ -1,5 +1,5 @@
 // EXR blocks packed by us, read by OpenEXR, and the other way round.
-#include "formats/zip_blocks.h"
+#include "formats/exr/zip_blocks.h"
 
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>
@@ -13,8 +13,8 @@
 #include <numeric>
 #include <random>
 
-#include "formats/atomic_file.h"
-#include "formats/exr_layers.h"
+#include "formats/exr/exr_layers.h"
+#include "formats/files/atomic_file.h"
 #include "libcore/base/parallel.h"
 #include "tests/support/random_mesh_image.h"
 #include "tests/support/temporary_folder.h"

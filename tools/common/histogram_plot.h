@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "formats/image_text.h"
+#include "formats/picture/image_text.h"
 #include "libcore/image/image.h"
 #include "libcore/metrics/distribution.h"
 

@@ -3,7 +3,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include "formats/container.h"
+#include "formats/container/container.h"
 
 namespace imgmesh {
 

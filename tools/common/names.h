@@ -6,10 +6,10 @@
 #include <utility>
 #include <vector>
 
-#include "formats/container.h"
-#include "libcore/collapse/metric.h"
+#include "formats/container/container.h"
 #include "libcore/image/image.h"
-#include "libcore/param/pixel_map.h"
+#include "libcore/mesh/pixel_map.h"
+#include "libcore/simplify/metric.h"
 
 namespace imgmesh {
 

@@ -4,7 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <optional>
 
-#include "formats/texture_file.h"
+#include "formats/picture/texture_file.h"
 
 namespace imgmesh {
 

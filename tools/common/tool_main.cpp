@@ -12,10 +12,10 @@
 #include <new>
 #include <sstream>
 
-#include "formats/atomic_file.h"
+#include "formats/files/atomic_file.h"
 #include "libcore/base/parallel.h"
 #include "tools/common/config_file.h"
-#include "tools/common/large_pages.h"
+#include "tools/common/huge_pages.h"
 #include "tools/common/options.h"
 #include "tools/common/progress_bar.h"
 #include "tools/common/text.h"

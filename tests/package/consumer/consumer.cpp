@@ -3,9 +3,9 @@
 #include <iostream>
 #include <string>
 
-#include "formats/container.h"
-#include "formats/image_io.h"
-#include "libcore/build/build.h"
+#include "formats/container/container.h"
+#include "formats/picture/image_io.h"
+#include "libcore/pipeline/build.h"
 #include "libcore/recon/draw.h"
 
 int main(int argc, char** argv) {

@@ -1,0 +1,216 @@
+#include <algorithm>
+#include <cstring>
+#include <filesystem>
+#include <span>
+
+#include "formats/container/container.h"
+#include "formats/container/validate.h"
+#include "formats/exr/exr_layers.h"
+#include "formats/files/atomic_file.h"
+#include "formats/findings/findings.h"
+#include "formats/gltf/glb.h"
+#include "formats/gltf/gltf_asset.h"
+#include "formats/gltf/gltf_names.h"
+#include "formats/gltf/gltf_texture.h"
+#include "formats/gltf/mesh_lint.h"
+#include "libcore/base/error.h"
+
+namespace imgmesh {
+namespace {
+
+using Bytes = std::vector<std::uint8_t>;
+using View = std::span<const std::uint8_t>;
+
+// Reads files until all together are too many bytes.
+class FileReader {
+  public:
+    explicit FileReader(std::uint64_t max_bytes) : left_(max_bytes) {}
+
+    Bytes read(const std::string& path) {
+        try {
+            Bytes bytes = read_file(path, left_);
+            left_ -= bytes.size();
+            total_ += bytes.size();
+            names_.push_back(path);
+            return bytes;
+        } catch (const Error& error) {
+            if (error.code() != ErrorCode::kBadFile) throw;
+            refuse("limits.bytes", error.what());
+        }
+    }
+    std::uint64_t total() const { return total_; }
+    const std::vector<std::string>& names() const { return names_; }
+
+  private:
+    std::uint64_t left_, total_ = 0;
+    std::vector<std::string> names_;
+};
+
+View cut(View buffer, const ByteRange& range) {
+    return buffer.subspan(range.offset, range.length);  // asset_from_json has checked the range
+}
+
+template <typename T>
+void copy_to(std::vector<T>& out, View bytes) {
+    out.resize(bytes.size() / sizeof(T));
+    if (!out.empty()) std::memcpy(out.data(), bytes.data(), out.size() * sizeof(T));
+}
+
+StoredMesh load_mesh(const AssetLevel& level, View buffer, Findings& findings) {
+    if (level.is_draco)
+        return decode_draco_mesh(cut(buffer, level.draco), level.ids, level.vertices, level.faces, findings);
+    StoredMesh mesh;
+    copy_to(mesh.faces, cut(buffer, level.indices));
+    copy_to(mesh.position, cut(buffer, level.positions));
+    copy_to(mesh.color, cut(buffer, level.colors));
+    copy_to(mesh.light, cut(buffer, level.light));
+    for (const ByteRange& bytes : level.channels) copy_to(mesh.channels.emplace_back(), cut(buffer, bytes));
+    copy_to(mesh.texcoord, cut(buffer, level.texcoords));
+    return mesh;
+}
+
+BaseMesh load_level(const AssetLevel& level, const SourceInfo& source, View buffer, Findings& findings,
+                    std::vector<Vec2f>& coords) {
+    const StoredMesh mesh = load_mesh(level, buffer, findings);
+    const std::string topology = topology_hash(mesh);
+    if (topology != level.topology)
+        findings.add("mesh.topology", cat("the mesh has the hash ", topology, ", its pixel map was made for ",
+                                          level.topology));
+    const std::size_t before = findings.errors();
+    BaseMesh base = base_from_stored(mesh, findings);
+    for (const auto& [u, v] : mesh.texcoord) coords.emplace_back(u, v);
+    if (findings.collects() && findings.errors() == before) advise_on_mesh(mesh, level, source, findings);
+    return base;
+}
+
+std::vector<LayerPart> load_layers(const Asset& asset, View bytes, Findings& findings) {
+    ExpectedLayers expected{asset.source.width, asset.source.height, {}, {}, asset.source.has_mask};
+    for (std::size_t k = 0; k < asset.levels.size(); ++k) {
+        const AssetLevel& level = asset.levels[k];
+        expected.parts.push_back(level_name(k));
+        expected.faces.push_back(level.is_sound ? level.faces : kNone);
+    }
+    return decode_exr_layers(bytes, expected, findings);
+}
+
+void add_level_facts(const Asset& asset, View buffer, ContainerFacts& facts) {
+    for (const AssetLevel& level : asset.levels) {
+        for (const ByteRange& bytes :
+             {level.draco, level.indices, level.positions, level.colors, level.light, level.texcoords})
+            facts.mesh_bytes += bytes.length;
+        for (const ByteRange& bytes : level.channels) facts.mesh_bytes += bytes.length;
+    }
+    if (asset.levels[0].is_draco) facts.draco = draco_mode(cut(buffer, asset.levels[0].draco));
+}
+
+// All levels whose meshes and parts can be looked at.
+void read_levels(const Asset& asset, View buffer, std::vector<LayerPart>& parts, Findings& findings,
+                 MeshImage& image, std::vector<std::vector<Vec2f>>& coords) {
+    for (std::size_t k = 0; k < asset.levels.size(); ++k) {
+        const AssetLevel& level = asset.levels[k];
+        BaseMesh mesh;
+        coords.emplace_back();
+        if (level.is_sound)
+            findings.attempt(asset.places[k].pointer, [&] {
+                mesh = load_level(level, asset.source, buffer, findings, coords.back());
+            });
+        if (k >= parts.size()) continue;
+        image.levels.push_back({std::move(mesh), std::move(parts[k].map), level.error});
+        if (level.is_sound && !parts[k].topology.empty() && parts[k].topology != level.topology)
+            findings.add("layers.topology",
+                         cat(parts[k].name, " was made for a mesh of hash ", parts[k].topology,
+                             ", the mesh has ", level.topology),
+                         at_part(parts[k].name));
+    }
+}
+
+// A texture of which a level has no coordinates is for no viewer to show.
+void read_texture(const Asset& asset, View buffer, Findings& findings, Container& container) {
+    Texture& texture = container.texture;
+    const View picture = cut(buffer, asset.texture);
+    const std::string type = picture_type(picture);
+    if (type != asset.texture_type)
+        findings.add("texture.data", cat("the texture is no file of type ", asset.texture_type),
+                     at_pointer("/images"));
+    if (type.empty() || !std::all_of(asset.levels.begin(), asset.levels.end(),
+                                     [](const AssetLevel& level) { return level.has_texcoords; })) {
+        texture.coords.clear();
+        return;
+    }
+    texture.picture.assign(picture.begin(), picture.end());
+    container.facts.texture_bytes = picture.size();
+}
+
+Container read(const std::string& path, const ContainerLimits& limits, Findings& findings) {
+    const std::filesystem::path folder = std::filesystem::path(path).parent_path();
+    FileReader files(limits.max_bytes);
+    const Bytes main = files.read(path);
+    GlbView glb{{reinterpret_cast<const char*>(main.data()), main.size()}, {}};
+    if (is_glb(main)) glb = unpack_glb(main, findings);
+    Asset asset = asset_from_json(glb.json, limits, findings);
+
+    Bytes buffer_file, layer_file;
+    View buffer = glb.binary, layers;
+    if (!asset.buffer_name.empty()) buffer = buffer_file = files.read((folder / asset.buffer_name).string());
+    const bool is_whole = asset.has_buffer && findings.attempt("/buffers/0", [&] {
+        if (asset.buffer_length > buffer.size())
+            refuse("gltf.buffer",
+                   cat("the buffer has ", buffer.size(), " bytes, its byteLength is ", asset.buffer_length));
+    });
+    // The binary chunk of a .glb is padded to a multiple of four.
+    if (is_whole && buffer.size() - asset.buffer_length > (asset.buffer_name.empty() ? 3u : 0u))
+        findings.add("gltf.buffer_tail",
+                     cat("the buffer has ", buffer.size(), " bytes, its byteLength is ", asset.buffer_length),
+                     at_pointer("/buffers/0/byteLength"));
+    if (!asset.layers_name.empty())
+        layers = layer_file = files.read((folder / asset.layers_name).string());
+    else if (is_whole && asset.has_layers)
+        layers = cut(buffer, asset.layers);
+
+    Container container;
+    container.facts.version = asset.version;
+    container.facts.files = files.names();
+    container.facts.total_bytes = files.total();
+    container.facts.layer_bytes = layers.size();
+    // Pixels come first: that so many are there bounds what the meshes may claim. So a validator does not
+    // decode meshes either where the layers are not read; what it has told by then says why.
+    std::vector<LayerPart> parts;
+    if (!asset.has_levels || !asset.has_layers || !(is_whole || !asset.layers_name.empty())) return container;
+    if (!findings.attempt(cat("/extensions/", kPixelMap, "/layers"),
+                          [&] { parts = load_layers(asset, layers, findings); }))
+        return container;
+    if (!is_whole) return container;
+    MeshImage& image = container.mesh_image;
+    read_levels(asset, buffer, parts, findings, image, container.texture.coords);
+    if (findings.errors() > 0) return container;
+    read_texture(asset, buffer, findings, container);
+    add_level_facts(asset, buffer, container.facts);
+    image.visits = std::move(parts[0].visits);
+    image.source = std::move(asset.source);
+    image.generator = std::move(asset.generator);
+    image.parameters = std::move(asset.parameters);
+    return container;
+}
+
+}  // namespace
+
+Container read_container(const std::string& path, const ContainerLimits& limits) {
+    try {
+        Findings findings = Findings::strict();
+        return read(path, limits, findings);
+    } catch (const FindingError& finding) {
+        std::string text = finding.what();
+        // Names from the file are quoted as they are; the message stays one line.
+        std::replace_if(
+            text.begin(), text.end(), [](unsigned char c) { return c < 32 || c == 127; }, ' ');
+        throw Error(finding.error_code(), cat(path, ": [", finding.code(), "] ", text));
+    }
+}
+
+std::vector<Issue> validate_container(const std::string& path, const ContainerLimits& limits) {
+    Findings findings = Findings::collecting();
+    findings.attempt("", [&] { read(path, limits, findings); });
+    return std::move(findings.issues());
+}
+
+}  // namespace imgmesh

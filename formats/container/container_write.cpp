@@ -1,0 +1,201 @@
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <span>
+
+#include "formats/container/container.h"
+#include "formats/container/sidecar_file.h"
+#include "formats/exr/exr_layers.h"
+#include "formats/files/atomic_file.h"
+#include "formats/gltf/glb.h"
+#include "formats/gltf/gltf_asset.h"
+#include "formats/gltf/gltf_texture.h"
+#include "libcore/base/error.h"
+
+namespace imgmesh {
+namespace {
+
+constexpr const char* kVersion = "1.0";
+
+void check_writable(const MeshImage& image, const Texture& texture) {
+    const SourceInfo& source = image.source;
+    const auto pixels = static_cast<std::size_t>(source.width) * static_cast<std::size_t>(source.height);
+    bool fits = source.width >= 1 && source.height >= 1 &&
+                std::max(source.width, source.height) <= kMaxCoordinate && !image.levels.empty() &&
+                (image.visits.empty() || image.visits.size() == pixels);
+    for (const Level& level : image.levels) {
+        fits = fits && level.map.width == source.width && level.map.height == source.height &&
+               level.map.coords.size() == pixels;
+        for (const PixelCoord& c : level.map.coords)
+            fits = fits && (c.face == kNone ? source.has_mask : c.face < level.mesh.faces.size());
+    }
+    if (!texture.picture.empty()) {
+        fits = fits && !picture_type(texture.picture).empty() && texture.coords.size() == image.levels.size();
+        for (std::size_t k = 0; fits && k < image.levels.size(); ++k)
+            fits = texture.coords[k].size() == image.levels[k].mesh.vertex_count();
+    }
+    if (!fits)
+        throw Error(ErrorCode::kInternal, "cannot store the mesh image: its parts do not fit each other");
+}
+
+// Appends values as they lie in memory, at a multiple of four.
+template <typename T>
+ByteRange append(std::vector<std::uint8_t>& buffer, const std::vector<T>& values) {
+    const auto* first = reinterpret_cast<const std::uint8_t*>(values.data());
+    const ByteRange range{buffer.size(), values.size() * sizeof(T)};
+    buffer.insert(buffer.end(), first, first + range.length);
+    buffer.resize((buffer.size() + 3) / 4 * 4, 0);
+    return range;
+}
+
+// Stores the mesh of `level` in `buffer` and rewrites `map` for the mesh that a reader will get. `coords`:
+// of its texture; empty for none.
+AssetLevel store_level(const Level& level, const StoredLayout& layout, std::span<const Vec2f> coords,
+                       DracoMode mode, std::vector<std::uint8_t>& buffer, PixelMap& map) {
+    StoredMesh mesh = stored_from_base(level.mesh, layout);
+    for (const Vec2f& c : coords) mesh.texcoord.push_back({c.x(), c.y()});
+    AssetLevel out;
+    out.has_texcoords = !coords.empty();
+    if (mode == DracoMode::kOff) {
+        out.indices = append(buffer, mesh.faces);
+        out.positions = append(buffer, mesh.position);
+        if (layout.color) out.colors = append(buffer, mesh.color);
+        if (layout.light) out.light = append(buffer, mesh.light);
+        for (const std::vector<float>& channel : mesh.channels)
+            out.channels.push_back(append(buffer, channel));
+        if (out.has_texcoords) out.texcoords = append(buffer, mesh.texcoord);
+    } else {
+        DracoMesh draco = encode_draco_mesh(mesh, mode);
+        out.is_draco = true;
+        out.draco = append(buffer, draco.bytes);
+        remap_pixels(match_faces(mesh, draco.decoded), map);
+        mesh = std::move(draco.decoded);
+    }
+    out.vertices = mesh.position.size();
+    out.faces = mesh.faces.size();
+    out.error = level.error;
+    out.topology = topology_hash(mesh);
+    out.low = out.high = mesh.position.front();
+    for (const auto& p : mesh.position)
+        for (std::size_t i = 0; i < 3; ++i) {
+            out.low[i] = std::min(out.low[i], p[i]);
+            out.high[i] = std::max(out.high[i], p[i]);
+        }
+    return out;
+}
+
+enum class Spelling { kGlb, kGltf };
+
+Spelling spelling_of(const std::string& path) {
+    std::string extension = std::filesystem::path(path).extension().string();
+    for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    if (extension == ".glb") return Spelling::kGlb;
+    if (extension == ".gltf") return Spelling::kGltf;
+    throw Error(ErrorCode::kUsage, cat(path, ": a container's name ends with .glb or .gltf"));
+}
+
+// The layers are most of the file: they are written from where they are.
+void write_glb(const std::string& path, Asset& asset, const std::vector<std::uint8_t>& buffer,
+               const std::vector<std::uint8_t>& layers, bool overwrite) {
+    AtomicFile file(path, overwrite);
+    constexpr std::array<std::uint8_t, 3> kZeros = {};
+    const std::size_t padding = (4 - layers.size() % 4) % 4;
+    if (asset.has_layers) asset.layers = {buffer.size(), layers.size()};
+    asset.buffer_length = buffer.size() + layers.size() + padding;
+    const std::vector<std::uint8_t> head = glb_head(json_from_asset(asset), asset.buffer_length);
+    const std::array<std::span<const std::uint8_t>, 4> parts = {head, buffer, layers,
+                                                                std::span(kZeros).first(padding)};
+    file.write_parts(parts);
+    file.commit();
+}
+
+// The rename of the .gltf switches over: until then the files of the old container stay as they are, and only
+// then they go. A crash in between leaves files that nothing refers to; a signal waits until all is done.
+void write_gltf(const std::string& path, Asset& asset, const std::vector<std::uint8_t>& buffer,
+                const std::vector<std::uint8_t>& layers, const ContainerOptions& options) {
+    const std::vector<std::string> old_files = companions_of(path);
+    // Ends after the files below do: one placed in vain must go before a signal.
+    std::optional<SwitchOver> switch_over;
+    AtomicFile gltf(path, options.overwrite);
+    CompanionFile bin(path, ".bin", buffer);
+    std::optional<CompanionFile> exr;
+    if (asset.has_layers) exr.emplace(path, ".exr", layers);
+    asset.buffer_name = bin.name();
+    if (exr) asset.layers_name = exr->name();
+    asset.buffer_length = buffer.size();
+    const std::string json = json_from_asset(asset);
+    gltf.write({reinterpret_cast<const std::uint8_t*>(json.data()), json.size()});
+    switch_over.emplace();
+    bin.place();
+    if (exr) exr->place();
+    gltf.commit();
+    bin.keep();
+    if (exr) exr->keep();
+    for (const std::string& file : old_files) {
+        const std::string name = std::filesystem::path(file).filename().string();
+        std::error_code error;  // a file that stays behind is in nobody's way
+        const bool kept = std::any_of(
+            options.keep.begin(), options.keep.end(),
+            [&](const std::string& other) { return std::filesystem::equivalent(file, other, error); });
+        if (!kept && name != asset.buffer_name && name != asset.layers_name)
+            std::filesystem::remove(file, error);
+    }
+}
+
+}  // namespace
+
+std::vector<std::vector<Vec2f>> texture_coords(const MeshImage& mesh_image) {
+    const Vec2f size(static_cast<float>(mesh_image.source.width),
+                     static_cast<float>(mesh_image.source.height));
+    std::vector<std::vector<Vec2f>> coords;
+    for (const Level& level : mesh_image.levels) {
+        std::vector<Vec2f>& of_level = coords.emplace_back();
+        for (const Vec2f& p : level.mesh.position)
+            of_level.emplace_back((p + Vec2f(0.5f, 0.5f)).cwiseQuotient(size));
+    }
+    return coords;
+}
+
+std::vector<std::string> container_files(const std::string& path) {
+    if (spelling_of(path) == Spelling::kGlb) return {path};
+    const std::string stem = std::filesystem::path(path).replace_extension().string();
+    return {path, stem + ".bin", stem + ".exr"};
+}
+
+void write_container(const std::string& path, const MeshImage& mesh_image, const ContainerOptions& options) {
+    const Spelling spelling = spelling_of(path);
+    check_writable(mesh_image, options.texture);
+    Asset asset;
+    asset.version = kVersion;
+    asset.source = mesh_image.source;
+    asset.generator = mesh_image.generator;
+    asset.parameters = mesh_image.parameters;
+    std::vector<std::uint8_t> buffer;
+    std::vector<LayerPart> parts;
+    const Texture& texture = options.texture;
+    for (const Level& level : mesh_image.levels) {
+        parts.push_back({level_name(parts.size()), level.map, {}, {}});
+        std::span<const Vec2f> coords;
+        if (!texture.picture.empty()) coords = texture.coords[asset.levels.size()];
+        asset.levels.push_back(
+            store_level(level, layout_of(asset.source), coords, options.draco, buffer, parts.back().map));
+        parts.back().topology = asset.levels.back().topology;
+    }
+    parts.front().visits = mesh_image.visits;
+    if (!texture.picture.empty()) {
+        asset.texture_type = picture_type(texture.picture);
+        asset.texture = append(buffer, texture.picture);
+    }
+    asset.has_layers = options.layers;
+    const std::vector<std::uint8_t> layers =
+        options.layers ? encode_exr_layers(parts) : std::vector<std::uint8_t>();
+    if (spelling == Spelling::kGlb)
+        write_glb(path, asset, buffer, layers, options.overwrite);
+    else
+        write_gltf(path, asset, buffer, layers, options);
+}
+
+}  // namespace imgmesh

@@ -1,0 +1,78 @@
+#include "formats/export/label_files.h"
+
+#include <OpenEXR/ImfChannelList.h>
+#include <OpenEXR/ImfFrameBuffer.h>
+#include <OpenEXR/ImfHeader.h>
+#include <OpenEXR/ImfOutputFile.h>
+
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+
+#include "formats/files/atomic_file.h"
+#include "formats/picture/image_io.h"
+#include "formats/picture/picture_decoders.h"
+#include "libcore/base/error.h"
+
+namespace imgmesh {
+namespace {
+
+constexpr Id kPngNone = 65535;
+
+std::string extension_of(const std::string& path) {
+    std::string extension = std::filesystem::path(path).extension().string();
+    for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    return extension;
+}
+
+template <typename Value>
+void write_layer(const std::string& path, const std::string& channel, Imf::PixelType type, int width,
+                 int height, std::span<const Value> values, bool overwrite) {
+    AtomicFile target(path, overwrite);
+    try {
+        Imf::Header header(width, height, 1, {0, 0}, 1, Imf::INCREASING_Y, Imf::ZIP_COMPRESSION);
+        header.channels().insert(channel, Imf::Channel(type));
+        Imf::FrameBuffer buffer;
+        buffer.insert(channel, Imf::Slice::Make(type, values.data(), {0, 0}, width, height));
+        Imf::OutputFile file(target.temporary_path().c_str(), header, /*numThreads=*/0);
+        file.setFrameBuffer(buffer);
+        file.writePixels(height);
+    } catch (const std::exception& e) {
+        throw Error(ErrorCode::kIo, cat(path, ": cannot write the EXR: ", one_line(e.what())));
+    }
+    target.commit();
+}
+
+}  // namespace
+
+bool can_write_labels(const std::string& path) {
+    return extension_of(path) == ".exr" || extension_of(path) == ".png";
+}
+
+void write_labels(const std::string& path, int width, int height, std::span<const Id> labels,
+                  bool overwrite) {
+    if (!can_write_labels(path))
+        throw Error(ErrorCode::kUsage, cat(path, ": labels are written as .exr or .png"));
+    if (extension_of(path) == ".exr") {
+        write_layer(path, "id", Imf::UINT, width, height, labels, overwrite);
+        return;
+    }
+    Image image = make_image(width, height, 1);
+    image.sample_type = SampleType::kUint16;
+    for (std::size_t i = 0; i < labels.size(); ++i) {
+        if (labels[i] != kNone && labels[i] >= kPngNone)
+            throw Error(ErrorCode::kUsage,
+                        cat(path, ": a 16-bit PNG holds labels up to ", kPngNone - 1, ", there is label ",
+                            *std::ranges::max_element(labels, {}, [](Id l) { return l == kNone ? 0 : l; }),
+                            "; expected .exr"));
+        image.data[i] = static_cast<float>(std::min(labels[i], kPngNone)) / float(kPngNone);
+    }
+    write_image(path, image, {overwrite, SampleType::kUint16});
+}
+
+void write_float_layer(const std::string& path, const std::string& channel, int width, int height,
+                       std::span<const float> values, bool overwrite) {
+    write_layer(path, channel, Imf::FLOAT, width, height, values, overwrite);
+}
+
+}  // namespace imgmesh

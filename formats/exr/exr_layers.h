@@ -1,0 +1,48 @@
+// Pixel maps as the parts of one EXR file, in memory.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "libcore/mesh/pixel_map.h"
+
+namespace imgmesh {
+
+class Findings;
+
+/// One part of the EXR: a level's pixel map, and the visit map where there is one.
+struct LayerPart {
+    std::string name;  ///< "lod0", ...
+    PixelMap map;
+    std::vector<Id> visits;  ///< size width * height, or empty
+    std::string topology;    ///< hash of the mesh that the map was made for; empty where a file does not say
+};
+
+/// Encodes parts of one size: scanline, ZIP, the channels face.id (UINT), bary.u and bary.v (HALF or FLOAT by
+/// map.precision) and visit.count (UINT). The same bytes for the same parts. Throws Error(kInternal) where a
+/// weight is off the grid of its precision or outside the simplex: it would not survive.
+std::vector<std::uint8_t> encode_exr_layers(const std::vector<LayerPart>& parts);
+
+/// What a reader knows of the EXR before it opens it.
+struct ExpectedLayers {
+    int width = 0;
+    int height = 0;
+    std::vector<std::string> parts;  ///< names, in the order wanted back
+    /// Per part: every face.id is below, or kNone. A validator that does not know gives the largest number.
+    std::vector<std::uint64_t> faces;
+    bool has_mask = false;  ///< kNone is allowed
+};
+
+/// Decodes and checks the parts. Safe for any bytes: everything in the headers is compared with `expected`
+/// before memory is taken for pixels, of which there are no more than the bytes can hold. Weights of other
+/// software are rounded down to multiples of kFloatWeightStep; the result's precision is the coarsest grid
+/// that holds them all. Throws FindingError.
+/// Collecting findings: a part that has errors comes back without coords.
+std::vector<LayerPart> decode_exr_layers(std::span<const std::uint8_t> bytes, const ExpectedLayers& expected,
+                                         Findings& findings);
+/// Strict findings.
+std::vector<LayerPart> decode_exr_layers(std::span<const std::uint8_t> bytes, const ExpectedLayers& expected);
+
+}  // namespace imgmesh

@@ -1,0 +1,225 @@
+#include "formats/exr/exr_layers.h"
+
+#include <ImfChannelList.h>
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfIO.h>
+#include <ImfInputPart.h>
+#include <ImfMultiPartInputFile.h>
+#include <ImfPartType.h>
+#include <ImfStringAttribute.h>
+#include <half.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <stdexcept>
+#include <string_view>
+
+#include "formats/exr/exr_header.h"
+#include "formats/exr/exr_part_checks.h"
+#include "formats/exr/zip_blocks.h"
+#include "formats/findings/findings.h"
+#include "libcore/base/error.h"
+#include "libcore/base/parallel.h"
+
+namespace imgmesh {
+namespace {
+
+// Deflate never packs more than this many bytes into one.
+constexpr std::uint64_t kMaxDeflateRatio = 1032;
+
+class MemoryInput : public Imf::IStream {
+  public:
+    explicit MemoryInput(std::span<const std::uint8_t> bytes) : IStream("layers"), bytes_(bytes) {}
+    bool read(char* out, int count) override {
+        const auto wanted = static_cast<std::size_t>(count);
+        if (count < 0 || position_ > bytes_.size() || wanted > bytes_.size() - position_)
+            throw std::runtime_error("unexpected end");
+        std::memcpy(out, bytes_.data() + position_, wanted);
+        position_ += wanted;
+        return position_ < bytes_.size();
+    }
+    std::uint64_t tellg() override { return position_; }
+    void seekg(std::uint64_t position) override { position_ = position; }
+
+  private:
+    std::span<const std::uint8_t> bytes_;
+    std::uint64_t position_ = 0;
+};
+
+// A slice over one member of an array of structures of `stride` bytes.
+Imf::Slice slice(Imf::PixelType type, const void* first, std::size_t stride, int width) {
+    return Imf::Slice(type, static_cast<char*>(const_cast<void*>(first)), stride,
+                      stride * static_cast<std::size_t>(width));
+}
+
+// OpenEXR puts tiles together, and turns HALF into FLOAT.
+void read_tiles(Imf::InputPart& in, LayerPart& part) {
+    const int width = part.map.width;
+    Imf::FrameBuffer frame;
+    frame.insert(kFace, slice(Imf::UINT, &part.map.coords[0].face, sizeof(PixelCoord), width));
+    frame.insert(kU, slice(Imf::FLOAT, &part.map.coords[0].u, sizeof(PixelCoord), width));
+    frame.insert(kV, slice(Imf::FLOAT, &part.map.coords[0].v, sizeof(PixelCoord), width));
+    if (!part.visits.empty()) frame.insert(kVisits, slice(Imf::UINT, part.visits.data(), sizeof(Id), width));
+    in.setFrameBuffer(frame);
+    in.readPixels(0, part.map.height - 1);
+}
+
+template <typename T>
+T take(const std::uint8_t*& in) {
+    T value;
+    std::memcpy(&value, in, sizeof value);
+    in += sizeof value;
+    return value;
+}
+
+// The rows from `first` on from the block that holds them: row by row, in each channel after channel, by
+// their names.
+void spread_block(const Imf::ChannelList& channels, const std::vector<std::uint8_t>& block, int first,
+                  int last, LayerPart& part) {
+    const std::uint8_t* in = block.data();
+    for (int y = first; y < last; ++y)
+        for (auto at = channels.begin(); at != channels.end(); ++at) {
+            const std::string_view name = at.name();
+            const std::span<PixelCoord> row = part.map.row(y);
+            if (name == kVisits || name == kFace) {
+                Id* visits =
+                    name == kVisits ? part.visits.data() + static_cast<std::size_t>(y) * row.size() : nullptr;
+                for (PixelCoord& c : row) (visits ? *visits++ : c.face) = take<Id>(in);
+                continue;
+            }
+            float PixelCoord::*const weight = name == kU ? &PixelCoord::u : &PixelCoord::v;
+            if (at.channel().type == Imf::HALF)
+                for (PixelCoord& c : row) {
+                    half value;
+                    value.setBits(take<std::uint16_t>(in));
+                    c.*weight = value;
+                }
+            else
+                for (PixelCoord& c : row) c.*weight = take<float>(in);
+        }
+}
+
+// OpenEXR finds the blocks and checks their lengths; they are unpacked on all threads. Compression is one of
+// those that check_part_header() lets through.
+void read_scanlines(Imf::InputPart& in, LayerPart& part) {
+    constexpr int kGroupBlocks = 128;  // read at a time, before they are unpacked
+    const Imf::ChannelList& channels = in.header().channels();
+    const int rows = in.header().compression() == Imf::ZIP_COMPRESSION ? 16 : 1, height = part.map.height,
+              blocks = (height + rows - 1) / rows;
+    std::size_t row_bytes = 0;
+    for (auto at = channels.begin(); at != channels.end(); ++at)
+        row_bytes += static_cast<std::size_t>(part.map.width) * (at.channel().type == Imf::HALF ? 2 : 4);
+    std::vector<std::vector<std::uint8_t>> packed(static_cast<std::size_t>(std::min(blocks, kGroupBlocks)));
+    for (int group = 0; group < blocks; group += kGroupBlocks) {
+        const int end = std::min(blocks, group + kGroupBlocks);
+        for (int b = group; b < end; ++b) {
+            const char* data = nullptr;
+            int size = 0;
+            in.rawPixelData(b * rows, data, size);
+            packed[static_cast<std::size_t>(b - group)].assign(data, data + size);
+        }
+        parallel_blocks(group, end, std::max(1, 16 / rows), [&](int first, int last) {
+            ZipUnpacker unpacker;
+            std::vector<std::uint8_t> block;
+            for (int b = first; b < last; ++b) {
+                const int top = b * rows, bottom = std::min(height, top + rows);
+                block.resize(row_bytes * static_cast<std::size_t>(bottom - top));
+                if (!unpacker.unpack(packed[static_cast<std::size_t>(b - group)], block))
+                    throw Iex::InputExc(cat("the block of row ", top, " cannot be unpacked"));
+                spread_block(channels, block, top, bottom, part);
+            }
+        });
+    }
+}
+
+LayerPart read_part(Imf::MultiPartInputFile& file, int index, const ExpectedLayers& expected,
+                    std::size_t which, Findings& findings) {
+    const Imf::Header& header = file.header(index);
+    const std::size_t pixels =
+        static_cast<std::size_t>(expected.width) * static_cast<std::size_t>(expected.height);
+    LayerPart part{
+        expected.parts[which], {expected.width, expected.height, {}, WeightPrecision::kFloat}, {}, {}};
+    part.map.coords.resize(pixels);
+    if (header.channels().findChannel(kVisits)) part.visits.resize(pixels);
+    if (const auto* topology = header.findTypedAttribute<Imf::StringAttribute>(kTopologyName))
+        part.topology = topology->value();
+    else
+        findings.add("layers.unbound", cat("part ", part.name, " has no ", kTopologyName),
+                     at_part(part.name));
+    Imf::InputPart in(file, index);
+    if (header.hasTileDescription())
+        read_tiles(in, part);
+    else
+        read_scanlines(in, part);
+    const bool stored_as_half =
+        header.channels()[kU].type == Imf::HALF && header.channels()[kV].type == Imf::HALF;
+    finish_part(part, stored_as_half, expected.faces[which], expected.has_mask, findings);
+    return part;
+}
+
+std::vector<LayerPart> read_parts(std::span<const std::uint8_t> bytes, const ExpectedLayers& expected,
+                                  Findings& findings) {
+    MemoryInput stream(bytes);
+    Imf::MultiPartInputFile file(stream, /*numThreads=*/0, /*reconstructChunkOffsetTable=*/false);
+    if (file.parts() != static_cast<int>(expected.parts.size()))
+        refuse("layers.parts", cat("the EXR has ", file.parts(), " parts, expected ", expected.parts.size()));
+    const auto* version = file.header(0).findTypedAttribute<Imf::StringAttribute>(kVersionName);
+    if (!version || !version->value().starts_with("1."))
+        findings.add("layers.version",
+                     cat(kVersionName, " is ", version ? version->value() : "missing", ", expected 1.x"));
+    std::vector<LayerPart> parts(expected.parts.size());
+    for (std::size_t which = 0; which < expected.parts.size(); ++which) {
+        const std::string& name = expected.parts[which];
+        parts[which].name = name;
+        int index = 0;
+        while (index < file.parts() && !(file.header(index).hasName() && file.header(index).name() == name))
+            ++index;
+        if (index == file.parts()) {
+            findings.add("layers.parts", cat("the EXR has no part ", name), at_part(name));
+            continue;
+        }
+        const std::size_t before = findings.errors();
+        check_part_header(file.header(index), name, expected, findings);
+        if (findings.errors() > before) continue;
+        try {
+            LayerPart part = read_part(file, index, expected, which, findings);
+            if (findings.errors() == before) parts[which] = std::move(part);
+        } catch (const Iex::BaseExc& error) {
+            findings.add("layers.data", cat("OpenEXR cannot read part ", name, ": ", error.what()),
+                         at_part(name));
+        }
+    }
+    return parts;
+}
+
+}  // namespace
+
+std::vector<LayerPart> decode_exr_layers(std::span<const std::uint8_t> bytes, const ExpectedLayers& expected,
+                                         Findings& findings) {
+    check_exr_header(bytes, static_cast<int>(expected.parts.size()));
+    // An id and two halves are 8 bytes a pixel. This bounds all memory by the bytes that are really there.
+    const std::uint64_t pixel_bytes = 8 * static_cast<std::uint64_t>(expected.width) *
+                                      static_cast<std::uint64_t>(expected.height) * expected.parts.size();
+    if (pixel_bytes / kMaxDeflateRatio > bytes.size())
+        refuse("layers.size", cat("the EXR has ", bytes.size(), " bytes, too few for ", expected.parts.size(),
+                                  " levels of ", expected.width, "x", expected.height, " pixels"));
+    try {
+        return read_parts(bytes, expected, findings);
+    } catch (const FindingError&) {
+        throw;
+    } catch (const std::exception& error) {  // OpenEXR's own, and what std containers throw for its sizes
+        std::string text = error.what();
+        std::replace(text.begin(), text.end(), '\n', ' ');
+        refuse("layers.data", cat("OpenEXR cannot read the layers: ", text));
+    }
+}
+
+std::vector<LayerPart> decode_exr_layers(std::span<const std::uint8_t> bytes,
+                                         const ExpectedLayers& expected) {
+    Findings findings = Findings::strict();
+    return decode_exr_layers(bytes, expected, findings);
+}
+
+}  // namespace imgmesh

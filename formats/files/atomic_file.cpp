@@ -1,0 +1,248 @@
+#include "formats/files/atomic_file.h"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <array>
+#include <atomic>
+#include <cerrno>
+#include <csignal>
+#include <cstdio>
+#include <filesystem>
+#include <system_error>
+#include <utility>
+
+#include "formats/files/stale_temporaries.h"
+#include "libcore/base/error.h"
+
+namespace imgmesh {
+namespace {
+
+[[noreturn]] void fail(const std::string& path, const char* what, int error) {
+    throw Error(ErrorCode::kIo, cat(path, ": ", what, ": ", std::generic_category().message(error)));
+}
+
+// A file descriptor that closes itself.
+struct Descriptor {
+    int fd;
+    explicit Descriptor(int opened) : fd(opened) {}
+    ~Descriptor() {
+        if (fd >= 0) ::close(fd);
+    }
+    Descriptor(const Descriptor&) = delete;
+    Descriptor& operator=(const Descriptor&) = delete;
+};
+
+// ---- Temporary names that a signal handler removes -------------------------------------------------------
+// More files than slots at one time is no error: those beyond are removed by their destructor alone.
+std::array<std::atomic<const char*>, 256> g_temporaries;
+std::atomic<bool> g_ending = false;
+std::atomic<int> g_switches = 0;  // living SwitchOvers
+static_assert(std::atomic<const char*>::is_always_lock_free, "a signal handler uses it");
+
+void register_temporary(const char* path) {
+    for (std::atomic<const char*>& slot : g_temporaries) {
+        const char* empty = nullptr;
+        if (slot.compare_exchange_strong(empty, path)) return;
+    }
+}
+
+void forget_temporary(const char* path) {
+    for (std::atomic<const char*>& slot : g_temporaries) {
+        const char* expected = path;
+        if (slot.compare_exchange_strong(expected, nullptr)) return;
+    }
+    // Taken by a signal handler on another thread: the process is ending, and the string must live until
+    // then.
+    while (g_ending) ::pause();
+}
+
+// Async-signal-safe: lock-free atomics, nanosleep, unlink, sigaction, pthread_sigmask, raise.
+extern "C" void remove_temporaries_and_end(int signal) {
+    if (g_ending.exchange(true)) return;  // one more signal must not cut the work for the first one short
+    // A thread that switches over holds signals off, so whoever is waited for here is another thread. Not for
+    // ever: it may want what this one has locked.
+    constexpr timespec kMillisecond = {0, 1'000'000};
+    for (int n = 0; n < 10'000 && g_switches > 0; ++n) ::nanosleep(&kMillisecond, nullptr);
+    for (std::atomic<const char*>& slot : g_temporaries)
+        if (const char* path = slot.exchange(nullptr)) ::unlink(path);
+    struct sigaction action = {};
+    action.sa_handler = SIG_DFL;
+    ::sigaction(signal, &action, nullptr);
+    sigset_t one;
+    ::sigemptyset(&one);
+    ::sigaddset(&one, signal);
+    ::pthread_sigmask(SIG_UNBLOCK, &one, nullptr);
+    ::raise(signal);
+}
+
+constexpr std::array kEndingSignals = {SIGINT, SIGTERM, SIGHUP};
+
+// ---- Targets ---------------------------------------------------------------------------------------------
+// Renaming over a device would replace it by a regular file, and over a link would cut it off.
+std::string resolve_target(const std::string& path, bool overwrite) {
+    struct stat info = {};
+    if (::lstat(path.c_str(), &info) != 0) {
+        if (errno == ENOENT) return path;
+        fail(path, "cannot write", errno);
+    }
+    if (!overwrite) fail(path, "not overwritten", EEXIST);
+    if (!S_ISLNK(info.st_mode)) {
+        if (!S_ISREG(info.st_mode))
+            throw Error(ErrorCode::kIo, cat(path, ": cannot write: it is not a regular file"));
+        return path;
+    }
+    std::error_code error;
+    const std::filesystem::path target = std::filesystem::canonical(path, error);
+    if (error) throw Error(ErrorCode::kIo, cat(path, ": cannot follow the link: ", error.message()));
+    if (!std::filesystem::is_regular_file(target, error))
+        throw Error(ErrorCode::kIo, cat(path, ": cannot write: it is not a regular file"));
+    return target.string();
+}
+
+// A rename reaches the disk with the folder. Some file systems cannot flush folders; the file is complete
+// under its name all the same, so a failure here is none of ours.
+void flush_folder(const std::string& target) {
+    const std::filesystem::path folder = std::filesystem::path(target).parent_path();
+    const Descriptor dir(::open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+    if (dir.fd >= 0) ::fsync(dir.fd);
+}
+
+// Not mkstemp(), which makes files that nobody else can read whatever the umask says. The descriptor is the
+// claim to the file, and to be kept as long as its name is a temporary one.
+int create_temporary(const std::string& target, std::string& name) {
+    static std::atomic<unsigned> counter = 0;
+    const std::filesystem::path path(target);
+    for (;;) {
+        const std::string base =
+            cat(kTemporaryPrefix, ::getpid(), "-", counter.fetch_add(1), path.extension().string());
+        name = (path.parent_path() / base).string();
+        register_temporary(name.c_str());  // before it exists, so that a signal finds it whenever it does
+        const int fd = ::open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+        if (fd >= 0 && claim_temporary(fd, name)) return fd;
+        const int error = fd >= 0 ? EEXIST : errno;
+        if (fd >= 0) ::close(fd);
+        forget_temporary(name.c_str());
+        errno = error;
+        if (error != EEXIST) return fd;  // a name in use was left by a killed run with our number
+    }
+}
+
+}  // namespace
+
+AtomicFile::AtomicFile(std::string path, bool overwrite)
+    : path_(std::move(path)), target_(resolve_target(path_, overwrite)), overwrite_(overwrite) {
+    remove_stale_temporaries(std::filesystem::path(target_).parent_path().string());
+    claim_ = create_temporary(target_, temporary_path_);
+    if (claim_ < 0) fail(path_, "cannot write", errno);
+}
+
+AtomicFile::~AtomicFile() {
+    if (!kept_) {
+        ::unlink(temporary_path_.c_str());
+        forget_temporary(temporary_path_.c_str());
+    }
+    ::close(claim_);
+}
+
+void AtomicFile::write_parts(std::span<const std::span<const std::uint8_t>> parts) {
+    const Descriptor file(::open(temporary_path_.c_str(), O_WRONLY | O_TRUNC | O_CLOEXEC));
+    if (file.fd < 0) fail(path_, "cannot write", errno);
+    for (std::span<const std::uint8_t> bytes : parts)
+        while (!bytes.empty()) {
+            const ssize_t n = ::write(file.fd, bytes.data(), bytes.size());
+            if (n < 0 && errno == EINTR) continue;
+            if (n < 0) fail(path_, "cannot write", errno);
+            bytes = bytes.subspan(static_cast<std::size_t>(n));
+        }
+}
+
+void AtomicFile::commit() {
+    place();
+    keep();
+}
+
+void AtomicFile::place() {
+    flush_and_rename();
+    flush_folder(target_);
+    forget_temporary(temporary_path_.c_str());
+    temporary_path_ = target_;
+}
+
+void AtomicFile::keep() {
+    kept_ = true;
+}
+
+void AtomicFile::flush_and_rename() {
+    {
+        const Descriptor file(::open(temporary_path_.c_str(), O_WRONLY | O_CLOEXEC));
+        if (file.fd < 0 || ::fsync(file.fd) != 0) fail(path_, "cannot write", errno);
+    }
+    int status = 0;
+    if (overwrite_) {
+        status = ::rename(temporary_path_.c_str(), target_.c_str());
+    } else {
+        status = ::renameat2(AT_FDCWD, temporary_path_.c_str(), AT_FDCWD, target_.c_str(), RENAME_NOREPLACE);
+        // File systems without that flag say EINVAL; there, look first.
+        if (status != 0 && errno == EINVAL) {
+            if (::access(target_.c_str(), F_OK) == 0) fail(path_, "not overwritten", EEXIST);
+            status = ::rename(temporary_path_.c_str(), target_.c_str());
+        }
+    }
+    if (status != 0) fail(path_, overwrite_ ? "cannot write" : "not overwritten", errno);
+}
+
+SwitchOver::SwitchOver() {
+    sigset_t ending;
+    ::sigemptyset(&ending);
+    for (const int signal : kEndingSignals) ::sigaddset(&ending, signal);
+    ::pthread_sigmask(SIG_BLOCK, &ending, &before_);
+    ++g_switches;
+    if (!g_ending) return;
+    --g_switches;  // the handler of another thread is at work, or waits for this one
+    for (;;) ::pause();
+}
+
+SwitchOver::~SwitchOver() {
+    --g_switches;
+    ::pthread_sigmask(SIG_SETMASK, &before_, nullptr);
+}
+
+void remove_temporaries_on_signals() {
+    for (const int signal : kEndingSignals) {
+        struct sigaction action = {};
+        if (::sigaction(signal, nullptr, &action) != 0 || action.sa_handler != SIG_DFL) continue;
+        action = {};
+        action.sa_handler = remove_temporaries_and_end;
+        ::sigaction(signal, &action, nullptr);
+    }
+}
+
+std::vector<std::uint8_t> read_file(const std::string& path, std::uint64_t max_bytes) {
+    const auto too_long = [&] {
+        return Error(ErrorCode::kBadFile, cat(path, ": longer than the limit of ", max_bytes, " bytes"));
+    };
+    const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+    struct stat info = {};
+    if (file.fd < 0 || ::fstat(file.fd, &info) != 0) fail(path, "cannot read", errno);
+    if (S_ISDIR(info.st_mode)) fail(path, "cannot read", EISDIR);
+    if (S_ISREG(info.st_mode) && static_cast<std::uint64_t>(info.st_size) > max_bytes) throw too_long();
+
+    // One byte more than the size lets the last read() see the end without another round; pipes have size 0.
+    std::vector<std::uint8_t> bytes(static_cast<std::size_t>(info.st_size) + 1);
+    std::size_t size = 0;
+    for (;;) {
+        if (size == bytes.size()) bytes.resize(2 * size + 65536);
+        const ssize_t n = ::read(file.fd, bytes.data() + size, bytes.size() - size);
+        if (n < 0 && errno == EINTR) continue;
+        if (n < 0) fail(path, "cannot read", errno);
+        if (n == 0) break;
+        size += static_cast<std::size_t>(n);
+        if (size > max_bytes) throw too_long();
+    }
+    bytes.resize(size);
+    return bytes;
+}
+
+}  // namespace imgmesh

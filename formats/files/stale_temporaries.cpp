@@ -1,0 +1,87 @@
+#include "formats/files/stale_temporaries.h"
+
+#include <dirent.h>
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <ctime>
+#include <mutex>
+#include <set>
+#include <string_view>
+
+namespace imgmesh {
+namespace {
+
+constexpr std::time_t kUntouchedSeconds = 3600;
+
+// ".imgmesh-123-4.png"
+bool is_temporary(std::string_view name) {
+    const std::string_view prefix = kTemporaryPrefix;
+    if (!name.starts_with(prefix)) return false;
+    name.remove_prefix(prefix.size());
+    const auto digits = [&] {
+        const std::size_t end = std::min(name.find_first_not_of("0123456789"), name.size());
+        name.remove_prefix(end);
+        return end > 0;
+    };
+    if (!digits() || !name.starts_with('-')) return false;
+    name.remove_prefix(1);
+    return digits() && (name.empty() || name.front() == '.');
+}
+
+bool same_file(const struct stat& a, const struct stat& b) {
+    return a.st_dev == b.st_dev && a.st_ino == b.st_ino;
+}
+
+void remove_if_stale(int folder, const char* name) {
+    struct stat named = {};
+    if (::fstatat(folder, name, &named, AT_SYMLINK_NOFOLLOW) != 0) return;
+    if (!S_ISREG(named.st_mode) || named.st_uid != ::geteuid() ||
+        std::time(nullptr) - named.st_mtime < kUntouchedSeconds)
+        return;
+    // For writing: a network file system locks nothing else.
+    const int fd = ::openat(folder, name, O_WRONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+    if (fd < 0) return;
+    struct stat opened = {};
+    // Under the lock, so that a run that has just made the file finds it gone when it claims it.
+    if (::flock(fd, LOCK_EX | LOCK_NB) == 0 && ::fstat(fd, &opened) == 0 &&
+        ::fstatat(folder, name, &named, AT_SYMLINK_NOFOLLOW) == 0 && same_file(opened, named))
+        ::unlinkat(folder, name, 0);
+    ::close(fd);
+}
+
+// Whether this process comes to the folder for the first time.
+bool is_new(const struct stat& folder) {
+    static std::mutex mutex;
+    static std::set<std::pair<dev_t, ino_t>> seen;
+    const std::lock_guard lock(mutex);
+    return seen.emplace(folder.st_dev, folder.st_ino).second;
+}
+
+}  // namespace
+
+bool claim_temporary(int fd, const std::string& path) {
+    while (::flock(fd, LOCK_EX) != 0)
+        if (errno != EINTR) return true;  // no locks here, so nobody else gets one either
+    struct stat opened = {}, named = {};
+    return ::fstat(fd, &opened) == 0 && ::lstat(path.c_str(), &named) == 0 && same_file(opened, named);
+}
+
+void remove_stale_temporaries(const std::string& folder) {
+    const int fd = ::open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (fd < 0) return;
+    struct stat info = {};
+    DIR* entries = ::fstat(fd, &info) == 0 && is_new(info) ? ::fdopendir(fd) : nullptr;
+    if (!entries) {
+        ::close(fd);
+        return;
+    }
+    while (const dirent* entry = ::readdir(entries))
+        if (is_temporary(entry->d_name)) remove_if_stale(fd, entry->d_name);
+    ::closedir(entries);  // and fd
+}
+
+}  // namespace imgmesh

@@ -1,0 +1,164 @@
+// Everything that can be said against a container, by code: the one table. docs/format.md lists it; messages
+// and reports carry the codes.
+#pragma once
+
+#include <cstddef>
+#include <iterator>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "formats/findings/place.h"
+#include "libcore/base/error.h"
+
+namespace imgmesh {
+
+/// A reader refuses errors. Warnings are what a careful writer does otherwise, infos what a reader ignores.
+enum class Severity { kError, kWarning, kInfo };
+
+/// One kind of defect: a stable code for machines and what it means. `error` counts for errors alone.
+struct Finding {
+    std::string_view code;
+    std::string_view meaning;
+    ErrorCode error = ErrorCode::kBadFile;
+    Severity severity = Severity::kError;
+};
+
+constexpr Finding warning(std::string_view code, std::string_view meaning) {
+    return {code, meaning, ErrorCode::kBadFile, Severity::kWarning};
+}
+constexpr Finding info(std::string_view code, std::string_view meaning) {
+    return {code, meaning, ErrorCode::kOk, Severity::kInfo};
+}
+
+/// All of them, from the outside of a file inwards: the errors, then what a validator tells besides.
+inline constexpr Finding kFindings[] = {
+    {"limits.bytes", "the files are larger than the limit"},
+    {"limits.pixels", "the picture is larger than the limit"},
+    {"limits.faces", "a mesh has more faces than the limit, or than its picture can have"},
+    {"limits.levels", "more levels than the limit, or none"},
+    {"limits.json", "the JSON is longer than 64 MiB"},
+    {"glb.header", "not a glTF 2.0 binary header"},
+    {"glb.length", "the length in the header is not the file's"},
+    {"glb.chunk", "a chunk is missing or runs over the end"},
+    {"json.syntax", "not JSON, or not UTF-8"},
+    {"json.depth", "nested deeper than the limit"},
+    {"gltf.version", "not glTF 2.x", ErrorCode::kUnsupported},
+    {"gltf.required", "requires an extension that imgmesh does not know", ErrorCode::kUnsupported},
+    {"gltf.structure", "a member is missing or has another type than it must"},
+    {"gltf.primitive", "a level's mesh is not one primitive of triangles"},
+    {"gltf.attribute", "a level's mesh lacks POSITION, COLOR_0 (or _COLOR) or the attribute of a channel"},
+    {"gltf.integer", "a number has more than 32 bits"},
+    {"gltf.index", "an index points beyond its array"},
+    {"gltf.range", "a byte range runs over its buffer or bufferView"},
+    {"gltf.buffer", "not exactly one buffer, or one shorter than it says"},
+    {"uri.name", "a URI is not the bare name of a file beside"},
+    {"ext.missing", "no extension IMGMESH_pixel_map"},
+    {"ext.version", "a version of IMGMESH_pixel_map that this reader does not know", ErrorCode::kUnsupported},
+    {"ext.member", "a member of IMGMESH_pixel_map is missing or not what it must be"},
+    {"ext.value", "a colorSpace, sampleType or mimeType of IMGMESH_pixel_map is unknown"},
+    {"ext.channels", "the channels are not 1 to 16 features, each with a name of its own"},
+    {"ext.layers", "the layers have both or neither of uri and bufferView"},
+    {"ext.level", "the levels are not lod0, lod1, ... each once"},
+    {"draco.header", "not a Draco mesh"},
+    {"draco.version", "the Draco bitstream has another version than 2.2"},
+    {"draco.metadata", "the Draco mesh has metadata or unknown flags"},
+    {"draco.attributes", "the Draco mesh has other attributes than the level's mesh"},
+    {"draco.data", "the Draco mesh is broken"},
+    {"mesh.accessor", "an accessor has another type than it must"},
+    {"mesh.counts", "the numbers of vertices or faces disagree"},
+    {"mesh.index", "a face points beyond the vertices"},
+    {"mesh.position", "a position is not a multiple of 1/32 pixel, too far out, or has z != 0"},
+    {"mesh.color", "a colour has alpha other than 1"},
+    {"mesh.light", "light is below 0, above 2^20 or not a number"},
+    {"mesh.channel", "a channel's value is not finite"},
+    {"mesh.orientation", "a face has no area or runs clockwise"},
+    {"mesh.topology", "faces or positions changed since the pixel map was made"},
+    {"layers.size", "the EXR is too small for the picture"},
+    {"layers.magic", "not an EXR file of version 2"},
+    {"layers.header", "the EXR's header is broken"},
+    {"layers.attribute", "an attribute of the EXR is too long or of a type that a container does not need"},
+    {"layers.version", "an imgmesh:version that this reader does not know", ErrorCode::kUnsupported},
+    {"layers.type", "a part is deep or of an unknown type"},
+    {"layers.tiles", "tiles of several levels, or larger than 1024 x 1024"},
+    {"layers.parts", "the parts are not the levels"},
+    {"layers.topology", "a part was made for another mesh"},
+    {"layers.window", "a part's window is not the picture"},
+    {"layers.compression", "a compression other than none, ZIPS and ZIP"},
+    {"layers.channels", "a channel is unknown, subsampled or of another type"},
+    {"layers.missing", "a part lacks face.id, bary.u or bary.v"},
+    {"layers.data", "the EXR's pixels are broken"},
+    {"layers.face_range", "a face.id at or above the number of faces"},
+    {"layers.weights", "weights outside the simplex, or not finite"},
+    {"layers.mask", "a pixel outside the mask has weights, or there is no mask"},
+
+    warning("glb.padding", "a chunk's length is not a multiple of four"),
+    info("glb.unknown_chunk", "a chunk that glTF 2.0 does not define"),
+    warning("json.bom", "the JSON starts with a byte order mark"),
+    warning("json.duplicate", "an object has a member twice; which one counts depends on the reader"),
+    warning("uri.same", "two of the container's files have the same name"),
+    warning("gltf.used", "an extension is used, but not in extensionsUsed"),
+    warning("gltf.draco_optional", "Draco is not in extensionsRequired, although meshes have no other form"),
+    warning("gltf.pixel_map_required", "IMGMESH_pixel_map is in extensionsRequired: viewers refuse the file"),
+    warning("gltf.scene", "the default scene does not show level 0 alone"),
+    warning("gltf.names", "a level's node or mesh is not named after its level"),
+    warning("gltf.lod", "MSFT_lod of level 0 does not list the coarser levels in their order"),
+    warning("gltf.material", "a level's material is not unlit and double sided"),
+    warning("gltf.texture",
+            "a level has a texture without TEXCOORD_0 or beside COLOR_0, or _COLOR without one"),
+    warning("texture.data", "the texture is not a PNG or JPEG as its mimeType says"),
+    warning("gltf.transform", "a level's node does not centre the picture with its longer side one unit"),
+    warning("gltf.image", "the EXR is among the images, which viewers try to decode"),
+    warning("gltf.overlap", "two bufferViews share bytes"),
+    warning("gltf.alignment", "an accessor's bytes do not start at a multiple of four"),
+    warning("gltf.buffer_tail", "the buffer goes on after its byteLength"),
+    info("gltf.unused", "an accessor or bufferView that nothing refers to"),
+    info("gltf.foreign", "objects that imgmesh does not read and its tools do not keep"),
+    info("ext.unknown", "a member that version 1.0 of IMGMESH_pixel_map does not define"),
+    warning("ext.order", "a coarser level has more faces, or a smaller error, than the one before it"),
+    warning("draco.tail", "bytes after the end of a Draco mesh"),
+    info("draco.mixed", "not all levels are compressed alike"),
+    warning("mesh.bounds", "min and max of POSITION are not those of the mesh"),
+    info("mesh.unused_vertex", "a vertex without a face"),
+    warning("mesh.duplicate_face", "a face occurs twice"),
+    warning("mesh.nonmanifold", "an edge has more than two faces, or two that run the same way"),
+    warning("mesh.texcoord", "a vertex lies outside its texture"),
+    warning("mesh.outside", "a vertex lies outside the picture"),
+    warning("mesh.area", "the faces do not cover the picture, which has no mask"),
+    warning("layers.unbound", "a part does not say which mesh it was made for"),
+    warning("layers.visits", "visit.count in another part than lod0"),
+    info("layers.grid", "weights that are no multiples of 2^-24 and are rounded down by readers"),
+    info("layers.mask_unused", "image.hasMask is true, but every pixel has a face"),
+};
+
+/// One of kFindings, by its code; any other does not compile.
+struct FindingCode {
+    std::size_t index = 0;
+    consteval FindingCode(const char* code) {
+        while (index < std::size(kFindings) && kFindings[index].code != code) ++index;
+        if (index == std::size(kFindings)) throw "not in kFindings";
+    }
+};
+
+/// What the codecs throw: a code, one line about what was found, without the file's name, which they do not
+/// know, and where. read_container turns it into an Error.
+class FindingError : public std::runtime_error {
+  public:
+    FindingError(FindingCode code, const std::string& text, Place place = {})
+        : std::runtime_error(text), code_(code), place_(std::move(place)) {}
+    FindingCode finding() const { return code_; }
+    std::string_view code() const { return kFindings[code_.index].code; }
+    ErrorCode error_code() const { return kFindings[code_.index].error; }
+    const Place& place() const { return place_; }
+
+  private:
+    FindingCode code_;
+    Place place_;
+};
+
+[[noreturn]] inline void refuse(FindingCode code, const std::string& text, Place place = {}) {
+    throw FindingError(code, text, std::move(place));
+}
+
+}  // namespace imgmesh

@@ -1,0 +1,19 @@
+// One thing that is wrong with a file, and where.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "formats/findings/finding_codes.h"
+
+namespace imgmesh {
+
+/// One finding in one file.
+struct Issue {
+    const Finding* finding;  ///< of kFindings
+    std::string text;        ///< one line: what was found
+    Place place;             ///< the first, where it occurs `count` times
+    std::uint64_t count = 1;
+};
+
+}  // namespace imgmesh

@@ -1,0 +1,20 @@
+// The members of IMGMESH_pixel_map; internal to the reader. All throw FindingError.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "formats/gltf/gltf_asset.h"
+
+namespace imgmesh {
+
+/// The root's "image"; its size is within the limits.
+SourceInfo read_image_member(const nlohmann::json& image, const ContainerLimits& limits);
+
+/// The root's "build": fills in generator and parameters.
+void read_build_member(const nlohmann::json& build, Asset& asset);
+
+/// A node's extension: counts within the limits, error, topology.
+AssetLevel read_level_member(const nlohmann::json& extension, const SourceInfo& source,
+                             const ContainerLimits& limits);
+
+}  // namespace imgmesh

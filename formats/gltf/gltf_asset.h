@@ -1,0 +1,91 @@
+// The JSON side of a container: what a glTF document says about the levels, and where their bytes are.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "formats/findings/limits.h"
+#include "formats/gltf/draco_mesh.h"
+#include "libcore/mesh/mesh_image.h"
+
+namespace imgmesh {
+
+class Findings;
+
+/// Bytes of the asset's one buffer.
+struct ByteRange {
+    std::uint64_t offset = 0;
+    std::uint64_t length = 0;
+    bool operator==(const ByteRange&) const = default;
+};
+
+/// One level: its node, mesh and accessors.
+struct AssetLevel {
+    std::uint64_t vertices = 0;
+    std::uint64_t faces = 0;
+    double error = 0;
+    std::string topology;                ///< topology_hash()
+    std::array<float, 3> low{}, high{};  ///< bounds of the stored positions
+    bool is_draco = false;
+    ByteRange draco;  ///< is_draco: the bitstream and its attributes
+    DracoAttributeIds ids;
+    ByteRange indices, positions, colors;  ///< else: uint32, 3 float32, 4 uint16, tightly packed
+    ByteRange light = {};                  ///< 3 float32
+    std::vector<ByteRange> channels = {};  ///< float32
+    ByteRange texcoords = {};              ///< 2 float32
+    bool has_texcoords = false;
+    bool is_sound = true;  ///< false only for a validator: all but the node's index is unknown
+    bool operator==(const AssetLevel&) const = default;
+};
+
+/// Where a level stands in the document.
+struct LevelPlace {
+    std::uint64_t node = 0, mesh = 0;
+    /// A JSON pointer to the primitive, or to the member of its Draco extension.
+    std::string pointer;
+};
+
+struct Asset {
+    std::string version;  ///< of IMGMESH_pixel_map
+    SourceInfo source;
+    std::string generator;
+    std::vector<BuildParameter> parameters;  ///< comes back sorted by name
+    std::vector<AssetLevel> levels;          ///< 0 is the finest
+    std::uint64_t buffer_length = 0;
+    std::string buffer_name;  ///< the file beside; empty for a .glb's binary chunk
+    ByteRange layers;         ///< the EXR in the buffer, where `layers_name` is empty
+    std::string layers_name;  ///< or its file beside
+
+    ByteRange texture;         ///< the picture on the meshes, in the buffer
+    std::string texture_type;  ///< its mimeType; empty for no texture
+
+    std::vector<LevelPlace> places;  ///< of the levels, as read
+    // What a validator may go on with; always true for a reader. A writer leaves IMGMESH_pixel_map out where
+    // has_layers is false.
+    bool has_size = true;    ///< of the picture
+    bool has_levels = true;  ///< it is known how many there are
+    bool has_layers = true;  ///< it is known where the EXR is
+    bool has_buffer = true;  ///< likewise
+};
+
+/// What the meshes of such a picture have beside positions, and the names of its channels' attributes in
+/// their order.
+StoredLayout layout_of(const SourceInfo& source);
+std::vector<std::string> channel_attributes(const SourceInfo& source);
+
+/// The name of level k's node and EXR part.
+std::string level_name(std::size_t k);
+
+/// The glTF document. Throws Error(kUnsupported) for a buffer above 2 GiB, which many readers cannot address.
+std::string json_from_asset(const Asset& asset);
+
+/// The inverse. Every number is checked: sizes against `limits`, counts against each other, ranges against
+/// buffer_length. Safe for any text. Throws FindingError where `findings` does, or nothing can be said about
+/// the rest.
+Asset asset_from_json(std::string_view json, const ContainerLimits& limits, Findings& findings);
+Asset asset_from_json(std::string_view json, const ContainerLimits& limits);  ///< strict findings
+
+}  // namespace imgmesh

@@ -1,0 +1,16 @@
+// The warnings and infos about a container's JSON; internal to the validator.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "formats/gltf/gltf_asset.h"
+
+namespace imgmesh {
+
+class Findings;
+
+/// What a viewer will stumble over, and what imgmesh ignores. `asset` is what could be read of `document`, an
+/// object of any content.
+void advise_on_gltf(const nlohmann::json& document, const Asset& asset, Findings& findings);
+
+}  // namespace imgmesh

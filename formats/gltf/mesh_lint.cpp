@@ -1,0 +1,93 @@
+#include "formats/gltf/mesh_lint.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "formats/findings/findings.h"
+#include "libcore/base/error.h"
+
+namespace imgmesh {
+namespace {
+
+// A side of one pixel counts as a strip around it, and so do single pixels of a cut-out (docs/format.md).
+std::pair<float, float> span_of(int side, bool has_mask) {
+    if (side == 1 || has_mask) return {-0.5f, static_cast<float>(side) - 0.5f};
+    return {0.0f, static_cast<float>(side - 1)};
+}
+
+void advise_on_vertices(const StoredMesh& mesh, const AssetLevel& level, const SourceInfo& source,
+                        Findings& findings) {
+    std::array<float, 3> low = mesh.position.front(), high = low;
+    const auto [left, right] = span_of(source.width, source.has_mask);
+    const auto [top, bottom] = span_of(source.height, source.has_mask);
+    Repeated outside(findings, "mesh.outside");
+    for (std::size_t v = 0; v < mesh.position.size(); ++v) {
+        const auto& p = mesh.position[v];
+        for (std::size_t i = 0; i < 3; ++i) {
+            low[i] = std::min(low[i], p[i]);
+            high[i] = std::max(high[i], p[i]);
+        }
+        if (p[0] < left || p[0] > right || -p[1] < top || -p[1] > bottom)
+            outside.hit(
+                [&] { return std::pair(cat("vertex ", v, " is at (", p[0], ",", p[1], ")"), Place()); });
+    }
+    Repeated off_texture(findings, "mesh.texcoord");
+    for (std::size_t v = 0; v < mesh.texcoord.size(); ++v) {
+        const auto& [x, y] = mesh.texcoord[v];
+        if (!(x >= 0 && x <= 1 && y >= 0 && y <= 1))
+            off_texture.hit([&, &x = x, &y = y] {
+                return std::pair(cat("vertex ", v, " is at (", x, ",", y, ") of the texture"), Place());
+            });
+    }
+    if (low != level.low || high != level.high)
+        findings.add("mesh.bounds",
+                     cat("x from ", low[0], " to ", high[0], " and y from ", low[1], " to ", high[1],
+                         " in the mesh, x from ", level.low[0], " to ", level.high[0], " and y from ",
+                         level.low[1], " to ", level.high[1], " in the accessor"));
+    std::vector<bool> used(mesh.position.size());
+    for (const Face& face : mesh.faces)
+        for (const Id v : face) used[v] = true;
+    Repeated unused(findings, "mesh.unused_vertex");
+    for (std::size_t v = 0; v < used.size(); ++v)
+        if (!used[v]) unused.hit([&] { return std::pair(cat("vertex ", v, " has no face"), Place()); });
+}
+
+void advise_on_faces(const StoredMesh& mesh, const SourceInfo& source, Findings& findings) {
+    std::vector<Face> faces = mesh.faces;
+    std::vector<std::pair<Id, Id>> edges;  // as they run
+    double area2 = 0;
+    for (Face& face : faces) {
+        std::rotate(face.begin(), std::min_element(face.begin(), face.end()), face.end());
+        for (std::size_t i = 0; i < 3; ++i) edges.emplace_back(face[i], face[(i + 1) % 3]);
+        std::array<Vec2f, 3> p;
+        for (std::size_t i = 0; i < 3; ++i) p[i] = {mesh.position[face[i]][0], -mesh.position[face[i]][1]};
+        area2 += signed_area2(p[0], p[1], p[2]);
+    }
+    std::sort(faces.begin(), faces.end());
+    const auto twice = std::adjacent_find(faces.begin(), faces.end());
+    if (twice != faces.end())
+        findings.add("mesh.duplicate_face",
+                     cat("the face of the vertices ", (*twice)[0], ", ", (*twice)[1], ", ", (*twice)[2]));
+    std::sort(edges.begin(), edges.end());
+    Repeated nonmanifold(findings, "mesh.nonmanifold");
+    for (std::size_t e = 1; e < edges.size() && twice == faces.end(); ++e)
+        if (edges[e] == edges[e - 1])
+            nonmanifold.hit([&] {
+                return std::pair(cat("the edge from vertex ", edges[e].first, " to ", edges[e].second),
+                                 Place());
+            });
+    const auto extent = [](int side) { return double(side == 1 ? 1 : side - 1); };
+    const double whole = extent(source.width) * extent(source.height);  // exact, as the sum is
+    if (!source.has_mask && area2 != 2 * whole)
+        findings.add("mesh.area", cat("the faces have an area of ", area2 / 2, ", the picture ", whole));
+}
+
+}  // namespace
+
+void advise_on_mesh(const StoredMesh& mesh, const AssetLevel& level, const SourceInfo& source,
+                    Findings& findings) {
+    advise_on_vertices(mesh, level, source, findings);
+    advise_on_faces(mesh, source, findings);
+}
+
+}  // namespace imgmesh

@@ -1,0 +1,15 @@
+// The warnings and infos about a decoded mesh; internal to the validator.
+#pragma once
+
+#include "formats/gltf/gltf_asset.h"
+#include "formats/gltf/stored_mesh.h"
+
+namespace imgmesh {
+
+class Findings;
+
+/// `mesh` is without errors (base_from_stored). O(F log F).
+void advise_on_mesh(const StoredMesh& mesh, const AssetLevel& level, const SourceInfo& source,
+                    Findings& findings);
+
+}  // namespace imgmesh

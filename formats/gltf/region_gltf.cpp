@@ -1,0 +1,156 @@
+#include "formats/gltf/region_gltf.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <filesystem>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "formats/files/atomic_file.h"
+#include "formats/gltf/glb.h"
+#include "formats/gltf/gltf_asset.h"
+#include "formats/gltf/gltf_names.h"
+#include "formats/gltf/stored_mesh.h"
+#include "libcore/base/error.h"
+
+namespace imgmesh {
+namespace {
+
+using nlohmann::json;
+
+constexpr std::uint64_t kMaxBytes = 0x7FFFFFFF;
+// glTF 2.0's numbers.
+constexpr int kUnsignedInt = 5125, kUnsignedShort = 5123, kFloat = 5126;
+constexpr int kArrayBuffer = 34962, kElementArrayBuffer = 34963;
+
+struct Piece {
+    Id region = kNone;
+    std::size_t first_vertex = 0, vertices = 0, first_index = 0, indices = 0;
+    std::array<float, 3> low{}, high{};
+};
+
+// The faces sorted by region, every region with its own copy of the vertices that it uses.
+struct Pieces {
+    std::vector<Piece> pieces;
+    std::vector<std::array<float, 3>> position;
+    std::vector<std::array<std::uint16_t, 4>> color;
+    std::vector<Id> index;  // from the piece's first vertex on
+};
+
+Pieces cut(const StoredMesh& mesh, std::span<const Id> region_of_face) {
+    std::map<Id, std::vector<Id>> faces;
+    for (Id f = 0; f < mesh.faces.size(); ++f)
+        if (region_of_face[f] != kNone) faces[region_of_face[f]].push_back(f);
+    Pieces out;
+    std::vector<Id> copy(mesh.position.size(), kNone);
+    for (const auto& [region, members] : faces) {
+        Piece piece{region, out.position.size(), 0, out.index.size(), 3 * members.size(), {}, {}};
+        std::vector<Id> used;
+        for (const Id f : members)
+            for (const Id v : mesh.faces[f]) {
+                if (copy[v] == kNone) {
+                    copy[v] = static_cast<Id>(used.size());
+                    used.push_back(v);
+                    out.position.push_back(mesh.position[v]);
+                    out.color.push_back(mesh.color[v]);
+                }
+                out.index.push_back(copy[v]);
+            }
+        piece.vertices = used.size();
+        piece.low = piece.high = out.position[piece.first_vertex];
+        for (const Id v : used) {
+            for (std::size_t i = 0; i < 3; ++i) {
+                piece.low[i] = std::min(piece.low[i], mesh.position[v][i]);
+                piece.high[i] = std::max(piece.high[i], mesh.position[v][i]);
+            }
+            copy[v] = kNone;
+        }
+        out.pieces.push_back(piece);
+    }
+    return out;
+}
+
+template <typename T>
+void append(std::vector<std::uint8_t>& buffer, const std::vector<T>& values) {
+    const auto* first = reinterpret_cast<const std::uint8_t*>(values.data());
+    buffer.insert(buffer.end(), first, first + values.size() * sizeof(T));
+}
+
+json accessor(int view, std::size_t offset, int component, const char* type, std::size_t count) {
+    return {{"bufferView", view},
+            {"byteOffset", offset},
+            {"componentType", component},
+            {"type", type},
+            {"count", count}};
+}
+
+json document(const Pieces& pieces, const SourceInfo& source, const std::string& generator) {
+    const std::size_t vertices = pieces.position.size(), indices = pieces.index.size();
+    json accessors = json::array(), primitives = json::array(), materials = json::array();
+    for (const Piece& piece : pieces.pieces) {
+        const std::size_t at = accessors.size();
+        accessors.push_back(accessor(0, 12 * piece.first_vertex, kFloat, "VEC3", piece.vertices));
+        accessors.back()["min"] = piece.low;
+        accessors.back()["max"] = piece.high;
+        accessors.push_back(accessor(1, 8 * piece.first_vertex, kUnsignedShort, "VEC4", piece.vertices));
+        accessors.back()["normalized"] = true;
+        accessors.push_back(accessor(2, 4 * piece.first_index, kUnsignedInt, "SCALAR", piece.indices));
+        primitives.push_back({{"mode", 4},
+                              {"attributes", {{"POSITION", at}, {"COLOR_0", at + 1}}},
+                              {"indices", at + 2},
+                              {"material", materials.size()}});
+        materials.push_back({{"name", cat("region-", piece.region)},
+                             {"doubleSided", true},
+                             {"pbrMetallicRoughness", {{"metallicFactor", 0}}},
+                             {"extensions", {{kUnlit, json::object()}}}});
+    }
+    const double scale = 1.0 / std::max(source.width, source.height);
+    const json node = {
+        {"name", "regions"},
+        {"mesh", 0},
+        {"scale", {scale, scale, scale}},
+        {"translation", {-scale * (source.width - 1) / 2, scale * (source.height - 1) / 2, 0}}};
+    const auto view = [](std::size_t offset, std::size_t length, int target) -> json {
+        return {{"buffer", 0}, {"byteOffset", offset}, {"byteLength", length}, {"target", target}};
+    };
+    json views = {view(0, 12 * vertices, kArrayBuffer), view(12 * vertices, 8 * vertices, kArrayBuffer),
+                  view(20 * vertices, 4 * indices, kElementArrayBuffer)};
+    views[0]["byteStride"] = 12;
+    views[1]["byteStride"] = 8;
+    return {{"asset", {{"version", "2.0"}, {"generator", generator}}},
+            {"extensionsUsed", {kUnlit}},
+            {"buffers", {{{"byteLength", 20 * vertices + 4 * indices}}}},
+            {"bufferViews", std::move(views)},
+            {"accessors", std::move(accessors)},
+            {"materials", std::move(materials)},
+            {"meshes", {{{"name", "regions-mesh"}, {"primitives", std::move(primitives)}}}},
+            {"nodes", {node}},
+            {"scenes", {{{"name", "regions-scene"}, {"nodes", {0}}}}},
+            {"scene", 0}};
+}
+
+}  // namespace
+
+void write_region_mesh(const std::string& path, const BaseMesh& mesh, std::span<const Id> region_of_face,
+                       const SourceInfo& source, const std::string& generator, bool overwrite) {
+    std::string extension = std::filesystem::path(path).extension().string();
+    for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    if (extension != ".glb") throw Error(ErrorCode::kUsage, cat(path, ": a region mesh is written as .glb"));
+    AtomicFile file(path, overwrite);
+    const Pieces pieces = cut(stored_from_base(mesh, layout_of(source)), region_of_face);
+    if (pieces.pieces.empty())
+        throw Error(ErrorCode::kUnsupported, cat(path, ": no face of the base mesh belongs to a region"));
+    const std::uint64_t bytes = 20 * pieces.position.size() + 4 * pieces.index.size();
+    if (bytes > kMaxBytes)
+        throw Error(ErrorCode::kUnsupported,
+                    cat(path, ": would have ", bytes, " bytes of vertices and faces"));
+    std::vector<std::uint8_t> buffer;
+    append(buffer, pieces.position);
+    append(buffer, pieces.color);
+    append(buffer, pieces.index);
+    file.write(pack_glb(document(pieces, source, generator).dump(), buffer));
+    file.commit();
+}
+
+}  // namespace imgmesh

@@ -1,0 +1,213 @@
+// EXR pictures through OpenEXR itself: OpenImageIO's reader can abort on a corrupt file.
+#include <OpenEXR/ImfChannelList.h>
+#include <OpenEXR/ImfChromaticities.h>
+#include <OpenEXR/ImfFrameBuffer.h>
+#include <OpenEXR/ImfHeader.h>
+#include <OpenEXR/ImfIO.h>
+#include <OpenEXR/ImfInputPart.h>
+#include <OpenEXR/ImfMultiPartInputFile.h>
+#include <OpenEXR/ImfOutputFile.h>
+#include <OpenEXR/ImfPartType.h>
+#include <OpenEXR/ImfStandardAttributes.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <new>
+#include <string_view>
+
+#include "formats/exr/exr_opaque.h"
+#include "formats/picture/picture_decoders.h"
+#include "libcore/base/error.h"
+
+namespace imgmesh {
+namespace {
+
+using Bytes = std::span<const std::uint8_t>;
+
+class MemoryInput : public Imf::IStream {
+  public:
+    MemoryInput(const std::string& path, Bytes bytes) : IStream(path.c_str()), bytes_(bytes) {}
+    bool read(char* out, int count) override {
+        const auto n = static_cast<std::size_t>(count);
+        if (at_ > bytes_.size() || n > bytes_.size() - at_)
+            throw std::runtime_error("the file ends too early");
+        std::memcpy(out, bytes_.data() + at_, n);
+        at_ += n;
+        return at_ < bytes_.size();
+    }
+    std::uint64_t tellg() override { return at_; }
+    void seekg(std::uint64_t at) override { at_ = at; }
+
+  private:
+    Bytes bytes_;
+    std::uint64_t at_ = 0;
+};
+
+class MemoryOutput : public Imf::OStream {
+  public:
+    MemoryOutput() : OStream("memory") {}
+    void write(const char* in, int count) override {
+        const auto n = static_cast<std::size_t>(count);
+        if (at_ + n > bytes.size()) bytes.resize(at_ + n);
+        std::memcpy(bytes.data() + at_, in, n);
+        at_ += n;
+    }
+    std::uint64_t tellp() override { return at_; }
+    void seekp(std::uint64_t at) override { at_ = at; }
+    std::vector<std::uint8_t> bytes;
+
+  private:
+    std::uint64_t at_ = 0;
+};
+
+std::int64_t length(int first, int last) {
+    return std::int64_t{last} - first + 1;
+}
+
+// Colour first, in our order, then the file's own by name.
+std::vector<std::string> channel_order(const Imf::ChannelList& channels) {
+    constexpr std::string_view kColor[] = {"R", "G", "B", "Y", "A"};
+    std::vector<std::string> names;
+    for (const std::string_view name : kColor)
+        if (channels.findChannel(std::string(name))) names.emplace_back(name);
+    for (auto it = channels.begin(); it != channels.end(); ++it)
+        if (!std::ranges::count(kColor, std::string_view(it.name()))) names.emplace_back(it.name());
+    return names;
+}
+
+SampleType check_channels(const std::string& path, const Imf::ChannelList& channels) {
+    SampleType type = SampleType::kHalf;
+    for (auto it = channels.begin(); it != channels.end(); ++it) {
+        const Imf::Channel& channel = it.channel();
+        if (channel.type == Imf::UINT)
+            throw Error(ErrorCode::kUnsupported, cat(path, ": channel ", printable(it.name()),
+                                                     " holds integers, expected half or float"));
+        if (channel.xSampling != 1 || channel.ySampling != 1)
+            throw Error(ErrorCode::kUnsupported,
+                        cat(path, ": channel ", printable(it.name()), " is subsampled"));
+        if (channel.type == Imf::FLOAT) type = SampleType::kFloat;
+    }
+    return type;
+}
+
+void check_primaries(const std::string& path, const Imf::Header& header) {
+    if (!Imf::hasChromaticities(header)) return;
+    const Imf::Chromaticities is = Imf::chromaticities(header), expected;
+    const Imath::V2f differences[] = {is.red - expected.red, is.green - expected.green,
+                                      is.blue - expected.blue, is.white - expected.white};
+    for (const Imath::V2f& d : differences)
+        if (!(std::abs(d.x) < 0.005f && std::abs(d.y) < 0.005f))
+            throw Error(
+                ErrorCode::kUnsupported,
+                cat(path, ": the EXR's primaries are not Rec.709's; convert it, or name its colour space"));
+}
+
+void check_part(const std::string& path, const Imf::Header& header, const ImageLimits& limits) {
+    if (header.hasType() && Imf::isDeepData(header.type()))
+        throw Error(ErrorCode::kUnsupported, cat(path, ": deep EXR pictures are not supported"));
+    const auto channels = static_cast<std::int64_t>(channel_order(header.channels()).size());
+    const Imath::Box2i &shown = header.displayWindow(), &stored = header.dataWindow();
+    for (const Imath::Box2i* window : {&shown, &stored})
+        check_size(path, length(window->min.x, window->max.x), length(window->min.y, window->max.y), channels,
+                   limits);
+    if (header.hasTileDescription()) {
+        // OpenEXR holds a row of tiles.
+        const Imf::TileDescription& tile = header.tileDescription();
+        check_size(path, tile.xSize, tile.ySize, channels, limits);
+        const std::int64_t row = (length(stored.min.x, stored.max.x) + tile.xSize) * tile.ySize;
+        if (row > limits.max_pixels)
+            throw Error(ErrorCode::kBadFile, cat(path, ": a row of the EXR's tiles has ", row,
+                                                 " pixels, at most ", limits.max_pixels, " are read"));
+    }
+}
+
+}  // namespace
+
+DecodedPicture decode_exr(const std::string& path, std::span<std::uint8_t> bytes, const ImageLimits& limits,
+                          bool any_primaries) {
+    make_attributes_opaque(path, bytes);
+    try {
+        MemoryInput stream(path, bytes);
+        Imf::MultiPartInputFile file(stream, /*numThreads=*/0, /*reconstructChunkOffsetTable=*/false);
+        const Imf::Header& header = file.header(0);
+        check_part(path, header, limits);
+        if (!any_primaries) check_primaries(path, header);
+
+        const Imath::Box2i &shown = header.displayWindow(), &stored = header.dataWindow();
+        DecodedPicture out;
+        const std::vector<std::string> names = channel_order(header.channels());
+        const SampleType type = check_channels(path, header.channels());
+        const std::size_t channels = names.size();
+        out.image = make_image(shown.max.x - shown.min.x + 1, shown.max.y - shown.min.y + 1,
+                               static_cast<int>(channels));
+        out.image.channel_names = names;
+        out.image.sample_type = type;
+        out.associated_alpha = true;
+
+        // Row by row through one buffer as wide as the data window, which may lie anywhere.
+        const auto stored_width = static_cast<std::size_t>(length(stored.min.x, stored.max.x));
+        std::vector<float> row(stored_width * channels);
+        Imf::FrameBuffer buffer;
+        // OpenEXR wants the address of pixel (0, 0), wherever the window is. The stride from row to row is 0.
+        const std::size_t stride = channels * sizeof(float);
+        const std::ptrdiff_t origin = std::ptrdiff_t{stored.min.x} * static_cast<std::ptrdiff_t>(stride);
+        for (std::size_t c = 0; c < channels; ++c)
+            buffer.insert(names[c], Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(row.data() + c) - origin,
+                                               stride, 0));
+        Imf::InputPart part(file, 0);
+        part.setFrameBuffer(buffer);
+        const int left = std::max(shown.min.x, stored.min.x), right = std::min(shown.max.x, stored.max.x);
+        for (int y = stored.min.y; y <= stored.max.y; ++y) {
+            part.readPixels(y);  // also the rows that are not shown: a truncated file is an error anywhere
+            if (y < shown.min.y || y > shown.max.y || left > right) continue;
+            const auto from = static_cast<std::size_t>(left - stored.min.x) * channels;
+            const auto count = static_cast<std::size_t>(right - left + 1) * channels;
+            std::copy_n(row.begin() + static_cast<std::ptrdiff_t>(from), count,
+                        out.image.pixel(left - shown.min.x, y - shown.min.y));
+        }
+        return out;
+    } catch (const Error&) {
+        throw;
+    } catch (const std::bad_alloc&) {
+        throw;
+    } catch (const std::exception& e) {
+        throw Error(ErrorCode::kBadFile, cat(path, ": cannot read the EXR: ", one_line(e.what())));
+    }
+}
+
+std::vector<std::uint8_t> encode_exr(const Image& image, SampleType type) {
+    const auto channels = static_cast<std::size_t>(image.channels);
+    const auto width = static_cast<std::size_t>(image.width);
+    std::vector<Imath::half> halves;
+    if (type == SampleType::kHalf) {
+        halves.reserve(image.data.size());
+        // Half knows no number above 65504, only infinity, which nothing reads.
+        for (const float value : image.data) halves.emplace_back(std::clamp(value, -65504.0f, 65504.0f));
+    }
+
+    Imf::Header header(image.width, image.height, 1, {0, 0}, 1, Imf::INCREASING_Y, Imf::ZIP_COMPRESSION);
+    Imf::FrameBuffer buffer;
+    const auto insert = [&](std::size_t c, Imf::PixelType pixel_type, const auto* data) {
+        const std::size_t stride = channels * sizeof(*data);
+        header.channels().insert(image.channel_names[c], Imf::Channel(pixel_type));
+        buffer.insert(image.channel_names[c], Imf::Slice::Make(pixel_type, data + c, {0, 0}, image.width,
+                                                               image.height, stride, stride * width));
+    };
+    for (std::size_t c = 0; c < channels; ++c) {
+        if (halves.empty())
+            insert(c, Imf::FLOAT, image.data.data());
+        else
+            insert(c, Imf::HALF, halves.data());
+    }
+
+    MemoryOutput stream;
+    {
+        Imf::OutputFile file(stream, header, /*numThreads=*/0);
+        file.setFrameBuffer(buffer);
+        file.writePixels(image.height);
+    }  // writes the table of offsets
+    return std::move(stream.bytes);
+}
+
+}  // namespace imgmesh

@@ -1,0 +1,107 @@
+// read_image: the file's bytes, a look at them, one of the decoders, and what all pictures have in common.
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "formats/files/atomic_file.h"
+#include "formats/picture/image_io.h"
+#include "formats/picture/picture_decoders.h"
+#include "libcore/base/error.h"
+
+namespace imgmesh {
+namespace {
+
+// Above any picture within the default limits, and far below what a machine has.
+constexpr std::uint64_t kMaxFileBytes = std::uint64_t{8} << 30;
+
+// Where a displayed pixel is stored, as bits (EXIF 2.3, tag Orientation): the axes are exchanged first, then
+// each may run backwards.
+struct Orientation {
+    bool exchange, backwards_x, backwards_y;
+};
+constexpr std::array<Orientation, 9> kOrientations = {{{false, false, false},  // 0: none is given
+                                                       {false, false, false},
+                                                       {false, true, false},
+                                                       {false, true, true},
+                                                       {false, false, true},
+                                                       {true, false, false},
+                                                       {true, false, true},
+                                                       {true, true, true},
+                                                       {true, true, false}}};
+
+Image displayed(Image stored, int orientation) {
+    if (orientation < 2 || orientation > 8) return stored;
+    const Orientation o = kOrientations[static_cast<std::size_t>(orientation)];
+    Image out = stored;
+    if (o.exchange) std::swap(out.width, out.height);
+    for (int y = 0; y < out.height; ++y) {
+        for (int x = 0; x < out.width; ++x) {
+            int from_x = o.exchange ? y : x, from_y = o.exchange ? x : y;
+            if (o.backwards_x) from_x = stored.width - 1 - from_x;
+            if (o.backwards_y) from_y = stored.height - 1 - from_y;
+            std::copy_n(stored.pixel(from_x, from_y), stored.channels, out.pixel(x, y));
+        }
+    }
+    return out;
+}
+
+// Where alpha is zero the colour stands for light that covers nothing, as it does.
+void divide_alpha_out(Image& image) {
+    const int alpha = image.channel("A");
+    if (alpha < 0) return;
+    for (const char* name : {"R", "G", "B", "Y"}) {
+        const int color = image.channel(name);
+        if (color < 0) continue;
+        for (std::size_t i = 0; i < image.data.size(); i += static_cast<std::size_t>(image.channels)) {
+            const float a = image.data[i + static_cast<std::size_t>(alpha)];
+            if (a != 0) image.data[i + static_cast<std::size_t>(color)] /= a;
+        }
+    }
+}
+
+void check_finite(const std::string& path, const Image& image) {
+    const auto bad =
+        std::find_if(image.data.begin(), image.data.end(), [](float x) { return !std::isfinite(x); });
+    if (bad == image.data.end()) return;
+    const auto index = static_cast<std::size_t>(bad - image.data.begin());
+    const auto channels = static_cast<std::size_t>(image.channels),
+               width = static_cast<std::size_t>(image.width);
+    const std::size_t pixel = index / channels;
+    throw Error(ErrorCode::kBadFile,
+                cat(path, ": channel ", printable(image.channel_names[index % channels]), " of pixel (",
+                    pixel % width, ", ", pixel / width, ") is not a finite number"));
+}
+
+DecodedPicture decode(const std::string& path, bool any_primaries, const ImageLimits& limits) {
+    // A device or a pipe has no size to check beforehand: no more is read than the pixels could need.
+    constexpr std::uint64_t kOther = std::uint64_t{64} << 20;  // profiles, previews, metadata
+    const std::uint64_t most = kOther + static_cast<std::uint64_t>(limits.max_pixels) *
+                                            static_cast<std::uint64_t>(limits.max_channels) * sizeof(float);
+    std::vector<std::uint8_t> bytes = read_file(path, std::min(kMaxFileBytes, most));
+    const PictureClaim claim = probe_picture(path, bytes);
+    switch (claim.format) {
+        case PictureFormat::kExr:
+            return decode_exr(path, bytes, limits, any_primaries);
+        case PictureFormat::kWebp:
+            return decode_webp(path, bytes, limits);
+        case PictureFormat::kPng:
+            return decode_png(path, bytes, claim, limits);
+        default:
+            return decode_with_oiio(path, bytes, claim, limits);
+    }
+}
+
+}  // namespace
+
+Image read_image(const std::string& path, std::optional<ColorSpace> color_space, const ImageLimits& limits) {
+    DecodedPicture picture = decode(path, color_space.has_value(), limits);
+    if (picture.associated_alpha) divide_alpha_out(picture.image);
+    check_finite(path, picture.image);
+    Image image = displayed(std::move(picture.image), picture.orientation);
+    const bool integers = image.sample_type == SampleType::kUint8 || image.sample_type == SampleType::kUint16;
+    const ColorSpace usual = integers ? ColorSpace::kSrgb : ColorSpace::kLinear;
+    image.color_space = color_space.value_or(picture.color_space.value_or(usual));
+    return image;
+}
+
+}  // namespace imgmesh

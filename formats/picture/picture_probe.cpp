@@ -1,0 +1,238 @@
+// Sources: the formats' specifications - PNG (ISO/IEC 15948, 5 and 11), JPEG (ITU T.81, annex B), GIF89a
+// (18), BMP (BITMAPCOREHEADER, BITMAPINFOHEADER), Truevision TGA 2.0, JPEG 2000
+// (T.800, A.5.1), HEIF (ISO/IEC 23008-12, `ispe`).
+#include "formats/picture/picture_probe.h"
+
+#include <libdeflate.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <filesystem>
+#include <optional>
+#include <string_view>
+
+#include "libcore/base/error.h"
+
+namespace imgmesh {
+namespace {
+
+using Bytes = std::span<const std::uint8_t>;
+
+Error broken(const std::string& path, const std::string& what) {
+    return Error(ErrorCode::kBadFile, cat(path, ": ", what));
+}
+
+// Unsigned numbers of 1 to 4 bytes; 0 past the end, which no check below takes for a size.
+std::uint32_t big_endian(Bytes b, std::size_t at, std::size_t count) {
+    std::uint32_t value = 0;
+    if (at > b.size() || count > b.size() - at) return 0;
+    for (std::size_t i = 0; i < count; ++i) value = value << 8 | b[at + i];
+    return value;
+}
+std::uint32_t little_endian(Bytes b, std::size_t at, std::size_t count) {
+    std::uint32_t value = 0;
+    if (at > b.size() || count > b.size() - at) return 0;
+    for (std::size_t i = count; i-- > 0;) value = value << 8 | b[at + i];
+    return value;
+}
+
+bool has(Bytes b, std::size_t at, std::string_view text) {
+    return at <= b.size() && text.size() <= b.size() - at &&
+           std::equal(text.begin(), text.end(), b.begin() + static_cast<std::ptrdiff_t>(at),
+                      [](char t, std::uint8_t x) { return static_cast<std::uint8_t>(t) == x; });
+}
+
+// Position of `text` in the first `window` bytes, or nothing.
+std::optional<std::size_t> find(Bytes b, std::size_t from, std::string_view text) {
+    constexpr std::size_t kWindow = std::size_t{1} << 20;  // headers of JPEG 2000 and HEIF stand at the front
+    const std::size_t end = std::min(b.size(), kWindow);
+    for (std::size_t at = from; at + text.size() <= end; ++at)
+        if (has(b, at, text)) return at;
+    return std::nullopt;
+}
+
+// libpng reports a broken file on stderr besides its error, and takes one without an end for whole; this walk
+// finds both first.
+void check_png(const std::string& path, Bytes b) {
+    for (std::size_t at = 8;;) {
+        if (b.size() - at < 12) throw broken(path, "the PNG is truncated: it ends without an IEND chunk");
+        const std::uint32_t length = big_endian(b, at, 4);
+        if (length > b.size() - at - 12)
+            throw broken(path, cat("the PNG is truncated: a chunk of ", length, " bytes, ",
+                                   b.size() - at - 12, " are left"));
+        if (libdeflate_crc32(0, b.data() + at + 4, std::size_t{length} + 4) !=
+            big_endian(b, at + 8 + length, 4))
+            throw broken(path, "the PNG is broken: a chunk's checksum is wrong");
+        if (has(b, at + 4, "IEND")) return;
+        at += std::size_t{length} + 12;
+    }
+}
+
+// The frame header; a progressive file makes libjpeg take memory for the whole picture when it is opened.
+void claim_jpeg(Bytes b, PictureClaim& claim) {
+    for (std::size_t at = 2; at + 9 < b.size();) {
+        if (b[at] != 0xFF || b[at + 1] == 0 || b[at + 1] == 0xFF) {
+            ++at;  // libjpeg skips to the next marker as well
+            continue;
+        }
+        const std::uint8_t marker = b[at + 1];
+        if (marker >= 0xC0 && marker <= 0xCF && marker != 0xC4 && marker != 0xC8 && marker != 0xCC) {
+            claim.height = big_endian(b, at + 5, 2);
+            claim.width = big_endian(b, at + 7, 2);
+            return;
+        }
+        const bool alone = marker == 0x01 || (marker >= 0xD0 && marker <= 0xD8);
+        at += alone ? 2 : 2 + big_endian(b, at + 2, 2);
+    }
+}
+
+void claim_bmp(Bytes b, PictureClaim& claim) {
+    const bool core = little_endian(b, 14, 4) == 12;
+    const auto side = [&](std::size_t at) {  // a negative height means top-down rows
+        const auto value = static_cast<std::int32_t>(little_endian(b, at, 4));
+        return value < 0 ? -std::int64_t{value} : std::int64_t{value};
+    };
+    claim.width = core ? little_endian(b, 18, 2) : side(18);
+    claim.height = core ? little_endian(b, 20, 2) : side(22);
+}
+
+// Runs are of a palette's indices. OpenImageIO 2.4 looks them up in a palette that other depths do not have,
+// and crashes; and takes compressions that it does not know for none.
+void check_bmp_compression(const std::string& path, Bytes b) {
+    const std::uint32_t header = little_endian(b, 14, 4), bits = little_endian(b, 28, 2);
+    const std::uint32_t compression = header < 40 ? 0 : little_endian(b, 30, 4);
+    constexpr std::uint32_t kNone = 0, kRuns8 = 1, kRuns4 = 2, kMasks = 3, kMasksWithAlpha = 6;
+    if (compression > kMasks && compression != kMasksWithAlpha)
+        throw Error(ErrorCode::kUnsupported, cat(path, ": BMP of compression ", compression, ", expected ",
+                                                 kNone, " to ", kMasks, " or ", kMasksWithAlpha));
+    if ((compression == kRuns8 && bits != 8) || (compression == kRuns4 && bits != 4))
+        throw broken(path, cat("BMP of ", bits, " bits with compression ", compression, ", which is for ",
+                               compression == kRuns8 ? 8 : 4, " bits"));
+}
+
+void claim_jpeg2000(Bytes b, PictureClaim& claim) {
+    if (const auto at = find(b, 0, "\xFF\x4F\xFF\x51")) {
+        claim.width = std::int64_t{big_endian(b, *at + 8, 4)} - big_endian(b, *at + 16, 4);
+        claim.height = std::int64_t{big_endian(b, *at + 12, 4)} - big_endian(b, *at + 20, 4);
+        claim.channels = big_endian(b, *at + 40, 2);
+    }
+}
+
+// A file holds several sizes (tiles, thumbnails); the picture's is the largest.
+void claim_heif(Bytes b, PictureClaim& claim) {
+    for (auto at = find(b, 0, "ispe"); at; at = find(b, *at + 4, "ispe")) {
+        claim.width = std::max<std::int64_t>(claim.width, big_endian(b, *at + 8, 4));
+        claim.height = std::max<std::int64_t>(claim.height, big_endian(b, *at + 12, 4));
+    }
+}
+
+struct Signature {
+    PictureFormat format;
+    std::size_t offset;
+    std::string_view bytes;
+};
+using namespace std::string_view_literals;
+constexpr Signature kSignatures[] = {{PictureFormat::kPng, 0, "\x89PNG\r\n\x1a\n"sv},
+                                     {PictureFormat::kJpeg, 0, "\xFF\xD8\xFF"sv},
+                                     {PictureFormat::kTiff, 0, "II*\0"sv},
+                                     {PictureFormat::kTiff, 0, "MM\0*"sv},
+                                     {PictureFormat::kTiff, 0, "II+\0"sv},
+                                     {PictureFormat::kTiff, 0, "MM\0+"sv},
+                                     {PictureFormat::kExr, 0, "\x76\x2f\x31\x01"sv},
+                                     {PictureFormat::kWebp, 8, "WEBPVP8"sv},
+                                     {PictureFormat::kGif, 0, "GIF8"sv},
+                                     {PictureFormat::kBmp, 0, "BM"sv},
+                                     {PictureFormat::kHdr, 0, "#?"sv},
+                                     {PictureFormat::kJpeg2000, 0, "\0\0\0\x0CjP  "sv},
+                                     {PictureFormat::kJpeg2000, 0, "\xFF\x4F\xFF\x51"sv},
+                                     {PictureFormat::kHeif, 4, "ftyphei"sv},
+                                     {PictureFormat::kHeif, 4, "ftyphevc"sv},
+                                     {PictureFormat::kHeif, 4, "ftypmif1"sv},
+                                     {PictureFormat::kHeif, 4, "ftypavif"sv}};
+
+// Camera raw files wear TIFF's signature, and their first TIFF picture is a thumbnail.
+constexpr std::string_view kRawExtensions[] = {".3fr", ".arw", ".cr2", ".dcr", ".dng", ".erf",
+                                               ".iiq", ".kdc", ".mef", ".mos", ".nef", ".nrw",
+                                               ".pef", ".rw2", ".sr2", ".srw"};
+
+PictureFormat recognise(const std::string& path, Bytes b) {
+    std::string extension = std::filesystem::path(path).extension().string();
+    for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    if (b.empty()) throw broken(path, "is empty, expected a picture");
+    for (const Signature& s : kSignatures) {
+        if (!has(b, s.offset, s.bytes)) continue;
+        if (s.format == PictureFormat::kTiff && std::ranges::count(kRawExtensions, extension))
+            throw Error(ErrorCode::kUnsupported,
+                        cat(path, ": camera raw files are not supported; develop it to TIFF, EXR or PNG"));
+        return s.format;
+    }
+    const bool letter_p = b.size() > 2 && b[0] == 'P' && std::isspace(b[2]);
+    if (letter_p && ((b[1] >= '1' && b[1] <= '6') || b[1] == 'F' || b[1] == 'f')) return PictureFormat::kPnm;
+    if (extension == ".tga" || extension == ".tpic") return PictureFormat::kTga;
+    throw broken(path,
+                 "not a picture that imgmesh reads (PNG, JPEG, TIFF, EXR, WebP, GIF, BMP, PNM, TGA, HDR, "
+                 "JPEG 2000, HEIF)");
+}
+
+}  // namespace
+
+PictureClaim probe_picture(const std::string& path, Bytes b) {
+    PictureClaim claim{recognise(path, b)};
+    switch (claim.format) {
+        case PictureFormat::kPng:
+            check_png(path, b);
+            claim.width = big_endian(b, 16, 4);
+            claim.height = big_endian(b, 20, 4);
+            break;
+        case PictureFormat::kJpeg:
+            claim_jpeg(b, claim);
+            break;
+        case PictureFormat::kGif:
+            claim.width = little_endian(b, 6, 2);
+            claim.height = little_endian(b, 8, 2);
+            break;
+        case PictureFormat::kBmp:
+            check_bmp_compression(path, b);
+            claim_bmp(b, claim);
+            break;
+        case PictureFormat::kTga:
+            claim.width = little_endian(b, 12, 2);
+            claim.height = little_endian(b, 14, 2);
+            break;
+        case PictureFormat::kJpeg2000:
+            claim_jpeg2000(b, claim);
+            break;
+        case PictureFormat::kHeif:
+            claim_heif(b, claim);
+            break;
+        case PictureFormat::kTiff:
+        case PictureFormat::kExr:
+        case PictureFormat::kWebp:
+        case PictureFormat::kPnm:
+        case PictureFormat::kHdr:
+            break;
+    }
+    return claim;
+}
+
+void check_size(const std::string& path, std::int64_t width, std::int64_t height, std::int64_t channels,
+                const ImageLimits& limits) {
+    if (width < 1 || height < 1 || channels < 1)
+        throw broken(path, cat("the picture is ", width, "x", height, " with ", channels, " channels"));
+    if (width > limits.max_side || height > limits.max_side)
+        throw broken(path, cat("the picture is ", width, "x", height, ", at most ", limits.max_side,
+                               " pixels a side are read"));
+    if (width * height > limits.max_pixels)
+        throw broken(path, cat("the picture is ", width, "x", height, ", at most ", limits.max_pixels,
+                               " pixels are read"));
+    if (channels > limits.max_channels)
+        throw broken(
+            path, cat("the picture has ", channels, " channels, at most ", limits.max_channels, " are read"));
+    // RGBA at the largest size: more channels only in smaller pictures, or 64 would take 64 GB.
+    if (width * height * channels > 4 * limits.max_pixels)
+        throw broken(path, cat("the picture is ", width, "x", height, " with ", channels,
+                               " channels, at most ", 4 * limits.max_pixels, " samples are read"));
+}
+
+}  // namespace imgmesh

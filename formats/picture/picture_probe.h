@@ -1,0 +1,33 @@
+// What a picture file says of itself, read from its bytes before any library takes memory for it.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+
+#include "formats/picture/image_io.h"
+
+namespace imgmesh {
+
+enum class PictureFormat { kPng, kJpeg, kTiff, kExr, kWebp, kGif, kBmp, kPnm, kTga, kHdr, kJpeg2000, kHeif };
+
+/// Size as the first bytes claim it; 0 where only the library can tell, which then does so without taking
+/// memory for the pixels.
+struct PictureClaim {
+    PictureFormat format;
+    std::int64_t width = 0;
+    std::int64_t height = 0;
+    std::int64_t channels = 0;
+};
+
+/// Recognises the format by the content, not by the name (TGA alone, which has no signature, by its
+/// extension), and checks a PNG's chunks to their end. Throws Error: kBadFile for no picture, a broken PNG or
+/// a BMP whose compression is not for its depth, kUnsupported for camera raw files and other compressions of
+/// BMP.
+PictureClaim probe_picture(const std::string& path, std::span<const std::uint8_t> bytes);
+
+/// Throws Error(kBadFile) where the size is not positive or over the limits.
+void check_size(const std::string& path, std::int64_t width, std::int64_t height, std::int64_t channels,
+                const ImageLimits& limits);
+
+}  // namespace imgmesh

@@ -1,0 +1,66 @@
+#include "libcore/mesh/face_field.h"
+
+#include <algorithm>
+
+#include "libcore/base/parallel.h"
+
+namespace imgmesh {
+
+std::vector<FaceField> face_fields(const BaseMesh& mesh) {
+    std::vector<FaceField> fields(mesh.faces.size(), FaceField{});
+    parallel_blocks(0, static_cast<int>(fields.size()), 4096, [&](int first, int last) {
+        for (int i = first; i < last; ++i) {
+            const auto [a, b, c] = mesh.faces[static_cast<std::size_t>(i)];
+            FaceField& field = fields[static_cast<std::size_t>(i)];
+            const Vec2f &pa = mesh.position[a], ab = mesh.position[b] - pa, ac = mesh.position[c] - pa;
+            const double det = double(ab.x()) * ac.y() - double(ab.y()) * ac.x();
+            field.ax = pa.x();
+            field.ay = pa.y();
+            field.ux = static_cast<float>(ac.y() / det);
+            field.uy = static_cast<float>(-ac.x() / det);
+            field.vx = static_cast<float>(-ab.y() / det);
+            field.vy = static_cast<float>(ab.x() / det);
+            for (int k = 0; k < std::min(3, mesh.channels); ++k) {
+                const float fa = mesh.feature_of(a)[k], fb = mesh.feature_of(b)[k],
+                            fc = mesh.feature_of(c)[k];
+                field.f[k] = fa;
+                field.fx[k] = field.ux * (fb - fa) + field.vx * (fc - fa);
+                field.fy[k] = field.uy * (fb - fa) + field.vy * (fc - fa);
+            }
+        }
+    });
+    return fields;
+}
+
+FurtherFields further_fields(const BaseMesh& mesh, const std::vector<FaceField>& fields) {
+    FurtherFields further{static_cast<std::size_t>(std::max(0, mesh.channels - 3)), {}};
+    further.values.reserve(fields.size() * further.features * 3);
+    for (std::size_t f = 0; further.features > 0 && f < fields.size(); ++f) {
+        const auto [a, b, c] = mesh.faces[f];
+        const FaceField& field = fields[f];
+        for (int k = 3; k < mesh.channels; ++k) {
+            const float fa = mesh.feature_of(a)[k], ab = mesh.feature_of(b)[k] - fa,
+                        ac = mesh.feature_of(c)[k] - fa;
+            for (const float value : {fa, field.ux * ab + field.vx * ac, field.uy * ab + field.vy * ac})
+                further.values.push_back(value);
+        }
+    }
+    return further;
+}
+
+Id walk_to(const Vec2f& p, Id face, const std::vector<FaceField>& fields,
+           const std::vector<Face>& neighbors) {
+    // The bound only guards against rounding in circles: in a convex domain the walk arrives.
+    for (std::size_t step = 0; step < fields.size() + 8; ++step) {
+        const FaceField& field = fields[face];
+        const float u = field.u(p.x(), p.y()), v = field.v(p.x(), p.y()), w = 1 - u - v;
+        const float least = std::min({u, v, w});
+        if (least >= 0) return face;
+        const Id next = neighbors[face][least == w ? 0 : least == u ? 1 : 2];
+        if (next == kNone) return face;
+        face = next;
+    }
+    return face;
+}
+
+}  // namespace imgmesh

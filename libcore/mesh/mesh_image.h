@@ -1,0 +1,48 @@
+// A picture as a pyramid of base meshes, each with its pixel map: what a container holds.
+#pragma once
+
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "libcore/image/color.h"
+#include "libcore/image/image.h"
+#include "libcore/mesh/base_mesh.h"
+#include "libcore/mesh/pixel_map.h"
+
+namespace imgmesh {
+
+/// One parameter that shaped the result, by the name of its option.
+using BuildParameter = std::pair<std::string, std::variant<bool, std::int64_t, double, std::string>>;
+
+/// One level of the pyramid.
+struct Level {
+    BaseMesh mesh;
+    PixelMap map;      ///< every face id < mesh.faces.size(), or kNone
+    double error = 0;  ///< largest quadric error accepted by the collapse so far [feature units^2 px^2]
+};
+
+/// The picture that a MeshImage was made from.
+struct SourceInfo {
+    int width = 0;
+    int height = 0;
+    ColorSpace color_space =
+        ColorSpace::kSrgb;  ///< of the picture; meshes are in feature space (L*u*v*) all the same
+    SampleType sample_type = SampleType::kUint8;
+    /// What meshes are made of, by the file's names: split_names() says which are the features' L*u*v*, the
+    /// others are features as they are, in this order.
+    std::vector<std::string> channel_names = {"R", "G", "B"};
+    bool has_mask = false;          ///< some pixels are outside (PixelCoord::face == kNone)
+    Gamut gamut = Gamut::kDisplay;  ///< of the meshes' colours
+};
+
+struct MeshImage {
+    SourceInfo source;
+    std::vector<Level> levels;  ///< 0 is the finest; at least one
+    std::vector<Id> visits;     ///< the paper's visit map, size width * height, or empty
+    std::string generator;      ///< e.g. "imgmesh-build 0.1.0"
+    std::vector<BuildParameter> parameters;
+};
+
+}  // namespace imgmesh

@@ -1,0 +1,36 @@
+// Weights on the grid that a container holds (pixel_map.h).
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "libcore/mesh/pixel_map.h"
+
+namespace imgmesh {
+
+/// Steps of the grid in a weight of 1.
+inline double weight_steps(WeightPrecision precision) {
+    return 1.0 / (precision == WeightPrecision::kHalf ? kHalfWeightStep : kFloatWeightStep);
+}
+
+/// The point of `face` nearest to weights >= 0 of any positive sum, on a grid of that many steps: by largest
+/// remainders, so that the three weights sum to one exactly. Weights of 0 stay 0 where the sum is 1.
+inline PixelCoord on_weight_grid(Id face, const std::array<double, 3>& weight, double steps) {
+    const double sum = weight[0] + weight[1] + weight[2];
+    std::array<double, 3> whole{}, rest{};
+    double left = steps;
+    for (std::size_t k = 0; k < 3; ++k) {
+        whole[k] = std::floor(weight[k] / sum * steps);
+        rest[k] = weight[k] / sum * steps - whole[k];
+        left -= whole[k];
+    }
+    for (; left > 0; --left) {
+        const auto k = static_cast<std::size_t>(std::max_element(rest.begin(), rest.end()) - rest.begin());
+        ++whole[k];
+        rest[k] = -1;
+    }
+    return {face, static_cast<float>(whole[1] / steps), static_cast<float>(whole[2] / steps)};
+}
+
+}  // namespace imgmesh

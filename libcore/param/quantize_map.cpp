@@ -1,0 +1,171 @@
+#include "libcore/param/quantize_map.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "libcore/base/parallel.h"
+#include "libcore/base/parallel_vector.h"
+#include "libcore/mesh/weight_grid.h"
+
+namespace imgmesh {
+namespace {
+
+// Twice the area of p, q, r, positive in the grid's own orientation. Differences of stored positions are
+// exact.
+double area2(const Vec2d& p, const Vec2d& q, const Vec2d& r) {
+    return (q.x() - p.x()) * (r.y() - p.y()) - (q.y() - p.y()) * (r.x() - p.x());
+}
+
+// The least of the four triangles of a cell. Those with a corner outside a mask are not-a-number and do not
+// count.
+double cell_area2(const Vec2d& tl, const Vec2d& tr, const Vec2d& bl, const Vec2d& br) {
+    double least = std::numeric_limits<double>::infinity();
+    for (const double area : {area2(tl, tr, br), area2(tl, br, bl), area2(tl, tr, bl), area2(tr, br, bl)})
+        if (area < least) least = area;
+    return least;
+}
+
+class Storing {
+  public:
+    Storing(const BaseMesh& mesh, const MovingPixels& pixels, const std::vector<FaceField>& fields,
+            const std::vector<Face>& neighbors, WeightPrecision precision)
+        : mesh_(mesh),
+          pixels_(pixels),
+          fields_(fields),
+          neighbors_(neighbors),
+          steps_(weight_steps(precision)) {
+        map_.width = pixels.width;
+        map_.height = pixels.height;
+        map_.precision = precision;
+        map_.coords = parallel_vector<PixelCoord>(pixels.face.size());
+    }
+
+    std::optional<PixelMap> run() {
+        parallel_blocks(0, map_.height, 16, [&](int first, int last) {
+            for (int y = first; y < last; ++y)
+                for (int x = 0; x < map_.width; ++x)
+                    if (const Id face = pixels_.face[pixels_.index(x, y)]; face != kNone)
+                        map_.row(y)[static_cast<std::size_t>(x)] =
+                            rounded(face, pixels_.image_of(x, y).cast<double>());
+        });
+        // Mending is for the odd cell: photographs have one in a thousand at a few vertices, none at 1 %.
+        // Where whole regions fold, the faces are too large, and trying each cell would take minutes.
+        const std::size_t mendable = 64 + map_.coords.size() / 64;
+        constexpr int kPasses = 40;
+        int idle = 0;  // passes that moved nothing; odd and even ones try different places
+        for (int pass = 0; pass < kPasses && idle < 2; ++pass) {
+            const std::vector<std::pair<int, int>> cells = bad_cells();
+            if (cells.empty()) return std::move(map_);
+            if (cells.size() > mendable) return std::nullopt;
+            bool moved = false;
+            for (const auto& [x, y] : cells) moved |= mend(x, y, pass);
+            idle = moved ? 0 : idle + 1;
+        }
+        return std::nullopt;
+    }
+
+  private:
+    Vec2d position(const PixelCoord& coord) const {
+        if (coord.face == kNone) return Vec2d::Constant(std::numeric_limits<double>::quiet_NaN());
+        const auto [a, b, c] = mesh_.faces[coord.face];
+        const double u = coord.u, v = coord.v;
+        return (1 - u - v) * mesh_.position[a].cast<double>() + u * mesh_.position[b].cast<double>() +
+               v * mesh_.position[c].cast<double>();
+    }
+    Vec2d position(int x, int y) const { return position(map_.coords[pixels_.index(x, y)]); }
+
+    // The grid point nearest to p in `face`, by largest remainders, so that the three weights sum to one
+    // exactly.
+    PixelCoord rounded(Id face, const Vec2d& p) const {
+        const auto [a, b, c] = mesh_.faces[face];
+        const Vec2d pa = mesh_.position[a].cast<double>(), ab = mesh_.position[b].cast<double>() - pa,
+                    ac = mesh_.position[c].cast<double>() - pa, d = p - pa;
+        const double det = ab.x() * ac.y() - ab.y() * ac.x();
+        std::array<double, 3> w{};
+        w[1] = std::clamp((d.x() * ac.y() - d.y() * ac.x()) / det, 0.0, 1.0);
+        w[2] = std::clamp((ab.x() * d.y() - ab.y() * d.x()) / det, 0.0, 1.0);
+        w[0] = std::max(0.0, 1 - w[1] - w[2]);
+        return on_weight_grid(face, w, steps_);
+    }
+
+    std::vector<std::pair<int, int>> bad_cells() const {
+        const int rows = std::max(0, map_.height - 1);
+        std::vector<std::vector<std::pair<int, int>>> found(static_cast<std::size_t>(rows));
+        parallel_blocks(0, rows, 16, [&](int first, int last) {
+            for (int y = first; y < last; ++y) {
+                Vec2d tl = position(0, y), bl = position(0, y + 1);
+                for (int x = 0; x + 1 < map_.width; ++x) {
+                    const Vec2d tr = position(x + 1, y), br = position(x + 1, y + 1);
+                    if (cell_area2(tl, tr, bl, br) < kLeastStoredArea)
+                        found[static_cast<std::size_t>(y)].emplace_back(x, y);
+                    tl = tr;
+                    bl = br;
+                }
+            }
+        });
+        std::vector<std::pair<int, int>> all;
+        for (const auto& row : found) all.insert(all.end(), row.begin(), row.end());
+        return all;
+    }
+
+    // The least triangle of the up to four cells around pixel (x, y).
+    double area_around(int x, int y) const {
+        double least = std::numeric_limits<double>::infinity();
+        for (int cy = std::max(0, y - 1); cy <= std::min(y, map_.height - 2); ++cy)
+            for (int cx = std::max(0, x - 1); cx <= std::min(x, map_.width - 2); ++cx)
+                least = std::min(least, cell_area2(position(cx, cy), position(cx + 1, cy),
+                                                   position(cx, cy + 1), position(cx + 1, cy + 1)));
+        return least;
+    }
+
+    // Moves each pixel of a cell to the candidate, near where it should be, that leaves the fattest triangles
+    // around it. Returns whether any moved.
+    bool mend(int cell_x, int cell_y, int pass) {
+        bool moved = false;
+        for (int corner = 0; corner < 4; ++corner) {
+            const int x = cell_x + corner % 2, y = cell_y + corner / 2;
+            PixelCoord& coord = map_.coords[pixels_.index(x, y)];
+            if (coord.face == kNone) continue;
+            PixelCoord best = coord;
+            double best_area = area_around(x, y);
+            const Vec2d center = pass % 2 ? position(coord) : pixels_.image_of(x, y).cast<double>();
+            // From a fraction of the rounding error up to most of a pixel.
+            for (double radius = 0.01; radius < 1.0; radius *= 2)
+                for (int direction = 0; direction < 8 && best_area < 2 * kLeastStoredArea; ++direction) {
+                    const double angle = direction * 0.78539816339744831;
+                    Vec2d q = center + radius * Vec2d(std::cos(angle), std::sin(angle));
+                    if (pixels_.pinned_x(x, y)) q.x() = x;
+                    if (pixels_.pinned_y(x, y)) q.y() = y;
+                    q = q.cwiseMax(0.0).cwiseMin(Vec2d(map_.width - 1, map_.height - 1));
+                    coord = rounded(walk_to(q.cast<float>(), coord.face, fields_, neighbors_), q);
+                    const double area = area_around(x, y);
+                    if (area > best_area) {
+                        best_area = area;
+                        best = coord;
+                        moved = true;
+                    }
+                }
+            coord = best;
+        }
+        return moved;
+    }
+
+    const BaseMesh& mesh_;
+    const MovingPixels& pixels_;
+    const std::vector<FaceField>& fields_;
+    const std::vector<Face>& neighbors_;
+    double steps_;
+    PixelMap map_;
+};
+
+}  // namespace
+
+std::optional<PixelMap> storable_map(const BaseMesh& mesh, const MovingPixels& pixels,
+                                     const std::vector<FaceField>& fields, const std::vector<Face>& neighbors,
+                                     WeightPrecision precision) {
+    return Storing(mesh, pixels, fields, neighbors, precision).run();
+}
+
+}  // namespace imgmesh

@@ -1,0 +1,314 @@
+#include "libcore/pipeline/build.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include "libcore/base/error.h"
+#include "libcore/base/parallel_vector.h"
+#include "libcore/base/stopwatch.h"
+#include "libcore/image/color.h"
+#include "libcore/mesh/grid_mesh.h"
+#include "libcore/mesh/trivial_map.h"
+#include "libcore/metrics/metrics.h"
+#include "libcore/param/fit_map.h"
+#include "libcore/pipeline/lod_meshes.h"
+#include "libcore/pipeline/params.h"
+#include "libcore/pipeline/refine_level.h"
+#include "libcore/pipeline/rms_search.h"
+#include "libcore/pipeline/tracking.h"
+#include "libcore/simplify/simplify.h"
+
+namespace imgmesh {
+namespace {
+
+// The channels that the mesh is made from, as the file has them.
+std::vector<std::string> used_channels(const Image& image, const std::vector<ChannelChoice>& choices) {
+    if (choices.empty()) return split_names(image.channel_names).color;
+    std::vector<std::string> names;
+    for (const ChannelChoice& choice : choices) names.push_back(choice.name);
+    return names;
+}
+
+// Features as a reader gets them: colours without their weight on the colours' grid, other channels in their
+// own unit.
+void take_weights_out(BaseMesh& mesh, const FeatureSpace& space) {
+    for (Id v = 0; v < mesh.vertex_count(); ++v) {
+        float* f = mesh.feature_of(v);
+        for (int c = 0; c < space.features(); ++c) f[c] /= space.weight(c);
+        if (!space.color || space.color_weight == 1) continue;
+        const Vec3f color = storable_color(Vec3f(f), space.gamut);
+        std::copy(color.data(), color.data() + 3, f);
+    }
+}
+
+// A part [begin, end] of the whole, as a progress of its own.
+Progress part_of(const Progress& whole, double begin, double end) {
+    if (!whole) return {};
+    return [=](double f, std::string_view stage) { whole(begin + f * (end - begin), stage); };
+}
+
+std::int64_t largest_patch(const Level& level) {
+    std::vector<std::int64_t> pixels(level.mesh.faces.size(), 0);
+    for (const PixelCoord& coord : level.map.coords)
+        if (coord.face != kNone) ++pixels[coord.face];
+    return *std::max_element(pixels.begin(), pixels.end());
+}
+
+// Empty where all pixels are inside.
+Mask checked(Mask mask, const Image& image) {
+    if (mask.empty()) return mask;
+    if (mask.width != image.width || mask.height != image.height)
+        throw Error(ErrorCode::kBadFile, cat("the mask is ", mask.width, "x", mask.height,
+                                             ", the picture is ", image.width, "x", image.height));
+    const std::int64_t inside = mask.count();
+    if (inside == 0) throw Error(ErrorCode::kUnsupported, "no pixel is inside the mask");
+    if (inside == static_cast<std::int64_t>(image.pixel_count())) return {};
+    return mask;
+}
+
+// What makes levels of collapsed meshes.
+struct Pipeline {
+    const FeatureImage& feature;
+    const FeatureSpace& space;
+    const Mask& mask;
+    const BuildParams& params;
+    BuildReport& report;
+    const Progress& progress;
+
+    GridMesh grid() const {
+        return grid_mesh({feature.width, feature.height, feature.channels, parallel_copy(feature.data)},
+                         mask);
+    }
+
+    std::vector<CollapseResult> collapse(const GridMesh& grid, const CollapseParams& limits,
+                                         std::span<const CollapseTarget> targets,
+                                         const CollapseHooks& hooks = {}) const {
+        Stopwatch watch;
+        std::vector<CollapseResult> collapsed =
+            collapse_edges(grid, limits, targets, part_of(progress, 0, 0.7), hooks);
+        report.seconds.collapse += watch.lap();
+        return collapsed;
+    }
+
+    // Refinement, pixel map (`tracked` where there is one) and colours. Takes the share [begin, end] of the
+    // progress.
+    Level finish(CollapseResult&& collapsed, const CollapseParams& limits, std::optional<PixelMap> tracked,
+                 LevelReport& figures, double begin, double end) const {
+        Stopwatch watch;
+        RefineParams refinement;
+        refinement.rounds = static_cast<int>(refine_rounds(params));
+        refinement.shape_weight = params.shape_weight;
+        refinement.exchange = params.exchange;
+        refinement.min_quality = params.min_quality;
+        refinement.max_face_area = limits.max_face_area;
+        Level level{std::move(collapsed.mesh), {}, collapsed.error * params.color_weight};
+        const double middle = refinement.rounds > 0 ? begin + 0.7 * (end - begin) : begin;
+        if (refinement.rounds > 0 || params.objective == Objective::kRgb)
+            refine_level(level.mesh, feature, mask, params.objective, refinement,
+                         part_of(progress, begin, middle));
+        report.seconds.refine += watch.lap();
+        FitParams fit;
+        fit.color_weight = map_color_weight(params);
+        fit.bary = params.bary;
+        fit.space = space;
+        fit.keep_colors = params.quadric_colors || params.objective == Objective::kRgb;
+        level.map = tracked ? fit_given_map(level.mesh, feature, *std::move(tracked), fit, mask)
+                            : fit_map(level.mesh, feature, fit, part_of(progress, middle, end), mask);
+        const PixelMap trivial = trivial_map(level.mesh, feature.width, feature.height, mask);
+        figures = {map_rms(level.mesh, level.map, feature), map_rms(level.mesh, trivial, feature), {}};
+        for (int c = space.color ? 3 : 0; c < space.features(); ++c)
+            figures.plain_rms.push_back(feature_rms(level.mesh, level.map, feature, c) / space.weight(c));
+        take_weights_out(level.mesh, space);
+        report.seconds.map += watch.lap();
+        return level;
+    }
+
+    // Of the map of a mesh that is not refined, after one round.
+    double estimated_rms(CollapseResult&& collapsed) const {
+        Stopwatch watch;
+        FitParams fit;
+        fit.color_weight = map_color_weight(params);
+        fit.space = space;
+        fit.rounds = 1;
+        fit.bary = WeightPrecision::kFloat;
+        const PixelMap map = fit_map(collapsed.mesh, feature, fit, {}, mask);
+        const double rms = map_rms(collapsed.mesh, map, feature);
+        report.seconds.map += watch.lap();
+        return rms;
+    }
+};
+
+// Collapse and maps with the collapse's limits as they stand.
+void build_levels(const Pipeline& pipeline, const CollapseParams& limits,
+                  std::span<const CollapseTarget> targets, MeshImage& mesh_image) {
+    Stopwatch watch;
+    const GridMesh grid = pipeline.grid();
+    Tracking tracking(grid, pipeline.feature.width, pipeline.feature.height, pipeline.params);
+    BuildReport& report = pipeline.report;
+    report.seconds.collapse += watch.lap();
+    std::vector<CollapseResult> collapsed = pipeline.collapse(grid, limits, targets, tracking.hooks());
+    report.collapses = collapsed.back().collapses;
+    report.retracted = tracking.retracted();
+    report.levels.assign(collapsed.size(), {});
+    mesh_image.visits = tracking.take_visits();
+    mesh_image.levels.clear();
+    for (std::size_t k = 0; k < collapsed.size(); ++k) {
+        const double share = 0.3 / static_cast<double>(collapsed.size()),
+                     begin = 0.7 + share * static_cast<double>(k);
+        std::optional<PixelMap> tracked;
+        if (tracking.tracked()) tracked = tracking.take_map(k);
+        mesh_image.levels.push_back(pipeline.finish(std::move(collapsed[k]), limits, std::move(tracked),
+                                                    report.levels[k], begin, begin + share));
+    }
+}
+
+// The share of the final error of an estimate, a mesh without refinement whose pixels have moved for one
+// round. 0.75 to 0.9 on photographs with the usual refinement; what it is off costs a finished mesh at worst.
+constexpr double kEstimateShare = 0.85;
+
+// Meshes for the search of a wanted error.
+class RmsMeshes : public MeasuredMeshes {
+  public:
+    RmsMeshes(const Pipeline& pipeline, const GridMesh& grid, CollapseParams& limits, MeshImage& mesh_image)
+        : pipeline_(pipeline),
+          limits_(limits),
+          collapsing_(part_of(pipeline.progress, 0, 0.7)),
+          ladder_(
+              grid, [this](std::int64_t vertices) { return limits_for(vertices); }, collapsing_),
+          mesh_image_(mesh_image) {}
+
+    Probe finished(std::int64_t vertices) override {
+        CollapseResult collapsed = collapse(vertices, true);
+        collapses_ = collapsed.collapses;
+        level_ = pipeline_.finish(std::move(collapsed), limits_, {}, figures_, 0.7, 1);
+        least_ = std::min(least_, figures_.map_rms);
+        return {static_cast<std::int64_t>(level_.mesh.vertex_count()), figures_.map_rms};
+    }
+    void keep() override {
+        mesh_image_.levels.assign(1, std::move(level_));
+        pipeline_.report.levels = {figures_};
+        pipeline_.report.collapses = collapses_;
+        limits_.smoothing = smoothing_;
+    }
+    Probe estimated(std::int64_t vertices) override {
+        CollapseResult collapsed = collapse(vertices, false);
+        const auto count = static_cast<std::int64_t>(collapsed.mesh.vertex_count());
+        return {count, kEstimateShare * pipeline_.estimated_rms(std::move(collapsed))};
+    }
+    double least() const { return least_; }
+
+  private:
+    CollapseResult collapse(std::int64_t vertices, bool rungs) {
+        Stopwatch watch;
+        CollapseResult collapsed = ladder_.mesh(vertices, rungs);
+        pipeline_.report.seconds.collapse += watch.lap();
+        return collapsed;
+    }
+    CollapseParams limits_for(std::int64_t vertices) {
+        CollapseParams limits = limits_;
+        limits.smoothing = smoothing_ = collapse_params(pipeline_.params, {.vertices = vertices},
+                                                        static_cast<double>(pipeline_.report.pixels))
+                                            .smoothing;
+        return limits;
+    }
+
+    const Pipeline& pipeline_;
+    CollapseParams& limits_;
+    int smoothing_ = 0;  // of the run at hand
+    Progress collapsing_;
+    MeshLadder ladder_;
+    MeshImage& mesh_image_;
+    Level level_;
+    LevelReport figures_;
+    std::int64_t collapses_ = 0;
+    double least_ = std::numeric_limits<double>::infinity();
+};
+
+// The level that StopParams::rms asks for. limits.smoothing becomes what its collapse had.
+void build_to_rms(const Pipeline& pipeline, CollapseParams& limits, MeshImage& mesh_image) {
+    const GridMesh grid = pipeline.grid();
+    const double rms = *pipeline.params.stop.rms;
+    mesh_image.levels.clear();
+    // All of the dense mesh: strips of one pixel have more vertices than pixels.
+    const auto vertices = grid.mask.empty()
+                              ? static_cast<std::int64_t>(grid.vertex_count())
+                              : pipeline.report.pixels + static_cast<std::int64_t>(grid.copies.size());
+    // Photographs reach an RMS of 3.8 with 1 % of their pixels, and the search begins with more than most
+    // need.
+    constexpr double kUsualRms = 3.8, kUsualShare = 0.01, kAhead = 5, kPower = 2.6, kMost = 1.0 / 8;
+    const double share = kAhead * kUsualShare * std::pow(kUsualRms / std::max(rms, 1e-3), kPower);
+    const double guess = std::clamp(share, 1.0 / 4096, kMost) * static_cast<double>(vertices);
+    RmsMeshes meshes(pipeline, grid, limits, mesh_image);
+    if (!search_rms(std::max(std::int64_t{4}, vertices), std::llround(guess), rms, meshes))
+        throw Error(ErrorCode::kUnsupported,
+                    cat("rms is ", rms, ", but the least that could be reached is ", meshes.least()));
+}
+
+}  // namespace
+
+BuildResult build_mesh_image(const Image& image, const BuildParams& asked, const Progress& progress,
+                             Mask mask) {
+    check_params(asked);
+    if (image.width < 1 || image.height < 1) throw Error(ErrorCode::kUsage, "the picture is empty");
+    for (const float sample : image.data)
+        if (!std::isfinite(sample))
+            throw Error(ErrorCode::kUnsupported, "the picture has samples that are not finite");
+    mask = checked(std::move(mask), image);
+    Stopwatch watch;
+    // What lies outside of the colours that a container holds could only mislead the fit: L*u*v* of negative
+    // light has no bound.
+    const FeatureSpace space = feature_space(image, asked.channels, mask);
+    const bool refinable =
+        space.color && space.features() == 3 && space.color_weight == 1 && space.gamut == Gamut::kDisplay;
+    BuildParams params = asked;
+    if (!params.refine) params.refine = refinable ? refine_rounds(asked) : 0;
+    if ((*params.refine > 0 || params.objective == Objective::kRgb) && !refinable)
+        throw Error(ErrorCode::kUnsupported,
+                    "refinement, which the presets best and fem bring along, is for colour alone, without "
+                    "light above 1");
+    const FeatureImage feature = extract_features(image, space, mask);
+
+    BuildResult result;
+    result.report.seconds.collapse = watch.lap();
+    result.report.pixels = mask.empty() ? static_cast<std::int64_t>(image.pixel_count()) : mask.count();
+    const auto pixels = static_cast<double>(result.report.pixels);
+    const std::vector<CollapseTarget> targets = collapse_targets(params, pixels);
+    CollapseParams collapse = collapse_params(params, targets.front(), pixels);
+    const std::vector<Level>& levels = result.mesh_image.levels;
+    if (params.max_cluster) collapse.max_face_area = static_cast<float>(*params.max_cluster);
+    const Pipeline pipeline{feature, space, mask, params, result.report, progress};
+    for (;;) {
+        if (params.stop.rms)
+            build_to_rms(pipeline, collapse, result.mesh_image);
+        else
+            build_levels(pipeline, collapse, targets, result.mesh_image);
+        if (!params.max_cluster) break;
+        // The collapse bounds a face's area; the map decides how many pixels that becomes.
+        std::int64_t largest = 0;
+        for (const Level& level : levels) largest = std::max(largest, largest_patch(level));
+        if (largest <= *params.max_cluster) break;
+        if (collapse.max_face_area < 0.5f)
+            throw Error(ErrorCode::kUnsupported, cat("the map gathers ", largest,
+                                                     " pixels in a face of the dense mesh, more than the ",
+                                                     *params.max_cluster, " allowed"));
+        collapse.max_face_area *=
+            0.95f * static_cast<float>(*params.max_cluster) / static_cast<float>(largest);
+    }
+    result.mesh_image.source = {image.width,
+                                image.height,
+                                image.color_space,
+                                image.sample_type,
+                                used_channels(image, params.channels),
+                                !mask.empty(),
+                                space.gamut};
+    result.mesh_image.parameters = listed_params(params, collapse);
+    const bool half = levels.front().map.precision == WeightPrecision::kHalf;
+    result.mesh_image.parameters.emplace_back("bary", std::string(half ? "half" : "float"));
+    if (progress) progress(1.0, "done");
+    return result;
+}
+
+}  // namespace imgmesh

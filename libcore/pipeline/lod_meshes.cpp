@@ -1,0 +1,59 @@
+#include "libcore/pipeline/lod_meshes.h"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+namespace imgmesh {
+namespace {
+
+// Rungs are 1.5 % apart, up to a third more than what is asked for: what a prediction may be off. Of meshes
+// that are not small beside the picture they would take too much memory.
+constexpr double kStep = 0.015, kReach = 1.35, kSmall = 1.0 / 16;
+
+std::int64_t count_of(const CollapseResult& level) {
+    return static_cast<std::int64_t>(level.mesh.vertex_count());
+}
+
+}  // namespace
+
+MeshLadder::MeshLadder(const GridMesh& grid, std::function<CollapseParams(std::int64_t)> params,
+                       const Progress& progress)
+    : grid_(grid), params_(std::move(params)), progress_(progress) {}
+
+CollapseResult MeshLadder::mesh(std::int64_t vertices, bool rungs) {
+    for (const CollapseResult& level : kept_)
+        if (count_of(level) <= vertices &&
+            static_cast<double>(count_of(level)) >= (1 - kStep) * static_cast<double>(vertices) - 1)
+            return level;
+    // A run that has come to an end early has nothing coarser.
+    if (!run_ || reached_ < vertices) {
+        run_.reset();  // before the next one takes its memory
+        kept_.clear();
+        run_.emplace(grid_, params_(vertices));
+        reached_ = std::numeric_limits<std::int64_t>::max();
+        ++runs_;
+    }
+    const double most = kSmall * static_cast<double>(grid_.vertex_count());
+    if (rungs) {
+        std::erase_if(kept_, [&](const CollapseResult& level) {
+            return static_cast<double>(count_of(level)) > kReach * static_cast<double>(vertices);
+        });
+        std::vector<std::int64_t> counts;
+        for (double n = static_cast<double>(vertices) * (1 + kStep);
+             n < std::min(most, kReach * static_cast<double>(vertices)); n *= 1 + kStep)
+            if (counts.empty() || static_cast<std::int64_t>(n) > counts.back())
+                counts.push_back(static_cast<std::int64_t>(n));
+        for (; !counts.empty(); counts.pop_back()) {
+            if (counts.back() >= reached_ || counts.back() <= vertices) continue;
+            kept_.push_back(run_->to({.vertices = counts.back()}, progress_));
+            reached_ = count_of(kept_.back());
+        }
+    }
+    CollapseResult level = run_->to({.vertices = vertices}, progress_);
+    reached_ = count_of(level);
+    if (rungs && static_cast<double>(reached_) < most) kept_.push_back(level);
+    return level;
+}
+
+}  // namespace imgmesh

@@ -1,0 +1,107 @@
+// A quadric as the paper writes it, matrix, vector and constant over positions and features (sec. 3.2;
+// Garland and Heckbert 1998; Hoppe 1999): any metric and solver, for comparison with the canonical one
+// (quadric.h), which is smaller and faster.
+#pragma once
+
+#include <algorithm>
+#include <vector>
+
+#include "libcore/mesh/ring_mesh.h"
+#include "libcore/simplify/matrix_minimum.h"
+#include "libcore/simplify/simplify.h"
+
+namespace imgmesh {
+
+/// Q(v) = w'Aw + 2 b'w + c, w = v - origin, for v = (x, y, features). The origin stays near the vertex: about
+/// the picture's corner, w'Aw and c would be large and nearly cancel. 8 (N^2 + 2 N) bytes and a few, N = 2 +
+/// C.
+template <int C>
+struct DenseQuadric {
+    static constexpr int kChannels = C, kSize = 2 + C;
+    using Vector = Eigen::Matrix<double, kSize, 1>;
+    using Matrix = Eigen::Matrix<double, kSize, kSize>;
+
+    Vector origin = Vector::Zero();
+    Matrix a = Matrix::Zero();
+    Vector b = Vector::Zero();
+    double c = 0;
+    // What find_minimum() finds:
+    float px = 0, py = 0;  ///< position of the minimiser [pixels]
+    float error = 0;       ///< least value
+    bool unique = false;   ///< whether there is one minimiser
+    Solver solver = Solver::kClosed;
+
+    double value(const Vector& w) const { return w.dot(a * w + 2 * b) + c; }
+    /// As Quadric's.
+    float at(float x, float y) const {
+        return std::max(0.0f, static_cast<float>(value(PlaneForm<kSize>(a, b).at(from_origin(x, y)))));
+    }
+    float feature(int channel, float x, float y) const {
+        const int k = 2 + channel;
+        return static_cast<float>(origin[k] + PlaneForm<kSize>(a, b).at(from_origin(x, y))[k]);
+    }
+    float best_y(float x) const {
+        const PlaneForm<kSize> plane(a, b);
+        const double best = -(plane.r.y() + plane.s(0, 1) * (double{x} - origin[0])) / plane.s(1, 1);
+        return static_cast<float>(origin[1] + best);
+    }
+    float best_x(float y) const {
+        const PlaneForm<kSize> plane(a, b);
+        const double best = -(plane.r.x() + plane.s(0, 1) * (double{y} - origin[1])) / plane.s(0, 0);
+        return static_cast<float>(origin[0] + best);
+    }
+    /// Whether one position is best among those that agree in the fixed coordinates (FixedAxis bits).
+    bool has_minimum(std::uint8_t fixed) const {
+        if (fixed == 0) return unique;
+        const PlaneForm<kSize> plane(a, b);
+        const bool free_x = (fixed & kFixedX) == 0, free_y = (fixed & kFixedY) == 0;
+        return (!free_x || plane.s(0, 0) > kFlat * plane.steepest) &&
+               (!free_y || plane.s(1, 1) > kFlat * plane.steepest);
+    }
+
+    void find_minimum() {
+        const DenseMinimum<kSize> least = dense_minimum<kSize>(a, b, solver);
+        unique = least.unique;
+        px = static_cast<float>(origin[0] + least.at[0]);
+        py = static_cast<float>(origin[1] + least.at[1]);
+        error = std::max(0.0f, static_cast<float>(c + b.dot(least.at)));
+    }
+    /// The same function about another origin.
+    DenseQuadric moved(const Vector& to) const {
+        DenseQuadric q = *this;
+        const Vector w = to - origin;
+        q.origin = to;
+        q.c = value(w);
+        q.b += a * w;
+        return q;
+    }
+
+  private:
+    Eigen::Vector2d from_origin(float x, float y) const {
+        return {double{x} - origin[0], double{y} - origin[1]};
+    }
+};
+
+/// Q_i + Q_j; O(C^3).
+template <int C>
+DenseQuadric<C> merged(const DenseQuadric<C>& i, const DenseQuadric<C>& j) {
+    const typename DenseQuadric<C>::Vector middle = 0.5 * (i.origin + j.origin);
+    DenseQuadric<C> sum = i.moved(middle);
+    const DenseQuadric<C> other = j.moved(middle);
+    sum.a += other.a;
+    sum.b += other.b;
+    sum.c += other.c;
+    sum.find_minimum();
+    return sum;
+}
+
+/// The dense form of vertex_quadrics(), of params' metric, weight and solver; C is 3, 8 or 16.
+template <int C>
+std::vector<DenseQuadric<C>> dense_quadrics(const GridMesh& grid, const RingMesh& rings,
+                                            const FeaturePatch& gradients, const CollapseParams& params);
+/// And of current_quadrics().
+template <int C>
+std::vector<DenseQuadric<C>> dense_quadrics(const RingMesh& rings, const std::vector<DenseQuadric<C>>& before,
+                                            const CollapseParams& params);
+
+}  // namespace imgmesh

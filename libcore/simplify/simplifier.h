@@ -1,0 +1,246 @@
+// The schedule of collapse_edges: tiles by themselves while the goal is far, then the whole mesh.
+#pragma once
+
+#include <algorithm>
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "libcore/simplify/edge_collapser.h"
+#include "libcore/simplify/tile_round.h"
+#include "libcore/simplify/tile_start.h"
+
+namespace imgmesh {
+
+// The queue holds only edges cheaper than a threshold, which rises by this factor when they are used up.
+// Larger wastes memory, smaller scans the mesh more often.
+inline constexpr float kWindow = 4.0f;
+
+// Tiles end where fewer vertices are left than so many times the goal: where a window could reach it, the
+// first tiles would pay for all.
+inline constexpr double kTiledAbove = 1.5;
+
+// Of the tiles after the first round.
+inline constexpr double kVerticesPerTile = 4096;
+// Fewer vertices than these are not worth a round of tiles.
+inline constexpr std::int64_t kLeastTiled = 16384;
+
+template <class Q>
+class Collapser {
+  public:
+    Collapser(const GridMesh& grid, const CollapseParams& params, const CollapseHooks& hooks)
+        : grid_(grid),
+          params_(params),
+          rules_{params_, hooks, StarLimits::of(params.max_face_area, params.min_shape)} {
+        // Who follows the collapse is told of one step at a time, in the grid's numbers.
+        if (hooks.before) params_.tiles = false;
+    }
+
+    void run(const CollapseTarget& target, const Progress& progress) {
+        if (mesh_.rings.empty()) start(target, progress);
+        set_target(target);
+        while (!done()) {
+            if (params_.rebuild_quadrics && near_rebuild()) rebuild_quadrics();
+            const bool tiled = params_.tiles && far_from_done();
+            const double might_go = tiled ? share_that_goes() * static_cast<double>(vertices_) : 0;
+            const Tally part = tiled ? round_of_tiles() : whole();
+            take(part);
+            if (progress) progress(fraction_done(), "collapse");
+            if (tiled) {
+                // Where tiles have nothing to do, what is left is at their seams.
+                tiles_over_ = 20 * static_cast<double>(part.vertices) < might_go;
+                threshold_ *= kTileWindow;
+                continue;
+            }
+            if (done() || (part.vertices == 0 && part.postponed == kNever)) break;
+            // Where nothing has changed, windows below the cheapest edge would stay empty: a flat picture's
+            // first window is far below what the rest costs.
+            do threshold_ *= kWindow;
+            while (part.vertices == 0 && threshold_ <= part.postponed);
+        }
+    }
+
+    CollapseResult snapshot() const {
+        CollapseResult result{{}, error_, dense_vertices_ - vertices_};
+        std::vector<Id> order = live_list(mesh_.rings);
+        if (!mesh_.pixel.empty())
+            std::sort(order.begin(), order.end(),
+                      [&](Id a, Id b) { return mesh_.pixel[a] < mesh_.pixel[b]; });
+        result.mesh.channels = Q::kChannels;
+        result.mesh.faces = ring_faces(mesh_.rings, order);
+        for (const Id v : order) {
+            const Ring& ring = mesh_.rings[v];
+            result.mesh.position.emplace_back(ring.x, ring.y);
+            for (int c = 0; c < Q::kChannels; ++c)
+                result.mesh.feature.push_back(mesh_.quadrics[v].feature(c, ring.x, ring.y));
+        }
+        return result;
+    }
+
+  private:
+    bool done() const { return vertices_ <= target_.vertices || faces_ <= target_.faces; }
+    double fraction_done(std::int64_t gone = 0) const {
+        const auto begin = static_cast<double>(dense_vertices_), left = static_cast<double>(vertices_ - gone);
+        return (begin - left) / std::max(1.0, begin - static_cast<double>(target_.vertices));
+    }
+
+    void set_target(const CollapseTarget& target) {
+        target_ = target;
+        target_.faces = std::max(target.faces,
+                                 static_cast<std::int64_t>(target.face_share * static_cast<double>(faces_)));
+        rules_.max_error = target.max_error;
+    }
+
+    void take(const Tally& part) {
+        vertices_ -= part.vertices;
+        faces_ -= part.faces;
+        error_ = std::max(error_, part.error);
+    }
+
+    // The dense mesh, or what its tiles leave of it.
+    void start(const CollapseTarget& target, const Progress& progress) {
+        if constexpr (kCanonical<Q>) {
+            if (params_.tiles && !params_.total_priority) {
+                count_dense();
+                next_rebuild_ = 0;  // tiles have their own
+                set_target(target);
+                const double share = std::max(grid_.mask.empty() ? kStartShare : kMaskedStartShare,
+                                              kStartAbove * (1 - share_that_goes()));
+                if (share < kMostStartShare) {
+                    threshold_ = start_threshold<Q>(grid_, rules_, share);
+                    take(start_in_tiles(grid_, rules_, threshold_, share, share_that_goes(), mesh_,
+                                        [&](std::int64_t gone) {
+                                            if (progress) progress(fraction_done(gone), "collapse");
+                                        }));
+                    threshold_ *= kTileWindow;
+                    next_rebuild_ = vertices_ / 2;
+                    if (!grid_.mask.empty())
+                        rules_.outline = &outline_.emplace(grid_, mesh_.rings, mesh_.pixel);
+                    return;
+                }
+            }
+        }
+        mesh_.rings = ring_mesh(grid_);
+        mesh_.quadrics = initial_quadrics<Q>(
+            grid_, mesh_.rings, smoothed_patch(grid_, params_.smoothing, whole_rect(grid_)), params_);
+        count_dense();
+        next_rebuild_ = vertices_ / 2;
+        if (!grid_.mask.empty()) rules_.outline = &outline_.emplace(grid_, mesh_.rings, mesh_.pixel);
+        threshold_ = median(sampled_costs());
+    }
+
+    void count_dense() {
+        const auto w = std::int64_t{grid_.feature.width}, h = std::int64_t{grid_.feature.height};
+        const bool masked = !grid_.mask.empty();
+        dense_vertices_ =
+            masked ? grid_.mask.count() + static_cast<std::int64_t>(grid_.copies.size()) : w * h;
+        faces_ = masked ? masked_face_count(grid_) : 2 * (w - 1) * (h - 1);
+        vertices_ = dense_vertices_;
+    }
+
+    // Of the vertices of each tile, so that none can take what others would have to pay for.
+    double share_that_goes() const {
+        const auto share = [](std::int64_t now, std::int64_t goal) {
+            return 1 - kTiledAbove * static_cast<double>(goal) /
+                           static_cast<double>(std::max<std::int64_t>(1, now));
+        };
+        const double goes = std::min(share(vertices_, target_.vertices), share(faces_, target_.faces));
+        return params_.rebuild_quadrics
+                   ? std::min(goes, 1 - static_cast<double>(next_rebuild_) / static_cast<double>(vertices_))
+                   : goes;
+    }
+
+    Tally round_of_tiles() {
+        const RoundTiles tiles(grid_.feature.width, grid_.feature.height, vertices_, kVerticesPerTile,
+                               ++rounds_);
+        Tally sum = tile_round(mesh_, rules_, tiles, threshold_, share_that_goes());
+        if (!rules_.outline) return sum;
+        // The outline knows all of itself, so one thread at a time may change it.
+        Tally may_go = left_to_go();
+        may_go.vertices -= sum.vertices;
+        may_go.faces -= sum.faces;
+        EdgeCollapser<Q> engine(mesh_, rules_);
+        std::vector<Id> border;
+        for (Id v = 0; v < mesh_.rings.size(); ++v)
+            if (mesh_.rings[v].live() && mesh_.rings[v].border()) border.push_back(v);
+        sum.add(engine.run(
+            border.size(), [&](std::size_t n) { return border[n]; }, threshold_, may_go, true));
+        return sum;
+    }
+
+    Tally whole() {
+        EdgeCollapser<Q> engine(mesh_, rules_);
+        return engine.run(
+            mesh_.rings.size(), [](std::size_t v) { return static_cast<Id>(v); }, threshold_, left_to_go());
+    }
+
+    Tally left_to_go() const {
+        return {.vertices = vertices_ - target_.vertices, .faces = faces_ - target_.faces};
+    }
+
+    bool near_rebuild() const {
+        return static_cast<double>(vertices_) <= kHalved * static_cast<double>(next_rebuild_);
+    }
+
+    void rebuild_quadrics() {
+        mesh_.quadrics = rebuilt_quadrics(mesh_.rings, mesh_.quadrics, params_);
+        threshold_ = median(sampled_costs());
+        next_rebuild_ = vertices_ / 2;
+    }
+
+    // The costs of edges of some vertices all over the picture; of those that may collapse, in ascending
+    // order.
+    std::vector<float> sampled_costs() const {
+        EdgeCollapser<Q> engine(const_cast<CollapseMesh<Q>&>(mesh_), rules_);
+        const std::size_t step = std::max<std::size_t>(1, mesh_.rings.size() / kSampled);
+        std::vector<float> costs;
+        for (std::size_t v = 0; v < mesh_.rings.size(); v += step) {
+            if (!mesh_.rings[v].live()) continue;
+            const float cost = engine.cost(static_cast<Id>(v), mesh_.rings[v].neighbor[0]);
+            if (cost < kNever) costs.push_back(cost);
+        }
+        std::sort(costs.begin(), costs.end());
+        return costs;
+    }
+
+    // So that the first window holds about half of the edges.
+    static float median(const std::vector<float>& costs) {
+        return costs.empty() ? 1.0f : std::max(costs[costs.size() / 2], std::numeric_limits<float>::min());
+    }
+
+    bool far_from_done() const {
+        if (tiles_over_ || vertices_ < kLeastTiled) return false;
+        const std::vector<float> costs = sampled_costs();
+        const auto below = std::lower_bound(costs.begin(), costs.end(), threshold_) - costs.begin();
+        const double left =
+            1 - static_cast<double>(below) / static_cast<double>(std::max<std::size_t>(1, costs.size()));
+        return share_that_goes() > 0 &&
+               left * static_cast<double>(vertices_) > static_cast<double>(target_.vertices) &&
+               left * static_cast<double>(faces_) > static_cast<double>(target_.faces);
+    }
+
+    static constexpr std::size_t kSampled = 4096;
+    // Quadrics are rebuilt when the vertices have nearly halved. From tile to tile less than a half may go at
+    // first, and the last of it would take many rounds; 1.05 to 1.3 make no difference in time, and the
+    // larger is the lower in error.
+    static constexpr double kHalved = 1.25;
+    // What the first tiles leave: little enough to make the dense mesh's memory and time theirs alone; the
+    // seams do not show in the result (docs/decisions/0019-collapse-in-tiles.md). Where the goal is near,
+    // more; and of a cut-out, whose outline waits meanwhile.
+    static constexpr double kStartShare = 0.12, kMaskedStartShare = 0.2, kStartAbove = 1.3,
+                            kMostStartShare = 0.7;
+
+    const GridMesh& grid_;
+    CollapseParams params_;
+    CollapseRules rules_;
+    std::optional<MaskOutline> outline_;  // of a cut-out
+    CollapseMesh<Q> mesh_;
+    float threshold_ = 0;  // of the current window
+    int rounds_ = 0;
+    bool tiles_over_ = false;
+    CollapseTarget target_;
+    std::int64_t dense_vertices_ = 0, vertices_ = 0, next_rebuild_ = 0, faces_ = 0;
+    double error_ = 0;
+};
+
+}  // namespace imgmesh

@@ -1,0 +1,120 @@
+// Steps: (1) a quadric for every vertex; (2) edges are filed by the error that merging their ends would add;
+// (3) the cheapest edge whose merge keeps the mesh a triangulation is collapsed, and the edges around it are
+// filed anew; (4) until a limit is reached. Sources: paper sec. 3.1, 3.2; Garland and Heckbert 1997; Hoppe
+// 1999.
+#include "libcore/simplify/simplify.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "libcore/base/error.h"
+#include "libcore/image/channel_count.h"
+#include "libcore/simplify/simplifier.h"
+
+namespace imgmesh {
+
+// Compiled in dense_collapser.cpp.
+extern template class Collapser<DenseQuadric<3>>;
+extern template class Collapser<DenseQuadric<8>>;
+extern template class Collapser<DenseQuadric<16>>;
+
+struct CollapseRun::Engine {
+    virtual ~Engine() = default;
+    virtual CollapseResult to(const CollapseTarget& target, const Progress& progress) = 0;
+};
+
+namespace {
+
+// The first channels of every item, or all and zeros behind them.
+std::vector<float> with_channels(const std::vector<float>& values, int from, int to) {
+    const std::size_t items = values.size() / static_cast<std::size_t>(from);
+    std::vector<float> out(items * static_cast<std::size_t>(to), 0.0f);
+    for (std::size_t i = 0; i < items; ++i)
+        std::copy_n(values.data() + i * static_cast<std::size_t>(from), std::min(from, to),
+                    out.data() + i * static_cast<std::size_t>(to));
+    return out;
+}
+
+template <class Q>
+class EngineOf : public CollapseRun::Engine {
+  public:
+    EngineOf(const GridMesh& grid, const CollapseParams& params, const CollapseHooks& hooks)
+        : collapser_(grid, params, hooks) {}
+    CollapseResult to(const CollapseTarget& target, const Progress& progress) override {
+        collapser_.run(target, progress);
+        return collapser_.snapshot();
+    }
+
+  private:
+    Collapser<Q> collapser_;
+};
+
+// For a grid whose features are fewer than the quadrics have room for.
+class PaddedEngine : public CollapseRun::Engine {
+  public:
+    template <class MakeEngine>
+    PaddedEngine(const GridMesh& grid, int padded, MakeEngine&& make)
+        : channels_(grid.feature.channels), padded_(padded), wide_(grid) {
+        wide_.feature.channels = padded;
+        wide_.feature.data = with_channels(grid.feature.data, channels_, padded);
+        engine_ = make(wide_);
+    }
+    CollapseResult to(const CollapseTarget& target, const Progress& progress) override {
+        CollapseResult level = engine_->to(target, progress);
+        level.mesh.channels = channels_;
+        level.mesh.feature = with_channels(level.mesh.feature, padded_, channels_);
+        return level;
+    }
+
+  private:
+    int channels_, padded_;
+    GridMesh wide_;
+    std::unique_ptr<CollapseRun::Engine> engine_;
+};
+
+std::unique_ptr<CollapseRun::Engine> make_engine(const GridMesh& grid, const CollapseParams& params,
+                                                 const CollapseHooks& hooks) {
+    const int channels = grid.feature.channels;
+    if (channels < 1 || channels > kMaxFeatures)
+        throw Error(ErrorCode::kUsage, cat(channels, " features, expected 1 to ", kMaxFeatures));
+    return with_padded_features(channels, [&](auto padded) -> std::unique_ptr<CollapseRun::Engine> {
+        constexpr int kPadded = padded();
+        const auto make = [&](const GridMesh& g) -> std::unique_ptr<CollapseRun::Engine> {
+            if (params.metric == Metric::kFlattened && params.solver == Solver::kClosed)
+                return std::make_unique<EngineOf<Quadric<kPadded>>>(g, params, hooks);
+            return std::make_unique<EngineOf<DenseQuadric<kPadded>>>(g, params, hooks);
+        };
+        if (channels == kPadded) return make(grid);
+        return std::make_unique<PaddedEngine>(grid, kPadded, make);
+    });
+}
+
+const CollapseHooks kNoHooks;
+
+}  // namespace
+
+CollapseRun::CollapseRun(const GridMesh& grid, const CollapseParams& params)
+    : engine_(make_engine(grid, params, kNoHooks)) {}
+CollapseRun::~CollapseRun() = default;
+CollapseResult CollapseRun::to(const CollapseTarget& target, const Progress& progress) {
+    return engine_->to(target, progress);
+}
+
+std::vector<CollapseResult> collapse_edges(const GridMesh& grid, const CollapseParams& params,
+                                           std::span<const CollapseTarget> targets, const Progress& progress,
+                                           const CollapseHooks& hooks) {
+    const std::unique_ptr<CollapseRun::Engine> engine = make_engine(grid, params, hooks);
+    std::vector<CollapseResult> levels;
+    for (const CollapseTarget& target : targets) {
+        levels.push_back(engine->to(target, progress));
+        if (hooks.reached) hooks.reached(levels.size() - 1, levels.back());
+    }
+    return levels;
+}
+
+CollapseResult collapse_edges(const GridMesh& grid, const CollapseParams& params,
+                              const CollapseTarget& target, const Progress& progress) {
+    return std::move(collapse_edges(grid, params, std::span(&target, 1), progress).front());
+}
+
+}  // namespace imgmesh

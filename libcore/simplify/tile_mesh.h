@@ -1,0 +1,177 @@
+// The dense mesh of one small tile of the picture, which the collapse begins with.
+#pragma once
+
+#include <algorithm>
+#include <vector>
+
+#include "libcore/mesh/masked_rings.h"
+#include "libcore/simplify/edge_collapser.h"
+
+namespace imgmesh {
+
+/// A tile of rings and quadrics stays in a core's own cache.
+inline constexpr int kStartTile = 64;
+
+/// The square tiles of a grid, the last of each row and column perhaps smaller.
+struct StartTiles {
+    explicit StartTiles(const GridMesh& g) : grid(g) {}
+
+    const GridMesh& grid;
+    int across = (grid.feature.width + kStartTile - 1) / kStartTile,
+        down = (grid.feature.height + kStartTile - 1) / kStartTile;
+
+    int count() const { return across * down; }
+    int of(Id vertex) const {
+        const Id pixel = grid.pixel_of(vertex), w = static_cast<Id>(grid.feature.width);
+        return static_cast<int>(pixel / w) / kStartTile * across + static_cast<int>(pixel % w) / kStartTile;
+    }
+    PixelRect rect(int tile) const {
+        const int left = tile % across * kStartTile, top = tile / across * kStartTile;
+        return {left, top, std::min(left + kStartTile, grid.feature.width),
+                std::min(top + kStartTile, grid.feature.height)};
+    }
+};
+
+/// A tile while it collapses. Its vertices that have a neighbour in another tile are sealed, like those on
+/// the outline of a cut-out; such a neighbour is a *ghost*: a place and features, without a ring of its own.
+template <class Q>
+struct TileMesh {
+    CollapseMesh<Q> mesh;      ///< the tile's own vertices row by row, then ghosts
+    std::size_t own = 0;       ///< so many
+    std::int64_t live = 0;     ///< of them
+    std::int64_t outline = 0;  ///< of them on the outline of a cut-out
+    std::int64_t halved = 0;   ///< vertices at which quadrics are to be rebuilt next
+};
+
+namespace tile_mesh {
+
+inline bool contains(const PixelRect& rect, int x, int y) {
+    return x >= rect.left && x < rect.right && y >= rect.top && y < rect.bottom;
+}
+
+// A ring of pixel (x, y) whose neighbours are named by their numbers in the grid mesh gets the tile's:
+// local(number, x, y) of those inside, and new ghosts.
+template <class Q, class Local>
+void localize(const GridMesh& grid, const PixelRect& rect, CollapseMesh<Q>& mesh, Ring& ring,
+              const Local& local) {
+    const Id w = static_cast<Id>(grid.feature.width);
+    for (int k = 0; k < ring.valence; ++k) {
+        Id& n = ring.neighbor[k];
+        const Id pixel = grid.pixel_of(n);
+        const int x = static_cast<int>(pixel % w), y = static_cast<int>(pixel / w);
+        if (contains(rect, x, y)) {
+            n = local(n, x, y);
+            continue;
+        }
+        ring.sealed = 1;
+        mesh.pixel.push_back(n);
+        n = static_cast<Id>(mesh.pixel.size() - 1);
+    }
+}
+
+// Rings and quadrics of what localize() has added to mesh.pixel.
+template <class Q>
+void add_ghosts(const GridMesh& grid, CollapseMesh<Q>& mesh) {
+    const std::size_t own = mesh.rings.size();
+    mesh.rings.resize(mesh.pixel.size());
+    mesh.quadrics.resize(mesh.pixel.size());
+    for (std::size_t v = own; v < mesh.pixel.size(); ++v) {
+        const Id number = mesh.pixel[v];
+        const Vec2f at = vertex_place(grid, number);
+        mesh.quadrics[v].px = mesh.rings[v].x = at.x();
+        mesh.quadrics[v].py = mesh.rings[v].y = at.y();
+        std::copy_n(grid.feature.pixel(number), Q::kChannels, mesh.quadrics[v].s);
+    }
+}
+
+// Without a mask, or where it leaves the tile and two pixels around it whole.
+template <class Q>
+void fill_whole(const GridMesh& grid, const FeaturePatch& gradients, float lambda, const PixelRect& rect,
+                CollapseMesh<Q>& mesh) {
+    const Id w = static_cast<Id>(grid.feature.width), stride = static_cast<Id>(rect.width());
+    const std::size_t own = stride * static_cast<std::size_t>(rect.height());
+    const std::size_t most = own + 6 * (stride + static_cast<std::size_t>(rect.height()));  // with ghosts
+    mesh.rings.reserve(most);
+    mesh.quadrics.reserve(most);
+    mesh.rings.resize(own);
+    mesh.pixel.resize(own);
+    mesh.quadrics.resize(own);
+    vertex_quadrics(grid, gradients, lambda, rect, mesh.quadrics.data());
+    const auto local = [&](Id, int x, int y) {
+        return static_cast<Id>(y - rect.top) * stride + static_cast<Id>(x - rect.left);
+    };
+    Id v = 0;
+    for (int y = rect.top; y < rect.bottom; ++y)
+        for (int x = rect.left; x < rect.right; ++x, ++v) {
+            mesh.pixel[v] = static_cast<Id>(y) * w + static_cast<Id>(x);
+            if (x > rect.left && x + 1 < rect.right && y > rect.top && y + 1 < rect.bottom) {
+                mesh.rings[v] = inner_ring(grid, x, y, v, stride);
+            } else {
+                mesh.rings[v] = grid_ring(grid, x, y);
+                localize(grid, rect, mesh, mesh.rings[v], local);
+            }
+        }
+    add_ghosts(grid, mesh);
+}
+
+template <class Q>
+void fill_masked(const GridMesh& grid, const FeaturePatch& gradients, float lambda, const PixelRect& rect,
+                 CollapseMesh<Q>& mesh) {
+    mesh.rings.clear();
+    mesh.pixel.clear();
+    Id first[kStartTile * kStartTile];  // of a pixel's vertices
+    const auto place = [&](int x, int y) { return (y - rect.top) * kStartTile + x - rect.left; };
+    for (int y = rect.top; y < rect.bottom; ++y)
+        for (int x = rect.left; x < rect.right; ++x) {
+            first[place(x, y)] = static_cast<Id>(mesh.rings.size());
+            if (!grid.mask.at(x, y)) continue;
+            const PixelRings pixel = masked_pixel_rings(grid, x, y);
+            for (std::size_t n = 0; n < pixel.count; ++n) {
+                mesh.rings.push_back(pixel.ring[n]);
+                mesh.pixel.push_back(pixel.vertex[n]);
+            }
+        }
+    for (Ring& ring : mesh.rings) {
+        localize(grid, rect, mesh, ring, [&](Id number, int x, int y) {
+            Id v = first[place(x, y)];
+            while (mesh.pixel[v] != number) ++v;
+            return v;
+        });
+        ring.sealed |= ring.border();
+    }
+    const std::size_t own = mesh.rings.size();
+    add_ghosts(grid, mesh);
+    std::vector<Q> quadrics = vertex_quadrics<Q::kChannels>(grid, mesh.rings, mesh.pixel, gradients, lambda);
+    std::copy_n(quadrics.begin(), own, mesh.quadrics.begin());
+}
+
+inline bool whole(const GridMesh& grid, const PixelRect& rect) {
+    if (grid.mask.empty()) return true;
+    for (int y = rect.top - 2; y < rect.bottom + 2; ++y)
+        for (int x = rect.left - 2; x < rect.right + 2; ++x)
+            if (!grid.mask.at(x, y)) return false;
+    return true;
+}
+
+}  // namespace tile_mesh
+
+/// Makes `tile` the part of the dense mesh that has the vertices of the pixels in `rect`.
+template <class Q>
+void fill_tile(const GridMesh& grid, const CollapseParams& params, const PixelRect& rect, TileMesh<Q>& tile) {
+    const FeaturePatch gradients = smoothed_patch(grid, params.smoothing, rect);
+    const float lambda = params.geometry_weight;
+    if (tile_mesh::whole(grid, rect))
+        tile_mesh::fill_whole(grid, gradients, lambda, rect, tile.mesh);
+    else
+        tile_mesh::fill_masked(grid, gradients, lambda, rect, tile.mesh);
+    const auto live = [](const Ring& ring) { return ring.live(); };
+    const auto end = std::find_if_not(tile.mesh.rings.begin(), tile.mesh.rings.end(), live);
+    tile.own = static_cast<std::size_t>(end - tile.mesh.rings.begin());
+    tile.live = end - tile.mesh.rings.begin();
+    tile.outline = grid.mask.empty() ? 0 : std::count_if(tile.mesh.rings.begin(), end, [](const Ring& ring) {
+        return ring.border();
+    });
+    tile.halved = tile.live / 2;
+}
+
+}  // namespace imgmesh

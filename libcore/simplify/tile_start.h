@@ -1,0 +1,216 @@
+// The first part of the collapse, which takes most vertices away: small tiles of the picture by themselves.
+// The dense mesh, of which they are parts, never exists as a whole.
+#pragma once
+
+#include <algorithm>
+#include <atomic>
+#include <thread>
+#include <vector>
+
+#include "libcore/base/parallel.h"
+#include "libcore/base/parallel_vector.h"
+#include "libcore/simplify/tile_mesh.h"
+
+namespace imgmesh {
+
+// Of a threshold from one round of tiles to the next.
+inline constexpr float kTileWindow = 2.0f;
+
+// Tiles that one engine works off, one after the other.
+inline constexpr int kStartTilesPerBlock = 4;
+// Tiles whose survivors are kept one by one before they are put together.
+inline constexpr int kStartTilesAtATime = 512;
+
+/// The threshold at which `share` of the vertices would be left, found out on some of the tiles; to a factor
+/// of kTileWindow, rather too low.
+template <class Q>
+float start_threshold(const GridMesh& grid, const CollapseRules& rules, double share);
+
+/// Collapses edges below `threshold` in every tile of the grid, as long as at most `share_that_goes` of its
+/// vertices go; vertices next to another tile stay, and those on the outline of a cut-out.
+///
+/// share     of the vertices that is expected to be left
+/// left      out: what is left, vertices tile by tile, in the grid's order within each
+/// progress  is told how many vertices are gone so far
+template <class Q, class Progress>
+Tally start_in_tiles(const GridMesh& grid, const CollapseRules& rules, float threshold, double share,
+                     double share_that_goes, CollapseMesh<Q>& left, const Progress& progress);
+
+namespace tile_start {
+
+// Among the neighbours in what survivors() returns: a neighbour in another tile, by its pixel.
+inline constexpr Id kElsewhere = 1u << 31;
+
+// Collapses the tile's edges below `threshold`, rebuilding quadrics at every halving of its vertices where
+// that is asked for. What their neighbours in other tiles look like is known then: they too are sealed.
+template <class Q>
+Tally collapse_tile(EdgeCollapser<Q>& engine, const CollapseParams& params, TileMesh<Q>& tile,
+                    float threshold, std::int64_t may_go) {
+    Tally sum;
+    for (;;) {
+        std::int64_t part_may = may_go - sum.vertices;
+        if (params.rebuild_quadrics) part_may = std::min(part_may, tile.live - tile.halved);
+        const Tally part = engine.run(tile.own, [](std::size_t v) { return static_cast<Id>(v); }, threshold,
+                                      {.vertices = part_may, .faces = kAllMayGo.faces});
+        // What is put off while quadrics are old may be cheaper now.
+        sum.postponed = kNever;
+        sum.add(part);
+        tile.live -= part.vertices;
+        const bool halved = params.rebuild_quadrics && part.vertices > 0 && tile.live <= tile.halved;
+        if (!halved || sum.vertices >= may_go) return sum;
+        const std::vector<Q> rebuilt = rebuilt_quadrics(tile.mesh.rings, tile.mesh.quadrics, params);
+        std::copy_n(rebuilt.begin(), tile.own, tile.mesh.quadrics.begin());  // ghosts stay as they are
+        tile.halved = tile.live / 2;
+    }
+}
+
+// What has survived, numbered from 0 on; writes these numbers to number[vertex].
+template <class Q>
+CollapseMesh<Q> survivors(const TileMesh<Q>& tile, std::vector<Id>& number) {
+    const CollapseMesh<Q>& mesh = tile.mesh;
+    const std::vector<Id> live = live_list(mesh.rings);
+    for (Id n = 0; n < live.size(); ++n) number[mesh.pixel[live[n]]] = n;
+    CollapseMesh<Q> out;
+    out.rings.reserve(live.size());
+    out.quadrics.reserve(live.size());
+    out.pixel.reserve(live.size());
+    for (const Id v : live) {
+        Ring ring = mesh.rings[v];
+        for (int k = 0; k < ring.valence; ++k)
+            if (Id& n = ring.neighbor[k]; n < tile.own)
+                n = number[mesh.pixel[n]];
+            else
+                n = mesh.pixel[n] | kElsewhere;
+        ring.version = 0;
+        ring.sealed = 0;
+        out.rings.push_back(ring);
+        out.quadrics.push_back(mesh.quadrics[v]);
+        out.pixel.push_back(mesh.pixel[v]);
+    }
+    return out;
+}
+
+template <class T>
+void append(std::vector<T>& to, const std::vector<T>& part) {
+    to.insert(to.end(), part.begin(), part.end());
+}
+
+// Names neighbours by their place in the whole: first[t] is where the vertices of tile t begin.
+inline void join(const StartTiles& tiles, const std::vector<Id>& first, const std::vector<Id>& number,
+                 RingMesh& rings) {
+    parallel_blocks(0, tiles.count(), kStartTilesPerBlock, [&](int begin, int end) {
+        for (auto t = static_cast<std::size_t>(begin); t < static_cast<std::size_t>(end); ++t)
+            for (Id v = first[t]; v < first[t + 1]; ++v)
+                for (int k = 0; k < rings[v].valence; ++k) {
+                    Id& n = rings[v].neighbor[k];
+                    const Id vertex = n & ~kElsewhere;
+                    n = n & kElsewhere ? first[static_cast<std::size_t>(tiles.of(vertex))] + number[vertex]
+                                       : first[t] + n;
+                }
+    });
+}
+
+// Tiles all over the picture.
+inline std::vector<int> some_tiles(const StartTiles& tiles) {
+    const int count = std::clamp(tiles.count() / 32, 1, 16);
+    std::vector<int> some;
+    for (int n = 0; n < count; ++n) some.push_back((2 * n + 1) * tiles.count() / (2 * count));
+    return some;
+}
+
+template <class Q>
+float median_cost(CollapseMesh<Q>& mesh, const CollapseRules& rules) {
+    std::vector<float> costs;
+    EdgeCollapser<Q> engine(mesh, rules);
+    for (Id v = 0; v < mesh.rings.size(); ++v)
+        if (const Ring& ring = mesh.rings[v]; ring.live() && !ring.sealed)
+            if (const float cost = engine.cost(v, ring.neighbor[0]); cost < kNever) costs.push_back(cost);
+    if (costs.empty()) return 0;
+    std::nth_element(costs.begin(), costs.begin() + costs.size() / 2, costs.end());
+    return costs[costs.size() / 2];
+}
+
+}  // namespace tile_start
+
+template <class Q>
+float start_threshold(const GridMesh& grid, const CollapseRules& rules, double share) {
+    using namespace tile_start;
+    const StartTiles tiles(grid);
+    const std::vector<int> some = some_tiles(tiles);
+    std::vector<TileMesh<Q>> meshes(some.size());
+    std::vector<float> medians(some.size());
+    const auto each = [&](const auto& body) {
+        parallel_blocks(0, static_cast<int>(some.size()), 1,
+                        [&](int n, int) { body(static_cast<std::size_t>(n)); });
+    };
+    each([&](std::size_t n) {
+        fill_tile(grid, rules.params, tiles.rect(some[n]), meshes[n]);
+        medians[n] = median_cost(meshes[n].mesh, rules);
+    });
+    std::int64_t all = 0, gone = 0;
+    for (const TileMesh<Q>& tile : meshes) all += tile.live - tile.outline;
+    std::nth_element(medians.begin(), medians.begin() + medians.size() / 2, medians.end());
+    float threshold = std::max(medians[medians.size() / 2], std::numeric_limits<float>::min());
+    for (float next = threshold;; next *= kTileWindow) {
+        std::vector<Tally> tallies(some.size());
+        each([&](std::size_t n) {
+            EdgeCollapser<Q> engine(meshes[n].mesh, rules);
+            tallies[n] = collapse_tile(engine, rules.params, meshes[n], next, kAllMayGo.vertices);
+        });
+        Tally sum;
+        for (const Tally& tally : tallies) sum.add(tally);
+        gone += sum.vertices;
+        if (static_cast<double>(gone) > (1 - share) * static_cast<double>(all)) return threshold;
+        threshold = next;
+        if (sum.postponed == kNever) return threshold;
+        while (next < sum.postponed && sum.vertices == 0) next *= kTileWindow;
+    }
+}
+
+template <class Q, class Progress>
+Tally start_in_tiles(const GridMesh& grid, const CollapseRules& rules, float threshold, double share,
+                     double share_that_goes, CollapseMesh<Q>& left, const Progress& progress) {
+    using namespace tile_start;
+    const StartTiles tiles(grid);
+    // Room that is not touched costs nothing.
+    const auto expected = static_cast<std::size_t>(1.3 * share * static_cast<double>(grid.vertex_count()));
+    left.rings.reserve(expected);
+    left.quadrics.reserve(expected);
+    left.pixel.reserve(expected);
+    std::vector<Id> first(static_cast<std::size_t>(tiles.count()) + 1, 0);
+    std::vector<Id> number = parallel_vector<Id>(grid.vertex_count());
+    Tally sum;
+    std::atomic<std::int64_t> gone = 0;
+    const std::thread::id caller = std::this_thread::get_id();
+    // Some tiles at a time, so that their parts' memory serves again and again.
+    for (int begin = 0; begin < tiles.count(); begin += kStartTilesAtATime) {
+        const int end = std::min(begin + kStartTilesAtATime, tiles.count());
+        std::vector<CollapseMesh<Q>> parts(static_cast<std::size_t>(end - begin));
+        std::vector<Tally> tallies(parts.size());
+        parallel_blocks(begin, end, kStartTilesPerBlock, [&](int from, int to) {
+            TileMesh<Q> tile;
+            EdgeCollapser<Q> engine(tile.mesh, rules);
+            for (int t = from; t < to; ++t) {
+                const auto n = static_cast<std::size_t>(t - begin);
+                fill_tile(grid, rules.params, tiles.rect(t), tile);
+                const auto may_go = static_cast<std::int64_t>(share_that_goes *
+                                                              static_cast<double>(tile.live - tile.outline));
+                tallies[n] = collapse_tile(engine, rules.params, tile, threshold, may_go);
+                parts[n] = survivors(tile, number);
+                gone += tallies[n].vertices;
+            }
+            if (std::this_thread::get_id() == caller) progress(gone);
+        });
+        for (std::size_t n = 0; n < parts.size(); ++n) {
+            sum.add(tallies[n]);
+            append(left.rings, parts[n].rings);
+            append(left.quadrics, parts[n].quadrics);
+            append(left.pixel, parts[n].pixel);
+            first[static_cast<std::size_t>(begin) + n + 1] = static_cast<Id>(left.rings.size());
+        }
+    }
+    join(tiles, first, number, left.rings);
+    return sum;
+}
+
+}  // namespace imgmesh

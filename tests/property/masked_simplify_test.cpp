@@ -1,0 +1,274 @@
+// What must hold for the mesh of any cut-out: its topology, that it covers the mask, and that it stays close.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "libcore/base/parallel.h"
+#include "libcore/mesh/raster.h"
+#include "libcore/metrics/metrics.h"
+#include "libcore/simplify/mask_boundary.h"
+#include "libcore/simplify/simplify.h"
+#include "tests/support/mesh_cover.h"
+#include "tests/support/sample_masks.h"
+#include "tests/support/sample_pictures.h"
+
+using namespace imgmesh;
+using namespace imgmesh::test;
+
+namespace {
+
+GridMesh cut_out(const Mask& mask, Kind kind = Kind::kNoise) {
+    return grid_mesh(sample_feature(kind, mask.width, mask.height), mask);
+}
+
+BaseMesh dense_mesh(const GridMesh& grid) {
+    BaseMesh mesh;
+    const RingMesh rings = ring_mesh(grid);
+    const std::vector<Id> live = live_list(rings);
+    mesh.faces = ring_faces(rings, live);
+    for (const Id v : live) mesh.position.emplace_back(rings[v].x, rings[v].y);
+    mesh.feature.resize(3 * live.size());
+    return mesh;
+}
+
+BaseMesh coarse_mesh(const GridMesh& grid, std::int64_t vertices) {
+    return collapse_edges(grid, {}, CollapseTarget{.vertices = vertices}).mesh;
+}
+
+// Straight from the rule: two triangles for a cell of four, one for three; n pixels of a bare run make 2 (n -
+// 1), a bare pixel alone makes 2. By flags a cell, and not by looking around a pixel.
+std::int64_t expected_faces(const Mask& m, double& area) {
+    std::int64_t faces = 0;
+    std::vector<bool> covered(m.inside.size());
+    const auto index = [&](int x, int y) { return static_cast<std::size_t>(y * m.width + x); };
+    for (int y = 0; y + 1 < m.height; ++y)
+        for (int x = 0; x + 1 < m.width; ++x) {
+            int inside = 0;
+            for (const int k : {0, 1, 2, 3}) inside += m.at(x + k % 2, y + k / 2);
+            if (inside < 3) continue;
+            faces += inside - 2;
+            for (const int k : {0, 1, 2, 3}) covered[index(x + k % 2, y + k / 2)] = true;
+        }
+    area = 0.5 * static_cast<double>(faces);
+    const auto bare = [&](int x, int y) { return m.at(x, y) && !covered[index(x, y)]; };
+    for (int y = 0; y < m.height; ++y)
+        for (int x = 0; x < m.width; ++x) {
+            if (!bare(x, y)) continue;
+            const bool linked = bare(x - 1, y) || bare(x + 1, y) || bare(x, y - 1) || bare(x, y + 1);
+            const int quads = linked ? bare(x + 1, y) + bare(x, y + 1) : 1;
+            faces += 2 * quads;
+            area += quads;
+        }
+    return faces;
+}
+
+// Nothing that the dense mesh covers is left bare, and nothing is covered twice.
+void check_hull(const BaseMesh& mesh, const BaseMesh& dense, const Mask& mask) {
+    const std::vector<int> before = faces_over_points(dense, mask.width, mask.height),
+                           after = faces_over_points(mesh, mask.width, mask.height);
+    int bare = 0, twice = 0;
+    for (std::size_t i = 0; i < before.size(); ++i) {
+        bare += after[i] < before[i];
+        twice += after[i] > 1;
+    }
+    CHECK(bare == 0);
+    CHECK(twice == 0);
+}
+
+void check_topology(const BaseMesh& mesh, const MeshQuality& dense) {
+    const MeshQuality q = mesh_quality(mesh);
+    CHECK(q.components == dense.components);
+    CHECK(q.euler == dense.euler);
+    CHECK(q.nonmanifold_edges + q.nonmanifold_vertices + q.flipped_faces == 0);
+    CHECK(q.area >= dense.area);
+}
+
+void check_covers(const BaseMesh& mesh, const Mask& mask) {
+    const PixelMap map = rasterize(mesh, sample_grid(mask.width, mask.height, 1));
+    std::int64_t uncovered = 0;
+    for (std::size_t i = 0; i < map.coords.size(); ++i)
+        uncovered += mask.contains(i) && map.coords[i].face == kNone;
+    CHECK(uncovered == 0);
+}
+
+}  // namespace
+
+// Small enough to count by hand. Vertices, faces, components, and Euler characteristic.
+TEST_CASE("cut-outs: the dense mesh of small masks") {
+    struct Case {
+        std::vector<std::string> rows;
+        std::size_t vertices, faces;
+        std::int64_t components, euler;
+    };
+    for (const Case& c : {
+             Case{{"##", "##"}, 4, 2, 1, 1}, Case{{"#.", "##"}, 3, 1, 1, 1},
+             Case{{"#.", ".#"}, 8, 4, 2, 2},                                     // two squares
+             Case{{"####"}, 8, 6, 1, 1},                                         // a strip
+             Case{{"#", "#", ".", "#"}, 8, 4, 2, 2},                             // a strip and a square
+             Case{{"#####", "#####", "##.##", "#####", "#####"}, 24, 28, 1, 0},  // a hole
+             Case{{"###", "#.#", "###"}, 12, 4, 4, 4},                           // a triangle at each corner
+             Case{{"##.", "###", ".##"}, 7, 6, 1, 1},                            // a band along the diagonal
+             Case{{"##..", "##..", "..##", "..##"}, 8, 4, 2, 2},  // islands that touch at no vertex
+             Case{{"##.##", "#####", "##.##"}, 14, 12, 2, 2},     // joined at one pixel, which is split
+             Case{{"##.##", "##.##", "..#..", "##.##", "##.##"}, 20, 10, 5, 5},
+             Case{{"##...", "##...", ".####", "...##"}, 11, 7, 2, 2},
+             Case{{"##..##", "######", "##..##"}, 14, 12, 2, 2},    // a line between, of no pixel of its own
+             Case{{"##...##", "#######", "##...##"}, 18, 14, 3, 3}  // and of one
+         }) {
+        INFO(c.rows[0] << " " << c.rows.size());
+        const BaseMesh mesh = dense_mesh(cut_out(mask_of(c.rows)));
+        const MeshQuality q = mesh_quality(mesh);
+        CHECK(mesh.vertex_count() == c.vertices);
+        CHECK(mesh.faces.size() == c.faces);
+        CHECK(q.components == c.components);
+        CHECK(q.euler == c.euler);
+        CHECK(q.nonmanifold_edges + q.nonmanifold_vertices + q.flipped_faces == 0);
+    }
+}
+
+// A pixel with triangles to its left and right and none between them is two vertices.
+TEST_CASE("cut-outs: a pinch is split") {
+    const GridMesh pinched = cut_out(mask_of({"#.#", "###", "#.#"}));
+    // Left: triangles (0,0) (0,1) (1,1) and (0,1) (0,2) (1,1); right likewise: the middle is shared by both.
+    REQUIRE(pinched.copies == std::vector<Id>{4});
+    const RingMesh rings = ring_mesh(pinched);
+    CHECK(rings[4].valence == 3);
+    CHECK(rings[9].valence == 3);
+    CHECK(rings[9].x == 1);
+    CHECK(rings[9].y == 1);
+    CHECK(mesh_quality(dense_mesh(pinched)).components == 2);
+}
+
+TEST_CASE("cut-outs: the dense mesh has the faces that the cells say, once each") {
+    for (const auto& [name, mask] : sample_masks(40)) {
+        INFO(name);
+        const BaseMesh mesh = dense_mesh(cut_out(mask));
+        double area = 0;
+        CHECK(static_cast<std::int64_t>(mesh.faces.size()) == expected_faces(mask, area));
+        const MeshQuality q = mesh_quality(mesh);
+        CHECK(q.area == area);
+        CHECK(q.nonmanifold_edges + q.nonmanifold_vertices + q.flipped_faces == 0);
+        check_covers(mesh, mask);
+    }
+}
+
+TEST_CASE("cut-outs: a mask with all pixels inside is meshed as if there were none") {
+    const Mask full = mask_where(30, 22, [](int, int) { return true; });
+    const BaseMesh with = dense_mesh(cut_out(full)), without = dense_mesh(cut_out(Mask{30, 22, {}}));
+    CHECK(with.position == without.position);
+    CHECK(with.faces == without.faces);
+}
+
+TEST_CASE("cut-outs: topology is kept, every pixel stays covered, and the outline stays close") {
+    for (const auto& [name, mask] : sample_masks(40))
+        for (const Kind kind : {Kind::kNoise, Kind::kConstant, Kind::kDisc}) {
+            const GridMesh grid = cut_out(mask, kind);
+            const BaseMesh dense = dense_mesh(grid);
+            const MeshQuality dense_quality = mesh_quality(dense);
+            for (const std::int64_t vertices : {200, 0}) {
+                INFO(name << ", " << name_of(kind) << ", " << vertices << " vertices");
+                const BaseMesh mesh = coarse_mesh(grid, vertices);
+                check_topology(mesh, dense_quality);
+                check_covers(mesh, mask);
+                if (vertices != 0) continue;
+                check_hull(mesh, dense, mask);
+                const auto from = outline(dense), to = outline(mesh);
+                for (const auto& [a, b] : from)  // the pixels are covered: so is what lies between them
+                    if (!covers(mesh, (a + b) / 2)) FAIL_CHECK("the outline at " << a << " is cut off");
+                CHECK(distance_from_to(from, to) <= kOutlineBand + 1e-4);
+                CHECK(distance_from_to(to, from) <= kOutlineBand + 1e-4);
+            }
+        }
+}
+
+TEST_CASE("cut-outs: masks at random keep topology, pixels and distance") {
+    for (std::uint32_t seed = 1; seed <= 150; ++seed) {
+        INFO("seed " << seed);
+        const Mask mask = random_mask(seed);
+        const GridMesh grid = cut_out(mask, kAllKinds[seed % 5]);
+        const BaseMesh dense = dense_mesh(grid);
+        const CollapseTarget targets[] = {{.vertices = static_cast<std::int64_t>(dense.vertex_count()) / 2},
+                                          {.vertices = 0}};
+        for (const CollapseResult& level :
+             collapse_edges(grid, {.geometry_weight = seed % 2 ? 3.0f : 0.01f}, targets)) {
+            check_topology(level.mesh, mesh_quality(dense));
+            check_covers(level.mesh, mask);
+            check_hull(level.mesh, dense, mask);
+            CHECK(distance_from_to(outline(dense), outline(level.mesh)) <= kOutlineBand + 1e-4);
+            CHECK(distance_from_to(outline(level.mesh), outline(dense)) <= kOutlineBand + 1e-4);
+        }
+    }
+}
+
+// A ring around a circle of radius r and one pixel thick has room for pi / acos(1 - 1 / r) edges at the
+// least, 16 for this disc, a rounded one of pixels for some more. Stairs of every slope become straight.
+TEST_CASE("cut-outs: outlines become simple") {
+    const GridMesh disc = cut_out(sample_masks(120)[0].mask, Kind::kConstant);
+    CHECK(coarse_mesh(disc, 0).vertex_count() <= 55);
+    for (const int slope : {1, 2, 3, 7, 20}) {
+        const Mask triangle =
+            mask_where(80, 60, [&](int x, int y) { return x + slope * y <= 76 && x >= 2 && y >= 1; });
+        CHECK(coarse_mesh(cut_out(triangle, Kind::kConstant), 0).vertex_count() <= 12);
+    }
+    const Mask rectangle =
+        mask_where(60, 40, [](int x, int y) { return x > 3 && x < 50 && y > 5 && y < 30; });
+    const BaseMesh mesh = coarse_mesh(cut_out(rectangle, Kind::kConstant), 0);
+    CHECK(mesh.vertex_count() == 4);
+    CHECK(mesh_quality(mesh).area == 45 * 23);
+}
+
+TEST_CASE("cut-outs: levels, limits and rebuilt quadrics keep the topology") {
+    for (const auto& [name, mask] : sample_masks(48)) {
+        INFO(name);
+        const GridMesh grid = cut_out(mask, Kind::kDisc);
+        const MeshQuality dense = mesh_quality(dense_mesh(grid));
+        const CollapseTarget targets[] = {{.vertices = 600}, {.vertices = 150}, {.vertices = 20}};
+        for (const CollapseParams& params : {CollapseParams{}, CollapseParams{.rebuild_quadrics = true},
+                                             CollapseParams{.max_face_area = 6, .min_shape = 0.4f}})
+            for (const CollapseResult& level : collapse_edges(grid, params, targets)) {
+                check_topology(level.mesh, dense);
+                check_covers(level.mesh, mask);
+                if (params.max_face_area == 6) CHECK(mesh_quality(level.mesh).min_shape >= 0.3999);
+            }
+    }
+}
+
+// Large enough for several rounds of tiles with outlines through them.
+TEST_CASE("cut-outs: tiles keep topology, pixels and distance, the same with any number of threads") {
+    const Mask mask = sample_masks(220)[2].mask;  // a ring
+    const GridMesh grid = cut_out(mask);
+    const BaseMesh first = coarse_mesh(grid, 1500);
+    check_topology(first, mesh_quality(dense_mesh(grid)));
+    check_covers(first, mask);
+    for (const int threads : {1, 2, 3}) {
+        const ThreadLimit limit(threads);
+        const BaseMesh again = coarse_mesh(grid, 1500);
+        CHECK(again.position == first.position);
+        CHECK(again.faces == first.faces);
+    }
+}
+
+TEST_CASE("cut-outs: the same mesh every time, with any number of threads") {
+    const Mask mask = sample_masks(150)[4].mask;
+    const GridMesh grid = cut_out(mask);
+    const BaseMesh first = coarse_mesh(grid, 400);
+    for (const int threads : {1, 3}) {
+        const ThreadLimit limit(threads);
+        const BaseMesh again = coarse_mesh(cut_out(mask), 400);
+        CHECK(again.position == first.position);
+        CHECK(again.faces == first.faces);
+        CHECK(again.feature == first.feature);
+    }
+}
+
+// Red outside would show in the gradients, and so in where vertices go, if it did bleed in.
+TEST_CASE("cut-outs: colours outside do not count") {
+    const Mask mask = sample_masks(40)[2].mask;
+    FeatureImage one = sample_feature(Kind::kGradient, 40, 40), other = one;
+    for (std::size_t i = 0; i < other.pixel_count(); ++i)
+        if (!mask.contains(i)) std::fill_n(other.pixel(i), 3, 90.0f);
+    const BaseMesh a = coarse_mesh(grid_mesh(one, mask), 60), b = coarse_mesh(grid_mesh(other, mask), 60);
+    CHECK(a.position == b.position);
+    CHECK(a.feature == b.feature);
+}

@@ -1,0 +1,59 @@
+#include "tools/common/huge_pages.h"
+
+#include <sys/mman.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdlib>
+#include <new>
+
+namespace imgmesh {
+void use_large_pages() {}
+}  // namespace imgmesh
+
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+namespace {
+
+constexpr std::size_t kPage = std::size_t{1} << 21;
+
+void* allocate(std::size_t size, std::size_t alignment) {
+    const bool large = size >= kPage;
+    if (large) alignment = std::max(alignment, kPage);
+    for (;;) {
+        void* block = nullptr;
+        if (alignment <= alignof(std::max_align_t))
+            block = std::malloc(std::max<std::size_t>(size, 1));
+        else if (::posix_memalign(&block, alignment, size) != 0)
+            block = nullptr;
+        if (block) {
+            // What is left of a page stays in small ones. A kernel without large pages says no: none then.
+            if (large) ::madvise(block, size / kPage * kPage, MADV_HUGEPAGE);
+            return block;
+        }
+        const std::new_handler handler = std::get_new_handler();
+        if (!handler) throw std::bad_alloc();
+        handler();
+    }
+}
+
+}  // namespace
+
+void* operator new(std::size_t size) {
+    return allocate(size, 1);
+}
+void* operator new(std::size_t size, std::align_val_t alignment) {
+    return allocate(size, static_cast<std::size_t>(alignment));
+}
+void operator delete(void* block) noexcept {
+    std::free(block);
+}
+void operator delete(void* block, std::size_t) noexcept {
+    std::free(block);
+}
+void operator delete(void* block, std::align_val_t) noexcept {
+    std::free(block);
+}
+void operator delete(void* block, std::size_t, std::align_val_t) noexcept {
+    std::free(block);
+}
+#endif
