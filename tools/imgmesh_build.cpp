@@ -234,7 +234,7 @@ Mask read_mask(const Options& o) {
     if (o.mask.empty()) return {};
     const Image picture = read_image(o.mask, {}, o.limits);
     try {
-        return picture_mask(picture, static_cast<float>(o.alpha_threshold));
+        return image_mask(picture, static_cast<float>(o.alpha_threshold));
     } catch (const Error& e) {
         throw Error(e.code(), cat(o.mask, ": ", e.what()));
     }
@@ -271,7 +271,7 @@ Report build_one(const Job& job, const Options& o, const Context& context, const
     // The figures are those of what a reader gets.
     const Container written = read_container(job.output);
     Report levels = Report::array();
-    const std::vector<std::string> plain = split_names(written.mesh_image.source.channel_names).plain;
+    const std::vector<std::string> plain = split_names(written.mesh_image.source.channel_names).auxiliary;
     for (std::size_t k = 0; k < written.mesh_image.levels.size(); ++k) {
         const Level& level = written.mesh_image.levels[k];
         levels.push_back({{"vertices", level.mesh.vertex_count()},
@@ -282,7 +282,7 @@ Report build_one(const Job& job, const Options& o, const Context& context, const
                           {"flipped_pixel_triangles", map_quality(level.mesh, level.map).flipped_triangles},
                           {"mean_edge_ratio", mesh_quality(level.mesh).mean_edge_ratio}});
         for (std::size_t c = 0; c < plain.size(); ++c)
-            levels.back()["channel_rms"][plain[c]] = result.report.levels[k].plain_rms[c];
+            levels.back()["channel_rms"][plain[c]] = result.report.levels[k].auxiliary_rms[c];
     }
     const double bytes = static_cast<double>(written.facts.total_bytes);
     const BuildSeconds& seconds = result.report.seconds;
@@ -291,7 +291,7 @@ Report build_one(const Job& job, const Options& o, const Context& context, const
                   {"width", image.width},
                   {"height", image.height},
                   {"color_space", color_space_name(image.color_space)},
-                  {"has_light", written.mesh_image.source.gamut == Gamut::kLight},
+                  {"has_light", written.mesh_image.source.gamut == Gamut::kHdr},
                   {"alpha", image.channel("A") < 0 ? "none"
                             : cut                  ? "cut"
                                                    : "ignored"},
@@ -369,7 +369,7 @@ void print(const Report& report, std::ostream& out) {
         table.add("size", cat(image["width"], " x ", image["height"], " pixels"));
         if (image["alpha"] != "none") table.add("alpha", image["alpha"].get<std::string>());
         if (image["pixels"] != image["width"].get<std::int64_t>() * image["height"].get<std::int64_t>())
-            table.add("cut-out", cat(image["pixels"], " pixels"));
+            table.add("masked image", cat(image["pixels"], " pixels"));
         table.add("mesh", cat(image["vertices"], " vertices, ", image["faces"], " faces"));
         table.add("error",
                   cat("map ", number("map_rms"), ", Gouraud ", number("gouraud_rms"), " L*u*v* RMS"));

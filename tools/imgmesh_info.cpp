@@ -82,7 +82,7 @@ Report facts_report(const Container& container) {
             {"channels", m.source.channel_names},
             {"color_space", color_space_name(m.source.color_space)},
             {"sample_type", name_of(sample_type_choices(), m.source.sample_type)},
-            {"has_light", m.source.gamut == Gamut::kLight},
+            {"has_light", m.source.gamut == Gamut::kHdr},
             {"has_mask", m.source.has_mask},
             {"has_visits", !m.visits.empty()},
             {"draco", name_of(draco_choices(), facts.draco)},

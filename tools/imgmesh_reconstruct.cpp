@@ -90,11 +90,11 @@ bool writes_channels(const Options& o, const SourceInfo& source) {
                        (o.draw.mode == DrawMode::kMap || o.draw.mode == DrawMode::kGouraud);
     if (names.color.empty() && !holds) {
         std::string list;
-        for (const std::string& name : names.plain) list += (list.empty() ? "" : ", ") + name;
+        for (const std::string& name : names.auxiliary) list += (list.empty() ? "" : ", ") + name;
         throw Error(ErrorCode::kUnsupported, cat(o.input, ": has no colour, its channels are ", list,
                                                  "; they can be written as .exr in mode map or gouraud"));
     }
-    return holds && !names.plain.empty();
+    return holds && !names.auxiliary.empty();
 }
 
 Report run(const Options& o, Context& context) {

@@ -34,7 +34,7 @@ struct ContainerOptions {
 /// Writes `mesh_image`; the extension of `path` (.glb or .gltf) decides the spelling.
 ///
 /// Loses nothing of a MeshImage whose positions lie on kPositionStep, whose colours are 16-bit linear codes
-/// (storable_color, libcore/image/color.h) and whose weights lie on the map's precision grid: read_container
+/// (quantized_color, libcore/image/color.h) and whose weights lie on the map's precision grid: read_container
 /// gives the same mesh and map back, up to the order of vertices and faces and the rotation of corners, which
 /// Draco chooses, and vertices without a face. The .gltf gets its name after what it refers to, and the files
 /// of a container that it replaces go last: at any moment the old container stands there or the new one.

@@ -63,7 +63,7 @@ StoredMesh load_mesh(const AssetLevel& level, View buffer, Findings& findings) {
     copy_to(mesh.faces, cut(buffer, level.indices));
     copy_to(mesh.position, cut(buffer, level.positions));
     copy_to(mesh.color, cut(buffer, level.colors));
-    copy_to(mesh.light, cut(buffer, level.light));
+    copy_to(mesh.hdr, cut(buffer, level.hdr));
     for (const ByteRange& bytes : level.channels) copy_to(mesh.channels.emplace_back(), cut(buffer, bytes));
     copy_to(mesh.texcoord, cut(buffer, level.texcoords));
     return mesh;
@@ -79,7 +79,7 @@ BaseMesh load_level(const AssetLevel& level, const SourceInfo& source, View buff
     const std::size_t before = findings.errors();
     BaseMesh base = base_from_stored(mesh, findings);
     for (const auto& [u, v] : mesh.texcoord) coords.emplace_back(u, v);
-    if (findings.collects() && findings.errors() == before) advise_on_mesh(mesh, level, source, findings);
+    if (findings.collects() && findings.errors() == before) lint_mesh(mesh, level, source, findings);
     return base;
 }
 
@@ -96,7 +96,7 @@ std::vector<LayerPart> load_layers(const Asset& asset, View bytes, Findings& fin
 void add_level_facts(const Asset& asset, View buffer, ContainerFacts& facts) {
     for (const AssetLevel& level : asset.levels) {
         for (const ByteRange& bytes :
-             {level.draco, level.indices, level.positions, level.colors, level.light, level.texcoords})
+             {level.draco, level.indices, level.positions, level.colors, level.hdr, level.texcoords})
             facts.mesh_bytes += bytes.length;
         for (const ByteRange& bytes : level.channels) facts.mesh_bytes += bytes.length;
     }

@@ -63,7 +63,7 @@ AssetLevel store_level(const Level& level, const StoredLayout& layout, std::span
         out.indices = append(buffer, mesh.faces);
         out.positions = append(buffer, mesh.position);
         if (layout.color) out.colors = append(buffer, mesh.color);
-        if (layout.light) out.light = append(buffer, mesh.light);
+        if (layout.hdr) out.hdr = append(buffer, mesh.hdr);
         for (const std::vector<float>& channel : mesh.channels)
             out.channels.push_back(append(buffer, channel));
         if (out.has_texcoords) out.texcoords = append(buffer, mesh.texcoord);
@@ -116,12 +116,12 @@ void write_glb(const std::string& path, Asset& asset, const std::vector<std::uin
 // then they go. A crash in between leaves files that nothing refers to; a signal waits until all is done.
 void write_gltf(const std::string& path, Asset& asset, const std::vector<std::uint8_t>& buffer,
                 const std::vector<std::uint8_t>& layers, const ContainerOptions& options) {
-    const std::vector<std::string> old_files = companions_of(path);
+    const std::vector<std::string> old_files = sidecars_of(path);
     // Ends after the files below do: one placed in vain must go before a signal.
-    std::optional<SwitchOver> switch_over;
+    std::optional<SignalBlocker> switch_over;
     AtomicFile gltf(path, options.overwrite);
-    CompanionFile bin(path, ".bin", buffer);
-    std::optional<CompanionFile> exr;
+    SidecarFile bin(path, ".bin", buffer);
+    std::optional<SidecarFile> exr;
     if (asset.has_layers) exr.emplace(path, ".exr", layers);
     asset.buffer_name = bin.name();
     if (exr) asset.layers_name = exr->name();

@@ -32,8 +32,8 @@ bool has_content(const fs::path& path, std::span<const std::uint8_t> bytes) {
     }
 }
 
-// Whether a CompanionFile of `path` could be called that.
-bool is_companion_name(const fs::path& path, const fs::path& name) {
+// Whether a SidecarFile of `path` could be called that.
+bool is_sidecar_name(const fs::path& path, const fs::path& name) {
     const std::string stem = path.stem().string(), found = name.stem().string();
     if (name.extension() != ".bin" && name.extension() != ".exr") return false;
     if (found == stem) return true;
@@ -43,8 +43,8 @@ bool is_companion_name(const fs::path& path, const fs::path& name) {
 
 }  // namespace
 
-CompanionFile::CompanionFile(const std::string& path, const std::string& extension,
-                             std::span<const std::uint8_t> bytes) {
+SidecarFile::SidecarFile(const std::string& path, const std::string& extension,
+                         std::span<const std::uint8_t> bytes) {
     const fs::path base(path);
     fs::path target = fs::path(path).replace_extension(extension);
     bool stands = has_content(target, bytes);
@@ -59,22 +59,22 @@ CompanionFile::CompanionFile(const std::string& path, const std::string& extensi
     file_->write(bytes);
 }
 
-void CompanionFile::place() {
+void SidecarFile::place() {
     if (file_) file_->place();
 }
 
-void CompanionFile::keep() {
+void SidecarFile::keep() {
     if (file_) file_->keep();
 }
 
-std::vector<std::string> companions_of(const std::string& path) {
+std::vector<std::string> sidecars_of(const std::string& path) {
     std::vector<std::string> files;
     try {
         constexpr std::uint64_t kMaxJsonBytes = 1 << 24;  // ours have a few kilobytes
         const std::vector<std::uint8_t> bytes = read_file(path, kMaxJsonBytes);
         const Asset asset = asset_from_json({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, {});
         for (const std::string& name : {asset.buffer_name, asset.layers_name})
-            if (!name.empty() && is_companion_name(path, name))
+            if (!name.empty() && is_sidecar_name(path, name))
                 files.push_back((fs::path(path).parent_path() / name).string());
     } catch (const std::exception&) {
         // Absent, or no container that a reader accepts.

@@ -38,7 +38,7 @@ struct Descriptor {
 // More files than slots at one time is no error: those beyond are removed by their destructor alone.
 std::array<std::atomic<const char*>, 256> g_temporaries;
 std::atomic<bool> g_ending = false;
-std::atomic<int> g_switches = 0;  // living SwitchOvers
+std::atomic<int> g_switches = 0;  // living SignalBlockers
 static_assert(std::atomic<const char*>::is_always_lock_free, "a signal handler uses it");
 
 void register_temporary(const char* path) {
@@ -193,7 +193,7 @@ void AtomicFile::flush_and_rename() {
     if (status != 0) fail(path_, overwrite_ ? "cannot write" : "not overwritten", errno);
 }
 
-SwitchOver::SwitchOver() {
+SignalBlocker::SignalBlocker() {
     sigset_t ending;
     ::sigemptyset(&ending);
     for (const int signal : kEndingSignals) ::sigaddset(&ending, signal);
@@ -204,7 +204,7 @@ SwitchOver::SwitchOver() {
     for (;;) ::pause();
 }
 
-SwitchOver::~SwitchOver() {
+SignalBlocker::~SignalBlocker() {
     --g_switches;
     ::pthread_sigmask(SIG_SETMASK, &before_, nullptr);
 }

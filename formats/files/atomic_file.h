@@ -31,7 +31,7 @@ class AtomicFile {
     void write_parts(std::span<const std::span<const std::uint8_t>> parts);
     void commit();
     /// As commit(), but until keep() destruction removes the file, now under its own name: for a file that is
-    /// of no use without another. Only where there was none of this name, and in a SwitchOver.
+    /// of no use without another. Only where there was none of this name, and in a SignalBlocker.
     void place();
     void keep();
 
@@ -48,12 +48,12 @@ class AtomicFile {
 
 /// As long as one lives, the signals of remove_temporaries_on_signals() wait: for a change of several files
 /// that must happen as a whole.
-class SwitchOver {
+class SignalBlocker {
   public:
-    SwitchOver();
-    ~SwitchOver();
-    SwitchOver(const SwitchOver&) = delete;
-    SwitchOver& operator=(const SwitchOver&) = delete;
+    SignalBlocker();
+    ~SignalBlocker();
+    SignalBlocker(const SignalBlocker&) = delete;
+    SignalBlocker& operator=(const SignalBlocker&) = delete;
 
   private:
     sigset_t before_;

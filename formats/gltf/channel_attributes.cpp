@@ -23,12 +23,13 @@ std::string upper_case(const std::string& name) {
 
 StoredLayout layout_of(const SourceInfo& source) {
     const SplitNames names = split_names(source.channel_names);
-    return {!names.color.empty(), !names.color.empty() && source.gamut == Gamut::kLight, names.plain.size()};
+    return {!names.color.empty(), !names.color.empty() && source.gamut == Gamut::kHdr,
+            names.auxiliary.size()};
 }
 
 std::vector<std::string> channel_attributes(const SourceInfo& source) {
     std::vector<std::string> attributes;
-    for (const std::string& name : split_names(source.channel_names).plain) {
+    for (const std::string& name : split_names(source.channel_names).auxiliary) {
         const std::string first = "_CHANNEL_" + upper_case(name);
         std::string attribute = first;
         for (int k = 2; std::ranges::count(attributes, attribute) > 0; ++k) attribute = cat(first, '_', k);

@@ -115,7 +115,7 @@ bool is_attribute(const draco::PointAttribute& a, draco::GeometryAttribute::Type
 }
 
 int attribute_count(const DracoAttributeIds& ids) {
-    return 1 + ids.color.has_value() + ids.light.has_value() + ids.texcoord.has_value() +
+    return 1 + ids.color.has_value() + ids.hdr.has_value() + ids.texcoord.has_value() +
            static_cast<int>(ids.channels.size());
 }
 
@@ -194,7 +194,7 @@ StoredMesh decode(std::span<const std::uint8_t> bytes, const DracoAttributeIds& 
     StoredMesh out;
     copy_values(*mesh, ids.position, draco::GeometryAttribute::POSITION, out.position);
     if (ids.color) copy_values(*mesh, *ids.color, draco::GeometryAttribute::COLOR, out.color);
-    if (ids.light) copy_values(*mesh, *ids.light, draco::GeometryAttribute::GENERIC, out.light);
+    if (ids.hdr) copy_values(*mesh, *ids.hdr, draco::GeometryAttribute::GENERIC, out.hdr);
     for (const std::uint32_t id : ids.channels) {
         std::vector<std::array<float, 1>> values;
         copy_values(*mesh, id, draco::GeometryAttribute::GENERIC, values);
@@ -223,7 +223,7 @@ DracoAttributeIds draco_ids(const StoredLayout& layout) {
     std::uint32_t next = ids.position + 1;
     ids.color.reset();
     if (layout.color) ids.color = next++;
-    if (layout.light) ids.light = next++;
+    if (layout.hdr) ids.hdr = next++;
     for (std::size_t c = 0; c < layout.channels; ++c) ids.channels.push_back(next++);
     if (layout.texture) ids.texcoord = next++;
     return ids;
@@ -247,7 +247,7 @@ DracoMesh encode_draco_mesh(const StoredMesh& mesh, DracoMode mode) {
     };
     if (ids.color) add(draco::DT_UINT16, *ids.color, mesh.color);
     // Floats that no quantisation is asked for are stored as they are.
-    if (ids.light) add(draco::DT_FLOAT32, *ids.light, mesh.light);
+    if (ids.hdr) add(draco::DT_FLOAT32, *ids.hdr, mesh.hdr);
     for (std::size_t c = 0; c < mesh.channels.size(); ++c) {
         std::vector<std::array<float, 1>> values;
         for (const float value : mesh.channels[c]) values.push_back({value});

@@ -16,7 +16,7 @@ class Findings;
 /// The unique ids of the attributes in a bitstream.
 struct DracoAttributeIds {
     std::uint32_t position = 0;
-    std::optional<std::uint32_t> color = 1, light = {};
+    std::optional<std::uint32_t> color = 1, hdr = {};
     std::vector<std::uint32_t> channels = {};
     std::optional<std::uint32_t> texcoord = {};
     bool operator==(const DracoAttributeIds&) const = default;

@@ -33,7 +33,7 @@ struct AssetLevel {
     ByteRange draco;  ///< is_draco: the bitstream and its attributes
     DracoAttributeIds ids;
     ByteRange indices, positions, colors;  ///< else: uint32, 3 float32, 4 uint16, tightly packed
-    ByteRange light = {};                  ///< 3 float32
+    ByteRange hdr = {};                    ///< 3 float32
     std::vector<ByteRange> channels = {};  ///< float32
     ByteRange texcoords = {};              ///< 2 float32
     bool has_texcoords = false;

@@ -47,7 +47,7 @@ void collect_extensions(const json& value, std::set<std::string>& names) {
     }
 }
 
-void advise_on_extensions(const json& document, const Asset& asset, Findings& findings) {
+void lint_extensions(const json& document, const Asset& asset, Findings& findings) {
     std::set<std::string> names;
     collect_extensions(document, names);
     for (const std::string& name : names)
@@ -73,8 +73,8 @@ bool is_near(const json& numbers, std::initializer_list<double> expected) {
     });
 }
 
-void advise_on_node(const json& node, const SourceInfo& source, std::size_t k, const std::string& pointer,
-                    Findings& findings) {
+void lint_node(const json& node, const SourceInfo& source, std::size_t k, const std::string& pointer,
+               Findings& findings) {
     const double scale = 1.0 / std::max(source.width, source.height);
     const bool centred =
         !node.contains("matrix") && !node.contains("rotation") &&
@@ -85,14 +85,14 @@ void advise_on_node(const json& node, const SourceInfo& source, std::size_t k, c
         findings.add("gltf.transform", cat("level ", k, " is placed elsewhere"), at_pointer(pointer));
 }
 
-void advise_on_level(const json& document, const Asset& asset, std::size_t k, Findings& findings) {
+void lint_level(const json& document, const Asset& asset, std::size_t k, Findings& findings) {
     const LevelPlace& place = asset.places[k];
     const std::string at_node = cat("/nodes/", place.node), at_mesh = cat("/meshes/", place.mesh);
     const json& node = element(child(document, "nodes"), place.node);
     const json& mesh = element(child(document, "meshes"), place.mesh);
     if (child(node, "name") != level_name(k))
         findings.add("gltf.names", cat("the node is not named ", level_name(k)), at_pointer(at_node));
-    advise_on_node(node, asset.source, k, at_node, findings);
+    lint_node(node, asset.source, k, at_node, findings);
     if (!asset.levels[k].is_sound) return;
     if (child(mesh, "name") != level_name(k) + "-mesh")
         findings.add("gltf.names", cat("the mesh is not named ", level_name(k), "-mesh"),
@@ -110,7 +110,7 @@ void advise_on_level(const json& document, const Asset& asset, std::size_t k, Fi
         if (name != "POSITION" && name != "COLOR_0" && name != "TEXCOORD_0" && !name.starts_with('_'))
             findings.add("gltf.foreign", cat("attribute ", name, " is not read"),
                          at_pointer(at_mesh + "/primitives/0/attributes/" + pointer_token(name)));
-    advise_on_texture(document, asset, k, findings);
+    lint_texture(document, asset, k, findings);
     if (k == 0) return;
     const AssetLevel &finer = asset.levels[k - 1], &level = asset.levels[k];
     if (finer.is_sound && (level.faces > finer.faces || level.error < finer.error))
@@ -123,7 +123,7 @@ void advise_on_level(const json& document, const Asset& asset, std::size_t k, Fi
                      at_pointer(at_mesh));
 }
 
-void advise_on_scenes(const json& document, const Asset& asset, Findings& findings) {
+void lint_scenes(const json& document, const Asset& asset, Findings& findings) {
     const json& scene = child(document, "scene");
     const json& shown = scene.is_number_unsigned()
                             ? child(element(child(document, "scenes"), scene.get<std::uint64_t>()), "nodes")
@@ -139,7 +139,7 @@ void advise_on_scenes(const json& document, const Asset& asset, Findings& findin
                      at_pointer(cat("/nodes/", asset.places[0].node)));
 }
 
-void advise_on_members(const json& document, const Asset& asset, Findings& findings) {
+void lint_members(const json& document, const Asset& asset, Findings& findings) {
     const auto unknown = [&](const json& object, const std::string& pointer,
                              std::initializer_list<const char*> known) {
         if (!object.is_object()) return;
@@ -161,7 +161,7 @@ void advise_on_members(const json& document, const Asset& asset, Findings& findi
                 {"part", "vertices", "faces", "error", "topology"});
 }
 
-void advise_on_views(const json& document, Findings& findings) {
+void lint_views(const json& document, Findings& findings) {
     struct View {
         std::uint64_t begin, end, index;
     };
@@ -202,7 +202,7 @@ void collect_views(const json& value, std::set<std::uint64_t>& used) {
     }
 }
 
-void advise_on_unused(const json& document, Findings& findings) {
+void lint_unused(const json& document, Findings& findings) {
     std::set<std::uint64_t> views, accessors;
     collect_views(document, views);
     for (const json& mesh : child(document, "meshes"))
@@ -222,7 +222,7 @@ void advise_on_unused(const json& document, Findings& findings) {
     tell("bufferViews", views);
 }
 
-void advise_on_foreign(const json& document, const Asset& asset, Findings& findings) {
+void lint_foreign(const json& document, const Asset& asset, Findings& findings) {
     for (const char* name : {"animations", "skins", "cameras"})
         if (document.contains(name))
             findings.add("gltf.foreign", cat(name, " are not read"), at_pointer(cat('/', name)));
@@ -242,16 +242,16 @@ void advise_on_foreign(const json& document, const Asset& asset, Findings& findi
 
 }  // namespace
 
-void advise_on_gltf(const json& document, const Asset& asset, Findings& findings) {
-    advise_on_extensions(document, asset, findings);
-    advise_on_members(document, asset, findings);
-    advise_on_views(document, findings);
+void lint_gltf(const json& document, const Asset& asset, Findings& findings) {
+    lint_extensions(document, asset, findings);
+    lint_members(document, asset, findings);
+    lint_views(document, findings);
     // A reference that is wrong was told already; what it should have referred to is not.
-    if (findings.errors() == 0) advise_on_unused(document, findings);
-    advise_on_foreign(document, asset, findings);
+    if (findings.errors() == 0) lint_unused(document, findings);
+    lint_foreign(document, asset, findings);
     if (!asset.has_levels) return;
-    advise_on_scenes(document, asset, findings);
-    for (std::size_t k = 0; k < asset.levels.size(); ++k) advise_on_level(document, asset, k, findings);
+    lint_scenes(document, asset, findings);
+    for (std::size_t k = 0; k < asset.levels.size(); ++k) lint_level(document, asset, k, findings);
 }
 
 }  // namespace imgmesh

@@ -11,6 +11,6 @@ class Findings;
 
 /// What a viewer will stumble over, and what imgmesh ignores. `asset` is what could be read of `document`, an
 /// object of any content.
-void advise_on_gltf(const nlohmann::json& document, const Asset& asset, Findings& findings);
+void lint_gltf(const nlohmann::json& document, const Asset& asset, Findings& findings);
 
 }  // namespace imgmesh

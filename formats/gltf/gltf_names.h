@@ -11,7 +11,7 @@ inline constexpr const char* kLod = "MSFT_lod";
 inline constexpr const char* kHiddenColor = "_COLOR";
 inline constexpr const char* kTexcoord = "TEXCOORD_0";
 /// The attribute of linear RGB where light above 1 counts.
-inline constexpr const char* kLight = "_LIGHT";
+inline constexpr const char* kHdr = "_LIGHT";
 inline constexpr const char* kLayersMimeType = "image/x-exr";
 inline constexpr const char* kGenerator = "generator";
 /// In the order of SampleType.

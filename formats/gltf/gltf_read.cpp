@@ -112,7 +112,7 @@ constexpr Element kPositions = {"POSITION", TINYGLTF_COMPONENT_TYPE_FLOAT, TINYG
 constexpr Element kColors = {"COLOR_0", TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT, TINYGLTF_TYPE_VEC4, true, 8};
 constexpr Element kHiddenColors = {kHiddenColor, kColors.component, kColors.type, true, kColors.bytes};
 constexpr Element kTexcoords = {kTexcoord, TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_VEC2, false, 8};
-constexpr Element kLights = {kLight, TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_VEC3, false, 12};
+constexpr Element kLights = {kHdr, TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_VEC3, false, 12};
 
 const tinygltf::Accessor& checked_accessor(const tinygltf::Model& model, std::uint64_t index,
                                            const Element& want, std::uint64_t count) {
@@ -171,7 +171,7 @@ std::vector<FeatureAttribute> feature_attributes(const StoredLayout& layout,
     const bool hidden =
         primitive.attributes.contains(kHiddenColor) && !primitive.attributes.contains("COLOR_0");
     if (layout.color) out.push_back({hidden ? kHiddenColors : kColors, &*level.ids.color, &level.colors});
-    if (layout.light) out.push_back({kLights, &*level.ids.light, &level.light});
+    if (layout.hdr) out.push_back({kLights, &*level.ids.hdr, &level.hdr});
     for (std::size_t c = 0; c < names.size(); ++c)
         out.push_back({{names[c].c_str(), TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_SCALAR, false, 4},
                        &level.ids.channels[c],
@@ -253,7 +253,7 @@ void read_levels(const json& document, const tinygltf::Model& model, const Conta
         const std::size_t node = part->second;
         const int mesh = model.nodes[node].mesh;
         const std::string at_node = cat("/nodes/", node), at_mesh = cat("/meshes/", mesh);
-        if (k == 0 && has_attribute(model, mesh, kLight)) asset.source.gamut = Gamut::kLight;
+        if (k == 0 && has_attribute(model, mesh, kHdr)) asset.source.gamut = Gamut::kHdr;
         AssetLevel level;
         level.is_sound = findings.attempt(cat(at_node, "/extensions/", kPixelMap), [&] {
             level = read_level_member(*extension(node), asset.source, limits);
@@ -326,7 +326,7 @@ Asset asset_from_json(std::string_view text, const ContainerLimits& limits, Find
     asset.has_levels = asset.has_size && asset.has_buffer && findings.attempt("/nodes", [&] {
         read_levels(document, model, limits, findings, asset);
     });
-    if (findings.collects()) advise_on_gltf(document, asset, findings);
+    if (findings.collects()) lint_gltf(document, asset, findings);
     return asset;
 }
 

@@ -96,7 +96,7 @@ std::optional<TextureView> texture_view(const json& document, std::uint64_t mesh
     return TextureView{view.value.get<std::uint64_t>(), type.value.get<std::string>()};
 }
 
-void advise_on_texture(const json& document, const Asset& asset, std::size_t k, Findings& findings) {
+void lint_texture(const json& document, const Asset& asset, std::size_t k, Findings& findings) {
     const std::uint64_t mesh = asset.places[k].mesh;
     const Object primitive = first_primitive(document, mesh);
     const Object attributes = primitive.member("attributes"), texture = base_texture(document, primitive);

@@ -32,7 +32,6 @@ std::optional<TextureView> texture_view(const nlohmann::json& document, std::uin
 
 /// What a validator says of a level's texture: whether viewers show it as it is. `level` is sound, and so
 /// is what texture_view looks at.
-void advise_on_texture(const nlohmann::json& document, const Asset& asset, std::size_t level,
-                       Findings& findings);
+void lint_texture(const nlohmann::json& document, const Asset& asset, std::size_t level, Findings& findings);
 
 }  // namespace imgmesh

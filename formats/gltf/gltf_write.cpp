@@ -86,7 +86,7 @@ tinygltf::Mesh level_mesh(tinygltf::Model& model, const AssetLevel& level, const
             TINYGLTF_TYPE_VEC4, level.colors, *ids.color);
         accessors.back().normalized = true;
     }
-    if (layout.light) add(kLight, TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_VEC3, level.light, *ids.light);
+    if (layout.hdr) add(kHdr, TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_VEC3, level.hdr, *ids.hdr);
     const std::vector<std::string> names = channel_attributes(source);
     for (std::size_t c = 0; c < names.size(); ++c)
         add(names[c], TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_SCALAR,

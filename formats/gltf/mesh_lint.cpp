@@ -9,14 +9,15 @@
 namespace imgmesh {
 namespace {
 
-// A side of one pixel counts as a strip around it, and so do single pixels of a cut-out (docs/format.md).
+// A side of one pixel counts as a strip around it, and so do single pixels of a masked image
+// (docs/format.md).
 std::pair<float, float> span_of(int side, bool has_mask) {
     if (side == 1 || has_mask) return {-0.5f, static_cast<float>(side) - 0.5f};
     return {0.0f, static_cast<float>(side - 1)};
 }
 
-void advise_on_vertices(const StoredMesh& mesh, const AssetLevel& level, const SourceInfo& source,
-                        Findings& findings) {
+void lint_vertices(const StoredMesh& mesh, const AssetLevel& level, const SourceInfo& source,
+                   Findings& findings) {
     std::array<float, 3> low = mesh.position.front(), high = low;
     const auto [left, right] = span_of(source.width, source.has_mask);
     const auto [top, bottom] = span_of(source.height, source.has_mask);
@@ -52,7 +53,7 @@ void advise_on_vertices(const StoredMesh& mesh, const AssetLevel& level, const S
         if (!used[v]) unused.hit([&] { return std::pair(cat("vertex ", v, " has no face"), Place()); });
 }
 
-void advise_on_faces(const StoredMesh& mesh, const SourceInfo& source, Findings& findings) {
+void lint_faces(const StoredMesh& mesh, const SourceInfo& source, Findings& findings) {
     std::vector<Face> faces = mesh.faces;
     std::vector<std::pair<Id, Id>> edges;  // as they run
     double area2 = 0;
@@ -84,10 +85,10 @@ void advise_on_faces(const StoredMesh& mesh, const SourceInfo& source, Findings&
 
 }  // namespace
 
-void advise_on_mesh(const StoredMesh& mesh, const AssetLevel& level, const SourceInfo& source,
-                    Findings& findings) {
-    advise_on_vertices(mesh, level, source, findings);
-    advise_on_faces(mesh, source, findings);
+void lint_mesh(const StoredMesh& mesh, const AssetLevel& level, const SourceInfo& source,
+               Findings& findings) {
+    lint_vertices(mesh, level, source, findings);
+    lint_faces(mesh, source, findings);
 }
 
 }  // namespace imgmesh

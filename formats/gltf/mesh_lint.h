@@ -9,7 +9,6 @@ namespace imgmesh {
 class Findings;
 
 /// `mesh` is without errors (base_from_stored). O(F log F).
-void advise_on_mesh(const StoredMesh& mesh, const AssetLevel& level, const SourceInfo& source,
-                    Findings& findings);
+void lint_mesh(const StoredMesh& mesh, const AssetLevel& level, const SourceInfo& source, Findings& findings);
 
 }  // namespace imgmesh

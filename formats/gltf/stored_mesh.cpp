@@ -38,8 +38,8 @@ struct Corner {
         if (const auto order = std::tie(position, color) <=> std::tie(other.position, other.color);
             order != 0)
             return order;
-        if (!mesh->light.empty())
-            if (const auto order = mesh->light[vertex] <=> other.mesh->light[other.vertex]; order != 0)
+        if (!mesh->hdr.empty())
+            if (const auto order = mesh->hdr[vertex] <=> other.mesh->hdr[other.vertex]; order != 0)
                 return order;
         for (std::size_t c = 0; c < mesh->channels.size(); ++c)
             if (const auto order = mesh->channels[c][vertex] <=> other.mesh->channels[c][other.vertex];
@@ -83,9 +83,9 @@ std::uint16_t code_of(float light) {
 
 // The attributes of one more vertex.
 void add_features(const float* feature, const StoredLayout& layout, StoredMesh& stored) {
-    if (layout.light) {
-        const Vec3f light = storable_light(Vec3f(feature));
-        stored.light.push_back({light[0], light[1], light[2]});
+    if (layout.hdr) {
+        const Vec3f light = quantized_hdr(Vec3f(feature));
+        stored.hdr.push_back({light[0], light[1], light[2]});
         stored.color.push_back({code_of(light[0]), code_of(light[1]), code_of(light[2]), 65535});
     } else if (layout.color) {
         const auto codes = color_codes(Vec3f(feature));
@@ -95,8 +95,8 @@ void add_features(const float* feature, const StoredLayout& layout, StoredMesh& 
     for (std::vector<float>& channel : stored.channels) channel.push_back(*feature++);
 }
 
-bool is_light(const std::array<float, 3>& light) {
-    return std::all_of(light.begin(), light.end(), [](float x) { return x >= 0 && x <= kMostLight; });
+bool is_hdr(const std::array<float, 3>& light) {
+    return std::all_of(light.begin(), light.end(), [](float x) { return x >= 0 && x <= kMaxHdr; });
 }
 
 }  // namespace
@@ -156,15 +156,15 @@ BaseMesh base_from_stored(const StoredMesh& mesh, Findings& findings) {
                 alphas.hit([&, &alpha = alpha] {
                     return std::pair(cat("vertex ", v, " has alpha ", alpha, ", expected 65535"), Place());
                 });
-            if (layout.light && !is_light(mesh.light[v]))
+            if (layout.hdr && !is_hdr(mesh.hdr[v]))
                 lights.hit([&] {
-                    const auto& [r, g, b] = mesh.light[v];
+                    const auto& [r, g, b] = mesh.hdr[v];
                     return std::pair(cat("vertex ", v, " has the light (", r, ",", g, ",", b,
-                                         "), expected 0 to ", kMostLight),
+                                         "), expected 0 to ", kMaxHdr),
                                      Place());
                 });
-            const Vec3f luv = layout.light ? luv_from_linear(Vec3f(mesh.light[v].data()))
-                                           : color_from_codes({red, green, blue});
+            const Vec3f luv = layout.hdr ? luv_from_linear(Vec3f(mesh.hdr[v].data()))
+                                         : color_from_codes({red, green, blue});
             base.feature.insert(base.feature.end(), luv.data(), luv.data() + 3);
         }
         for (std::size_t c = 0; c < layout.channels; ++c) {

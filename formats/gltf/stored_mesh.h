@@ -16,7 +16,7 @@ class Findings;
 /// Which attributes a mesh has beside its positions.
 struct StoredLayout {
     bool color = true;
-    bool light = false;        ///< colours without an upper bound
+    bool hdr = false;          ///< colours without an upper bound
     std::size_t channels = 0;  ///< channels beside the colour
     bool texture = false;      ///< coordinates in a texture
     bool operator==(const StoredLayout&) const = default;
@@ -28,13 +28,11 @@ struct StoredMesh {
     std::vector<std::array<float, 3>> position;
     std::vector<std::array<std::uint16_t, 4>> color;
     std::vector<Face> faces;
-    std::vector<std::array<float, 3>> light;  ///< linear RGB; `color` is then what of it is within [0, 1]
+    std::vector<std::array<float, 3>> hdr;  ///< linear RGB; `color` is then what of it is within [0, 1]
     std::vector<std::vector<float>> channels;
     std::vector<std::array<float, 2>> texcoord;  ///< of viewers alone
 
-    StoredLayout layout() const {
-        return {!color.empty(), !light.empty(), channels.size(), !texcoord.empty()};
-    }
+    StoredLayout layout() const { return {!color.empty(), !hdr.empty(), channels.size(), !texcoord.empty()}; }
 
     bool operator==(const StoredMesh&) const = default;
 };

@@ -204,7 +204,7 @@ Gamut gamut_of(const Image& image, const Mask& mask) {
     for (std::size_t i = 0; floats && channels.any() && i < image.pixel_count(); ++i) {
         const Vec3f encoded = channels.at(image.data.data() + i * static_cast<std::size_t>(image.channels));
         if (mask.contains(i) && linear_from_encoded(image.color_space, encoded).maxCoeff() > 1)
-            return Gamut::kLight;
+            return Gamut::kHdr;
     }
     return Gamut::kDisplay;
 }
@@ -225,7 +225,7 @@ FeatureImage luv_image(const Image& image, Range range) {
                 Vec3f linear = tabulated ? Vec3f(decode(encoded[0]), decode(encoded[1]), decode(encoded[2]))
                                          : linear_from_encoded(image.color_space, encoded);
                 if (range != Range::kAny)
-                    linear = linear.cwiseMax(0.0f).cwiseMin(range == Range::kClipped ? 1.0f : kMostLight);
+                    linear = linear.cwiseMax(0.0f).cwiseMin(range == Range::kClipped ? 1.0f : kMaxHdr);
                 const Vec3f luv = luv_from_linear(linear);
                 std::copy(luv.data(), luv.data() + 3, dst);
             }

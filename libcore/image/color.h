@@ -33,7 +33,7 @@ Vec3f linear_from_luv(const Vec3f& luv);
 /// Which linear RGB a colour may have.
 enum class Gamut {
     kDisplay,  ///< [0, 1]
-    kLight     ///< 0 and more: high dynamic range
+    kHdr       ///< 0 and more: high dynamic range
 };
 
 /// `luv` itself where its linear RGB lies in the gamut, else a colour close to it, in L*u*v*, for which that
@@ -42,25 +42,25 @@ enum class Gamut {
 Vec3f in_gamut(const Vec3f& luv, Gamut gamut = Gamut::kDisplay);
 
 /// What a container keeps of `luv`: in_gamut(luv) as linear RGB rounded, for displays to 16-bit codes, for
-/// light to storable_light(). storable_color(storable_color(x)) == storable_color(x), bit for bit.
-Vec3f storable_color(const Vec3f& luv, Gamut gamut = Gamut::kDisplay);
-/// Linear RGB of a storable colour as its 16-bit codes, and back.
+/// light to quantized_hdr(). quantized_color(quantized_color(x)) == quantized_color(x), bit for bit.
+Vec3f quantized_color(const Vec3f& luv, Gamut gamut = Gamut::kDisplay);
+/// Linear RGB of a quantized colour as its 16-bit codes, and back.
 std::array<std::uint16_t, 3> color_codes(const Vec3f& luv);
 Vec3f color_from_codes(const std::array<std::uint16_t, 3>& codes);
 
-/// The most light that a colour of Gamut::kLight has. Quadrics are single precision: the squares of its L*
+/// The most light that a colour of Gamut::kHdr has. Quadrics are single precision: the squares of its L*
 /// have room.
-inline constexpr float kMostLight = 1 << 20;
+inline constexpr float kMaxHdr = 1 << 20;
 
-/// in_gamut(luv, kLight) as linear RGB, rounded to 16 bits of the largest of the three and at least to 2^-20:
-/// fine enough for any eye, and coarse enough for storable_color() to come back to the same bits.
-Vec3f storable_light(const Vec3f& luv);
+/// in_gamut(luv, kHdr) as linear RGB, rounded to 16 bits of the largest of the three and at least to 2^-20:
+/// fine enough for any eye, and coarse enough for quantized_color() to come back to the same bits.
+Vec3f quantized_hdr(const Vec3f& luv);
 
-/// kLight for a picture of floats with linear light above 1 in some pixel of the mask, else kDisplay.
+/// kHdr for a picture of floats with linear light above 1 in some pixel of the mask, else kDisplay.
 Gamut gamut_of(const Image& image, const Mask& mask = {});
 
-/// What luv_image does with linear light: nothing, or clip it to [0, 1] or to [0, kMostLight].
-enum class Range { kAny, kClipped, kLight };
+/// What luv_image does with linear light: nothing, or clip it to [0, 1] or to [0, kMaxHdr].
+enum class Range { kAny, kClipped, kHdr };
 
 /// Colour of every pixel as L*u*v*. One channel (grey) counts as R = G = B; alpha is ignored.
 /// Throws Error(kUnsupported) where the picture has neither R, G, B nor Y.

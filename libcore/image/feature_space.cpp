@@ -39,7 +39,7 @@ SplitNames split_names(const std::vector<std::string>& names) {
     else if (has(names, "Y"))
         split.color = {"Y"};
     for (const std::string& name : names)
-        if (!has(split.color, name.c_str())) split.plain.push_back(name);
+        if (!has(split.color, name.c_str())) split.auxiliary.push_back(name);
     return split;
 }
 
@@ -78,20 +78,20 @@ FeatureSpace feature_space(const Image& image, const std::vector<ChannelChoice>&
         space.color_weight = static_cast<float>(weight_of(choices, split.color[0]));
     }
     if (choices.empty()) return space;
-    space.plain = split.plain;
-    for (const std::string& name : space.plain)
+    space.auxiliary = split.auxiliary;
+    for (const std::string& name : space.auxiliary)
         space.plain_weight.push_back(static_cast<float>(weight_of(choices, name)));
     return space;
 }
 
 FeatureImage extract_features(const Image& image, const FeatureSpace& space, const Mask& mask) {
     FeatureImage color;
-    if (space.color) color = luv_image(image, space.gamut == Gamut::kLight ? Range::kLight : Range::kClipped);
-    if (space.plain.empty() && space.color_weight == 1) return color;
+    if (space.color) color = luv_image(image, space.gamut == Gamut::kHdr ? Range::kHdr : Range::kClipped);
+    if (space.auxiliary.empty() && space.color_weight == 1) return color;
     FeatureImage out{image.width, image.height, space.features(), {}};
     out.data.reserve(image.pixel_count() * static_cast<std::size_t>(out.channels));
     std::vector<int> from;
-    for (const std::string& name : space.plain) from.push_back(image.channel(name));
+    for (const std::string& name : space.auxiliary) from.push_back(image.channel(name));
     for (std::size_t i = 0; i < image.pixel_count(); ++i) {
         for (int c = 0; c < color.channels; ++c) out.data.push_back(space.color_weight * color.pixel(i)[c]);
         for (std::size_t c = 0; c < from.size(); ++c) {
@@ -101,7 +101,7 @@ FeatureImage extract_features(const Image& image, const FeatureSpace& space, con
             if (!(std::abs(feature) <= kLargestFeature)) {
                 const auto width = static_cast<std::size_t>(image.width);
                 throw Error(ErrorCode::kUnsupported,
-                            cat("channel ", space.plain[c], " is ", value, " at pixel (", i % width, ", ",
+                            cat("channel ", space.auxiliary[c], " is ", value, " at pixel (", i % width, ", ",
                                 i / width, "); times its weight ", space.plain_weight[c], " at most ",
                                 kLargestFeature, " is supported"));
             }

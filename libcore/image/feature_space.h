@@ -13,13 +13,13 @@ namespace imgmesh {
 /// The features of a picture in their order: L*, u*, v* of its colour, then any other channels, each times
 /// its weight.
 struct FeatureSpace {
-    bool color = true;                ///< the first three features are L*, u*, v*
-    Gamut gamut = Gamut::kDisplay;    ///< which colours there are
-    float color_weight = 1;           ///< of L*, u* and v*; > 0
-    std::vector<std::string> plain;   ///< names of the channels after the colour
-    std::vector<float> plain_weight;  ///< of each of them; > 0
+    bool color = true;                   ///< the first three features are L*, u*, v*
+    Gamut gamut = Gamut::kDisplay;       ///< which colours there are
+    float color_weight = 1;              ///< of L*, u* and v*; > 0
+    std::vector<std::string> auxiliary;  ///< names of the channels after the colour
+    std::vector<float> plain_weight;     ///< of each of them; > 0
 
-    int features() const { return (color ? 3 : 0) + static_cast<int>(plain.size()); }
+    int features() const { return (color ? 3 : 0) + static_cast<int>(auxiliary.size()); }
     float weight(int feature) const {
         if (color && feature < 3) return color_weight;
         return plain_weight[static_cast<std::size_t>(feature - (color ? 3 : 0))];
@@ -29,8 +29,8 @@ struct FeatureSpace {
 /// Which of `names` are the colour (R, G, B where all three are there, else Y, else none), and the others, in
 /// order.
 struct SplitNames {
-    std::vector<std::string> color, plain;
-    int features() const { return (color.empty() ? 0 : 3) + static_cast<int>(plain.size()); }
+    std::vector<std::string> color, auxiliary;
+    int features() const { return (color.empty() ? 0 : 3) + static_cast<int>(auxiliary.size()); }
 };
 SplitNames split_names(const std::vector<std::string>& names);
 
@@ -50,13 +50,13 @@ void check_channels(const std::vector<ChannelChoice>& choices);
 FeatureSpace feature_space(const Image& image, const std::vector<ChannelChoice>& choices,
                            const Mask& mask = {});
 
-/// The largest value of a plain feature: the determinants of quadrics of a whole picture have room then in
-/// floats.
+/// The largest value of a auxiliary feature: the determinants of quadrics of a whole picture have room then
+/// in floats.
 inline constexpr float kLargestFeature = 1e5f;
 
-/// The picture in `space`, which is of that picture: L*u*v* and the values of the plain channels, each times
-/// its weight; the latter 0 outside `mask`. Light is clipped to the gamut's range. Throws Error(kUnsupported)
-/// for a feature inside above kLargestFeature or not finite.
+/// The picture in `space`, which is of that picture: L*u*v* and the values of the auxiliary channels, each
+/// times its weight; the latter 0 outside `mask`. Light is clipped to the gamut's range. Throws
+/// Error(kUnsupported) for a feature inside above kLargestFeature or not finite.
 FeatureImage extract_features(const Image& image, const FeatureSpace& space, const Mask& mask = {});
 
 }  // namespace imgmesh

@@ -51,9 +51,9 @@ Vec3f color_from_codes(const std::array<std::uint16_t, 3>& codes) {
     return luv_from_linear(Vec3f(codes[0], codes[1], codes[2]) / 65535.0f);
 }
 
-Vec3f storable_light(const Vec3f& luv) {
+Vec3f quantized_hdr(const Vec3f& luv) {
     constexpr int kBits = 16, kLeastExponent = -4;
-    Vec3f linear = linear_from_luv(in_gamut(luv, Gamut::kLight)).cwiseMax(0.0f).cwiseMin(kMostLight);
+    Vec3f linear = linear_from_luv(in_gamut(luv, Gamut::kHdr)).cwiseMax(0.0f).cwiseMin(kMaxHdr);
     // Once more, as rounding may reach the next power of two, whose step is the double.
     for (int pass = 0; pass < 2; ++pass) {
         int exponent = 0;
@@ -64,9 +64,9 @@ Vec3f storable_light(const Vec3f& luv) {
     return linear;
 }
 
-Vec3f storable_color(const Vec3f& luv, Gamut gamut) {
+Vec3f quantized_color(const Vec3f& luv, Gamut gamut) {
     return gamut == Gamut::kDisplay ? color_from_codes(color_codes(luv))
-                                    : luv_from_linear(storable_light(luv));
+                                    : luv_from_linear(quantized_hdr(luv));
 }
 
 }  // namespace imgmesh

@@ -31,7 +31,7 @@ Mask alpha_mask(const Image& image, float threshold) {
     return mask;
 }
 
-Mask picture_mask(const Image& image, float threshold) {
+Mask image_mask(const Image& image, float threshold) {
     if (Mask mask = alpha_mask(image, threshold); !mask.empty()) return mask;
     const int grey = image.channel("Y");
     const int rgb[] = {image.channel("R"), image.channel("G"), image.channel("B")};

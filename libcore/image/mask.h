@@ -1,4 +1,4 @@
-// Which pixels of a picture belong to it: cut-outs of any shape and topology.
+// Which pixels of a picture belong to it: masked images of any shape and topology.
 #pragma once
 
 #include <cstdint>
@@ -32,6 +32,6 @@ Mask alpha_mask(const Image& image, float threshold);
 /// The pixels of which a mask's picture is at least `threshold`: its alpha, unless it has none or an opaque
 /// one; then Y, or the mean of R, G and B, as encoded. Never empty(): all may be inside.
 /// Throws Error(kUnsupported) for a picture with none of these.
-Mask picture_mask(const Image& image, float threshold);
+Mask image_mask(const Image& image, float threshold);
 
 }  // namespace imgmesh

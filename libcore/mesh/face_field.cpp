@@ -32,8 +32,8 @@ std::vector<FaceField> face_fields(const BaseMesh& mesh) {
     return fields;
 }
 
-FurtherFields further_fields(const BaseMesh& mesh, const std::vector<FaceField>& fields) {
-    FurtherFields further{static_cast<std::size_t>(std::max(0, mesh.channels - 3)), {}};
+AuxiliaryFields auxiliary_fields(const BaseMesh& mesh, const std::vector<FaceField>& fields) {
+    AuxiliaryFields further{static_cast<std::size_t>(std::max(0, mesh.channels - 3)), {}};
     further.values.reserve(fields.size() * further.features * 3);
     for (std::size_t f = 0; further.features > 0 && f < fields.size(); ++f) {
         const auto [a, b, c] = mesh.faces[f];
@@ -48,8 +48,8 @@ FurtherFields further_fields(const BaseMesh& mesh, const std::vector<FaceField>&
     return further;
 }
 
-Id walk_to(const Vec2f& p, Id face, const std::vector<FaceField>& fields,
-           const std::vector<Face>& neighbors) {
+Id locate_face(const Vec2f& p, Id face, const std::vector<FaceField>& fields,
+               const std::vector<Face>& neighbors) {
     // The bound only guards against rounding in circles: in a convex domain the walk arrives.
     for (std::size_t step = 0; step < fields.size() + 8; ++step) {
         const FaceField& field = fields[face];

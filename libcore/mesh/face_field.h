@@ -24,16 +24,17 @@ struct alignas(64) FaceField {
 std::vector<FaceField> face_fields(const BaseMesh& mesh);
 
 /// The features from the fourth on, which FaceField has no room for.
-struct FurtherFields {
+struct AuxiliaryFields {
     std::size_t features = 0;
     std::vector<float> values;  ///< for each face and feature the value at corner a, and its gradient in x, y
 
     const float* of(Id face) const { return values.data() + std::size_t{face} * features * 3; }
 };
-FurtherFields further_fields(const BaseMesh& mesh, const std::vector<FaceField>& fields);
+AuxiliaryFields auxiliary_fields(const BaseMesh& mesh, const std::vector<FaceField>& fields);
 
 /// The face that holds p, walking from `face` across the edge that p lies farthest beyond; where that is the
 /// border, the face before it.
-Id walk_to(const Vec2f& p, Id face, const std::vector<FaceField>& fields, const std::vector<Face>& neighbors);
+Id locate_face(const Vec2f& p, Id face, const std::vector<FaceField>& fields,
+               const std::vector<Face>& neighbors);
 
 }  // namespace imgmesh

@@ -1,4 +1,4 @@
-// The dense mesh at one pixel of a cut-out: its fans of triangles, or the strip that it is part of.
+// The dense mesh at one pixel of a masked image: its fans of triangles, or the strip that it is part of.
 #pragma once
 
 #include <array>

@@ -1,4 +1,4 @@
-// The dense mesh of a cut-out as rings.
+// The dense mesh of a masked image as rings.
 #pragma once
 
 #include <array>
@@ -21,8 +21,8 @@ Vec2f vertex_place(const GridMesh& grid, Id vertex);
 std::int64_t masked_face_count(const GridMesh& grid);
 
 /// The rings of a grid mesh with a mask, vertices as grid_mesh.h numbers them; those of pixels outside have
-/// no neighbour. All vertices of outlines are corners (kFixedX and kFixedY): what may become of an outline is
-/// mask_outline.h's to say.
+/// no neighbour. All vertices of boundaries are corners (kFixedX and kFixedY): what may become of a boundary
+/// is mask_boundary.h's to say.
 RingMesh masked_rings(const GridMesh& grid);
 
 }  // namespace imgmesh

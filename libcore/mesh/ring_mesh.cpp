@@ -106,11 +106,11 @@ bool merge_rings(const RingMesh& rings, Id i, Id j, MergedRing& merged) {
 }
 
 void apply_merge(RingMesh& rings, Id i, Id j, const MergedRing& merged) {
-    const Ring gone = rings[j];
+    const Ring removed = rings[j];
     Ring& ring = rings[i];
-    for (int k = 0; k < gone.valence; ++k) {
-        if (gone.neighbor[k] == i) continue;
-        Ring& n = rings[gone.neighbor[k]];
+    for (int k = 0; k < removed.valence; ++k) {
+        if (removed.neighbor[k] == i) continue;
+        Ring& n = rings[removed.neighbor[k]];
         const int at_j = n.find(j);
         if (n.find(i) < 0) {
             n.neighbor[at_j] = i;
@@ -121,7 +121,7 @@ void apply_merge(RingMesh& rings, Id i, Id j, const MergedRing& merged) {
     }
     for (int k = 0; k < merged.valence; ++k) ring.neighbor[k] = merged.neighbor[static_cast<std::size_t>(k)];
     ring.valence = static_cast<std::uint8_t>(merged.valence);
-    ring.fixed |= gone.fixed;
+    ring.fixed |= removed.fixed;
     ++ring.version;
     rings[j].valence = 0;
     ++rings[j].version;

@@ -26,10 +26,10 @@ struct alignas(64) Ring {
     float x = 0, y = 0;         ///< position [pixels]
     Id neighbor[kMaxValence];   ///< counter-clockwise on screen; on the border from the one along the border
                                 ///< to the other, with no face between last and first
-    std::uint8_t valence = 0;   ///< 0: the vertex is gone
+    std::uint8_t valence = 0;   ///< 0: the vertex is removed
     std::uint8_t fixed = 0;     ///< FixedAxis bits; not 0 exactly for border vertices
     std::uint16_t version = 0;  ///< rises whenever the vertex merges or goes
-    std::uint8_t sealed = 0;    ///< not 0: must stay as it is for now, like its edges (edge_collapser.h)
+    std::uint8_t locked = 0;    ///< not 0: must stay as it is for now, like its edges (edge_collapser.h)
 
     bool border() const { return fixed != 0; }
     bool live() const { return valence != 0; }

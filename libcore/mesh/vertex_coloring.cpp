@@ -4,7 +4,7 @@
 
 namespace imgmesh {
 
-std::vector<std::vector<Id>> vertex_classes(std::span<const Face> faces, std::size_t vertices) {
+std::vector<std::vector<Id>> vertex_coloring(std::span<const Face> faces, std::size_t vertices) {
     std::vector<std::size_t> first(vertices + 1, 0);
     for (const Face& face : faces)
         for (const Id v : face)

@@ -12,6 +12,6 @@ namespace imgmesh {
 /// and its faces none of the others sees. Each vertex, in the order of numbers, goes into the first class
 /// that has none of its neighbours (a planar mesh takes six or seven). Numbers ascend in a class; vertices
 /// without a face are in none. Faces with faces[f][0] == kNone are holes.
-std::vector<std::vector<Id>> vertex_classes(std::span<const Face> faces, std::size_t vertices);
+std::vector<std::vector<Id>> vertex_coloring(std::span<const Face> faces, std::size_t vertices);
 
 }  // namespace imgmesh

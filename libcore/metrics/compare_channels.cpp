@@ -20,9 +20,9 @@ std::vector<ChannelDifference> compare_channels(const Image& a, const Image& b) 
         throw Error(ErrorCode::kUsage, cat("pictures differ in size: ", a.width, "x", a.height, " and ",
                                            b.width, "x", b.height));
     const int alpha_a = a.channel("A"), alpha_b = b.channel("A");
-    const std::vector<std::string> of_b = split_names(b.channel_names).plain;
+    const std::vector<std::string> of_b = split_names(b.channel_names).auxiliary;
     std::vector<ChannelDifference> out;
-    for (const std::string& name : split_names(a.channel_names).plain) {
+    for (const std::string& name : split_names(a.channel_names).auxiliary) {
         if (name == "A" || std::ranges::count(of_b, name) == 0) continue;
         const int in_a = a.channel(name), in_b = b.channel(name);
         ChannelDifference difference{name, 0, 0};

@@ -45,7 +45,7 @@ class FlatFan {
     FanPoint locate(const Vec2d& p) const;
     int size() const { return size_; }
 
-    /// Thinner triangles are not stable to look points up in. Larger values retract more collapses and make
+    /// Thinner triangles are not stable to look points up in. Larger values reject more collapses and make
     /// the map worse (docs/decisions/0007-tracked-map.md).
     static constexpr double kLeastFlatness = 1e-6;
 

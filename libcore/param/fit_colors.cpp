@@ -165,7 +165,7 @@ void fit(BaseMesh& mesh, const FeatureImage& feature, const std::vector<FitTerm>
     const int features = feature_count<C>(mesh.channels);
     constexpr int kGrain = 512;
     // Class by class, as no two of a class share a face: each sees the same neighbours from any thread.
-    const std::vector<std::vector<Id>> classes = vertex_classes(mesh.faces, mesh.vertex_count());
+    const std::vector<std::vector<Id>> classes = vertex_coloring(mesh.faces, mesh.vertex_count());
     std::vector<std::optional<ClassSystem<C>>> systems(classes.size());
     {
         const std::vector<FaceSums<C>> sums = sum_over_pixels<C>(mesh, feature, terms);

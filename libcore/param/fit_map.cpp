@@ -17,7 +17,7 @@ namespace {
 
 // Makes `map` say where pixels lie, weights not yet rounded: what the colours are fitted to between the
 // rounds.
-void set_unrounded(const MovingPixels& pixels, const std::vector<FaceField>& fields, PixelMap& map) {
+void set_unrounded(const PixelEmbedding& pixels, const std::vector<FaceField>& fields, PixelMap& map) {
     parallel_blocks(0, map.height, 16, [&](int first, int last) {
         for (int y = first; y < last; ++y)
             for (int x = 0; x < map.width; ++x) {
@@ -30,11 +30,11 @@ void set_unrounded(const MovingPixels& pixels, const std::vector<FaceField>& fie
     });
 }
 
-PixelMap stored(const BaseMesh& mesh, const MovingPixels& pixels, const std::vector<FaceField>& fields,
+PixelMap stored(const BaseMesh& mesh, const PixelEmbedding& pixels, const std::vector<FaceField>& fields,
                 const std::vector<Face>& neighbors, std::optional<WeightPrecision> wanted) {
     for (const WeightPrecision precision : {WeightPrecision::kHalf, WeightPrecision::kFloat})
         if (!wanted || *wanted == precision)
-            if (auto map = storable_map(mesh, pixels, fields, neighbors, precision)) return *std::move(map);
+            if (auto map = quantize_map(mesh, pixels, fields, neighbors, precision)) return *std::move(map);
     throw Error(ErrorCode::kUnsupported,
                 "the weights are too coarse for faces this large: --bary float holds them");
 }
@@ -43,8 +43,8 @@ void round_colors(BaseMesh& mesh, const FeatureSpace& space) {
     const float weight = space.color_weight;
     for (Id v = 0; v < mesh.vertex_count(); ++v) {
         const Eigen::Map<Vec3f> color(mesh.feature_of(v));
-        const Vec3f storable = weight * storable_color(color / weight, space.gamut);
-        std::copy(storable.data(), storable.data() + 3, mesh.feature_of(v));
+        const Vec3f quantized = weight * quantized_color(color / weight, space.gamut);
+        std::copy(quantized.data(), quantized.data() + 3, mesh.feature_of(v));
     }
 }
 
@@ -84,7 +84,7 @@ PixelMap fit_map(BaseMesh& mesh, const FeatureImage& feature, const FitParams& p
     const PixelMap trivial = trivial_map(mesh, feature.width, feature.height, mask);
     const ColorFit colors(mesh, feature, params, trivial);
     const std::vector<Face> neighbors = face_neighbors(mesh);
-    MovingPixels pixels = resting_pixels(trivial, mask);
+    PixelEmbedding pixels = resting_pixels(trivial, mask);
     colors.fit(trivial);
     // A strip of one pixel has no cell whose fold could be watched; its map stays trivial.
     const int rounds = params.color_weight > 0 && feature.width > 1 && feature.height > 1 ? params.rounds : 0;
@@ -94,7 +94,7 @@ PixelMap fit_map(BaseMesh& mesh, const FeatureImage& feature, const FitParams& p
         if (progress) progress(static_cast<double>(round) / params.rounds, "map");
         const std::vector<FaceField> fields = face_fields(mesh);
         relax(pixels, fields, neighbors, feature, static_cast<float>(1 / params.color_weight), params.sweeps,
-              further_fields(mesh, fields));
+              auxiliary_fields(mesh, fields));
         if (round + 1 == rounds) break;
         set_unrounded(pixels, fields, between);
         colors.fit(between);

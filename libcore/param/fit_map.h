@@ -23,7 +23,7 @@ struct FitParams {
         0.1;  ///< how much the drawing without the map counts in the fit of colours, 0 to 1
 };
 
-/// Finds the pixel map (relax.h, storable_map.h) and replaces the mesh's features by the least-squares ones
+/// Finds the pixel map (relax.h, quantize_map.h) and replaces the mesh's features by the least-squares ones
 /// (unless params.keep_colors), colours rounded to what a container holds. The map is a bijection of the
 /// pixel grid onto the mesh.
 ///

@@ -29,7 +29,7 @@ double cell_area2(const Vec2d& tl, const Vec2d& tr, const Vec2d& bl, const Vec2d
 
 class Storing {
   public:
-    Storing(const BaseMesh& mesh, const MovingPixels& pixels, const std::vector<FaceField>& fields,
+    Storing(const BaseMesh& mesh, const PixelEmbedding& pixels, const std::vector<FaceField>& fields,
             const std::vector<Face>& neighbors, WeightPrecision precision)
         : mesh_(mesh),
           pixels_(pixels),
@@ -60,7 +60,7 @@ class Storing {
             if (cells.empty()) return std::move(map_);
             if (cells.size() > mendable) return std::nullopt;
             bool moved = false;
-            for (const auto& [x, y] : cells) moved |= mend(x, y, pass);
+            for (const auto& [x, y] : cells) moved |= repair(x, y, pass);
             idle = moved ? 0 : idle + 1;
         }
         return std::nullopt;
@@ -122,7 +122,7 @@ class Storing {
 
     // Moves each pixel of a cell to the candidate, near where it should be, that leaves the fattest triangles
     // around it. Returns whether any moved.
-    bool mend(int cell_x, int cell_y, int pass) {
+    bool repair(int cell_x, int cell_y, int pass) {
         bool moved = false;
         for (int corner = 0; corner < 4; ++corner) {
             const int x = cell_x + corner % 2, y = cell_y + corner / 2;
@@ -139,7 +139,7 @@ class Storing {
                     if (pixels_.pinned_x(x, y)) q.x() = x;
                     if (pixels_.pinned_y(x, y)) q.y() = y;
                     q = q.cwiseMax(0.0).cwiseMin(Vec2d(map_.width - 1, map_.height - 1));
-                    coord = rounded(walk_to(q.cast<float>(), coord.face, fields_, neighbors_), q);
+                    coord = rounded(locate_face(q.cast<float>(), coord.face, fields_, neighbors_), q);
                     const double area = area_around(x, y);
                     if (area > best_area) {
                         best_area = area;
@@ -153,7 +153,7 @@ class Storing {
     }
 
     const BaseMesh& mesh_;
-    const MovingPixels& pixels_;
+    const PixelEmbedding& pixels_;
     const std::vector<FaceField>& fields_;
     const std::vector<Face>& neighbors_;
     double steps_;
@@ -162,7 +162,7 @@ class Storing {
 
 }  // namespace
 
-std::optional<PixelMap> storable_map(const BaseMesh& mesh, const MovingPixels& pixels,
+std::optional<PixelMap> quantize_map(const BaseMesh& mesh, const PixelEmbedding& pixels,
                                      const std::vector<FaceField>& fields, const std::vector<Face>& neighbors,
                                      WeightPrecision precision) {
     return Storing(mesh, pixels, fields, neighbors, precision).run();

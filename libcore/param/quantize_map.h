@@ -17,7 +17,7 @@ inline constexpr double kLeastStoredArea = 0.01;
 /// triangles (both diagonals of each 2x2 cell) kept at kLeastStoredArea: pixels of a cell that rounding would
 /// fold are moved to other nearby grid points. Nothing where that fails: some face is too large for weights
 /// so coarse.
-std::optional<PixelMap> storable_map(const BaseMesh& mesh, const MovingPixels& pixels,
+std::optional<PixelMap> quantize_map(const BaseMesh& mesh, const PixelEmbedding& pixels,
                                      const std::vector<FaceField>& fields, const std::vector<Face>& neighbors,
                                      WeightPrecision precision);
 

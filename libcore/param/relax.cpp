@@ -22,7 +22,7 @@ namespace {
 constexpr float kLongestStep = 0.5f;
 constexpr int kHalvings = 2;
 
-// A pixel that slides along an outline lies on the edge of a face, up to the rounding of its weights.
+// A pixel that slides along a boundary lies on the edge of a face, up to the rounding of its weights.
 constexpr float kWeightSlack = 1e-4f;
 
 // The eight pixels around one, from the east over the south. Straight neighbours are the even ones.
@@ -99,12 +99,12 @@ IMGMESH_INLINE T least_area(T x, T y, const T* nx, const T* ny) {
 }
 
 struct Sweep {
-    MovingPixels& pixels;
+    PixelEmbedding& pixels;
     const std::vector<FaceField>& fields;
     const std::vector<Face>& neighbors;
     const FeatureImage& feature;
     float mu;
-    const FurtherFields& further;
+    const AuxiliaryFields& further;
 
     void move_pixel(int x, int y) const {
         const int w = pixels.width, h = pixels.height;
@@ -141,7 +141,7 @@ struct Sweep {
             const float qx = clamped(px + sx, 0, static_cast<float>(w - 1));
             const float qy = clamped(py + sy, 0, static_cast<float>(h - 1));
             if (!(least_area(qx, qy, nx, ny) >= kLeastMovingArea)) continue;
-            const Id face = walk_to({qx, qy}, pixels.face[index], fields, neighbors);
+            const Id face = locate_face({qx, qy}, pixels.face[index], fields, neighbors);
             if (may_lie_in(face, qx, qy)) place(index, qx - rest_x, qy - rest_y, face);
             return;
         }
@@ -153,14 +153,14 @@ struct Sweep {
         pixels.face[index] = face;
     }
 
-    // Whether the walk to (x, y) ended there, and not at an outline in between. A rectangle has none.
+    // Whether the walk to (x, y) ended there, and not at a boundary in between. A rectangle has none.
     bool may_lie_in(Id face, float x, float y) const {
         if (pixels.freedom.empty()) return true;
         const float u = fields[face].u(x, y), v = fields[face].v(x, y);
         return std::min({u, v, 1 - u - v}) >= -kWeightSlack;
     }
 
-    // move_pixel() for (x, y), (x + 2, y), ... (x + 14, y), none of them on a side or an outline; three
+    // move_pixel() for (x, y), (x + 2, y), ... (x + 14, y), none of them on a side or a boundary; three
     // features.
     IMGMESH_INLINE void move_eight(int x, int y) const {
         const std::size_t index = pixels.index(x, y);
@@ -216,7 +216,7 @@ struct Sweep {
             const std::size_t i = index + 2 * static_cast<std::size_t>(l);
             Id face = pixels.face[i];
             if (least_weight[l] < 0) {
-                face = walk_to({to_x[l], to_y[l]}, face, fields, neighbors);
+                face = locate_face({to_x[l], to_y[l]}, face, fields, neighbors);
                 if (!may_lie_in(face, to_x[l], to_y[l])) continue;
             }
             place(i, dx[l], dy[l], face);
@@ -255,7 +255,7 @@ struct Sweep {
 };
 
 std::uint8_t freedom_of(const Mask& mask, int x, int y) {
-    // Where an outline begins and ends at a pixel does not depend on diagonals.
+    // Where a boundary begins and ends at a pixel does not depend on diagonals.
     const PixelFans fans = fans_at(mask, x, y, [](int) { return false; });
     if (fans.count != 1) return kPinnedX | kPinnedY;
     const Fan& fan = fans.fan[0];
@@ -269,8 +269,8 @@ std::uint8_t freedom_of(const Mask& mask, int x, int y) {
 
 }  // namespace
 
-MovingPixels resting_pixels(const PixelMap& trivial, const Mask& mask) {
-    MovingPixels pixels{trivial.width, trivial.height, {}, {}, {}, {}};
+PixelEmbedding resting_pixels(const PixelMap& trivial, const Mask& mask) {
+    PixelEmbedding pixels{trivial.width, trivial.height, {}, {}, {}, {}};
     pixels.dx = parallel_vector<float>(trivial.coords.size());
     pixels.dy = parallel_vector<float>(trivial.coords.size());
     pixels.face = parallel_vector<Id>(trivial.coords.size());
@@ -288,8 +288,8 @@ MovingPixels resting_pixels(const PixelMap& trivial, const Mask& mask) {
     return pixels;
 }
 
-void relax(MovingPixels& pixels, const std::vector<FaceField>& fields, const std::vector<Face>& neighbors,
-           const FeatureImage& feature, float smoothness, int sweeps, const FurtherFields& further) {
+void relax(PixelEmbedding& pixels, const std::vector<FaceField>& fields, const std::vector<Face>& neighbors,
+           const FeatureImage& feature, float smoothness, int sweeps, const AuxiliaryFields& further) {
     assert(static_cast<int>(further.features) == std::max(0, feature.channels - 3));
     const Sweep sweep{pixels, fields, neighbors, feature, smoothness, further};
     auto move_row = &Sweep::move_row_portably;

@@ -12,20 +12,21 @@
 
 namespace imgmesh {
 
-/// What a pixel of a cut-out may do, as bits.
+/// What a pixel of a masked image may do, as bits.
 enum Freedom : std::uint8_t {
     kPinnedX = 1,  ///< x stays
     kPinnedY = 2,  ///< y stays
-    kFree = 4      ///< inside the outline, with triangles all around: its straight neighbours are inside too
+    kFree = 4      ///< inside the boundary, with triangles all around: its straight neighbours are inside too
 };
 
 /// Where each pixel of a W x H picture lies on the base mesh, while it is being moved.
-struct MovingPixels {
+struct PixelEmbedding {
     int width = 0;
     int height = 0;
     std::vector<float> dx, dy;  ///< image of the pixel less the pixel [pixels]; NaN outside a mask
     std::vector<Id> face;       ///< the face that the image lies in; kNone outside a mask
-    std::vector<std::uint8_t> freedom = {};  ///< of a cut-out's pixels, Freedom bits; empty without a mask
+    std::vector<std::uint8_t> freedom =
+        {};  ///< of a masked image's pixels, Freedom bits; empty without a mask
 
     bool outside(std::size_t pixel) const { return face[pixel] == kNone; }
     bool pinned_x(int x, int y) const {
@@ -45,9 +46,9 @@ struct MovingPixels {
 };
 
 /// Every pixel inside the mask at its own place, in its face of `trivial`, which knows that mask. Pixels on a
-/// straight horizontal or vertical part of the mask's outline may slide along it; where it bends or pinches,
+/// straight horizontal or vertical part of the mask's boundary may slide along it; where it bends or pinches,
 /// and in strips one pixel wide, they rest. So the map takes the dense mesh onto itself.
-MovingPixels resting_pixels(const PixelMap& trivial, const Mask& mask = {});
+PixelEmbedding resting_pixels(const PixelMap& trivial, const Mask& mask = {});
 
 /// The least twice-area of a pixel triangle that moving keeps [px^2]; at rest it is 1.
 inline constexpr float kLeastMovingArea = 0.05f;
@@ -56,15 +57,15 @@ inline constexpr float kLeastMovingArea = 0.05f;
 /// pixel's, t the pixel displaced like the mean of its four neighbours. Steps are at most half a pixel and
 /// are halved until all four triangles (both diagonals) of each 2x2 cell around the pixel keep
 /// kLeastMovingArea, so the map stays a bijection. Pixels of the picture's sides slide along them, corners
-/// rest; of a cut-out they do as `pixels.freedom` says, its triangles are those that have no pixel outside,
-/// and a pixel that would leave the mesh waits.
+/// rest; of a masked image they do as `pixels.freedom` says, its triangles are those that have no pixel
+/// outside, and a pixel that would leave the mesh waits.
 ///
 /// feature    the picture, size of `pixels`; both sides at least 2
-/// further    further_fields() where it has more than three features
+/// further    auxiliary_fields() where it has more than three features
 /// smoothness mu [feature^2 / px^2], > 0
 /// Pixels of one parity of (x, y) move at once and do not see each other: same result for any number of
 /// threads.
-void relax(MovingPixels& pixels, const std::vector<FaceField>& fields, const std::vector<Face>& neighbors,
-           const FeatureImage& feature, float smoothness, int sweeps, const FurtherFields& further = {});
+void relax(PixelEmbedding& pixels, const std::vector<FaceField>& fields, const std::vector<Face>& neighbors,
+           const FeatureImage& feature, float smoothness, int sweeps, const AuxiliaryFields& further = {});
 
 }  // namespace imgmesh

@@ -85,21 +85,21 @@ void PixelTracker::carry(const CollapseFlattening& flat, const std::array<Star, 
     }
 }
 
-bool PixelTracker::collapse(Id kept, Id gone, const Vec2f& position, std::span<const float> feature) {
+bool PixelTracker::collapse(Id kept, Id removed, const Vec2f& position, std::span<const float> feature) {
     assert(feature.size() + 2 >= index(dimensions_));
-    const std::array<Star, 2> stars{mesh_.star(kept), mesh_.star(gone)};
+    const std::array<Star, 2> stars{mesh_.star(kept), mesh_.star(removed)};
     const auto scale = static_cast<float>(std::sqrt(params_.color_weight));
     merged_.assign({position.x(), position.y()});
     for (const float f : feature.first(index(dimensions_ - 2))) merged_.push_back(scale * f);
 
     moved_.clear();
     std::array<Id, 2> resting{kNone, kNone};  // pixels that are an end where the merged vertex is
-    const std::array<Id, 2> ends{pixel_[kept], pixel_[gone]};
+    const std::array<Id, 2> ends{pixel_[kept], pixel_[removed]};
     if (params_.space == TrackSpace::kConformal) {
         CollapseFlattening flat;
         if (!flat.lay_out({&stars[0], &stars[1]}, points_.data(), merged_.data(), dimensions_,
                           any_shared(stars))) {
-            ++retracted_;
+            ++rejected_;
             return false;
         }
         carry(flat, stars);
@@ -121,8 +121,8 @@ bool PixelTracker::collapse(Id kept, Id gone, const Vec2f& position, std::span<c
     for (const Id p : ends)
         if (p != kNone) ++visits_[p];
 
-    pixel_[kept] = pixel_[gone] = kNone;
-    mesh_.merge(kept, gone);
+    pixel_[kept] = pixel_[removed] = kNone;
+    mesh_.merge(kept, removed);
     std::copy(merged_.begin(), merged_.end(), points_.begin() + std::ptrdiff_t{kept} * dimensions_);
     if (params_.space == TrackSpace::kPlane) find_in_plane(mesh_.star(kept));
     for (const Moved& moved : moved_) put(moved.pixel, moved.face, moved.weight);

@@ -44,9 +44,9 @@ class PixelTracker {
   public:
     PixelTracker(TrackStart start, const TrackParams& params);
 
-    /// Carries the pixels through the collapse of `gone` into `kept`, which moves to `position`. Returns
+    /// Carries the pixels through the collapse of `removed` into `kept`, which moves to `position`. Returns
     /// false, with nothing changed, where a flattened triangle would degenerate.
-    bool collapse(Id kept, Id gone, const Vec2f& position, std::span<const float> feature);
+    bool collapse(Id kept, Id removed, const Vec2f& position, std::span<const float> feature);
 
     /// The pixels as they are now, as a map onto `mesh`, whose vertices are the live ones in the order of
     /// their ids. Weights lie on the kFloatWeightStep grid.
@@ -55,7 +55,7 @@ class PixelTracker {
     /// How often each pixel's vertex was the end of a collapse or the pixel was projected anew (paper sec.
     /// 3.2); width * height.
     const std::vector<Id>& visits() const { return visits_; }
-    std::int64_t retracted() const { return retracted_; }
+    std::int64_t rejected() const { return rejected_; }
 
   private:
     struct Pixel {
@@ -83,7 +83,7 @@ class PixelTracker {
     std::vector<Id> visits_;
     std::vector<float> merged_;  // the merged vertex's point
     std::vector<Moved> moved_;   // by the collapse at hand
-    std::int64_t retracted_ = 0;
+    std::int64_t rejected_ = 0;
 };
 
 }  // namespace imgmesh

@@ -73,24 +73,24 @@ Id TrackedMesh::find(Id a, Id b, Id c) const {
     return kNone;
 }
 
-void TrackedMesh::merge(Id kept, Id gone) {
-    const Incident old = incident_[gone];
+void TrackedMesh::merge(Id kept, Id removed) {
+    const Incident old = incident_[removed];
     for (std::uint32_t k = 0; k < old.size; ++k) {
         const Id f = old.face[k];
         Face& corners = faces_[f];
         if (std::find(corners.begin(), corners.end(), kept) == corners.end()) {
-            corners[corner_of(f, gone)] = kept;
+            corners[corner_of(f, removed)] = kept;
             continue;
         }
         for (const Id v : corners)
-            if (v != gone) incident_[v].remove(f);
+            if (v != removed) incident_[v].remove(f);
     }
     for (std::uint32_t k = 0; k < old.size; ++k) {
         const Face& corners = faces_[old.face[k]];
-        if (std::find(corners.begin(), corners.end(), gone) == corners.end())
+        if (std::find(corners.begin(), corners.end(), removed) == corners.end())
             incident_[kept].add(old.face[k]);
     }
-    incident_[gone].size = 0;
+    incident_[removed].size = 0;
 }
 
 }  // namespace imgmesh

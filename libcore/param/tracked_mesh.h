@@ -42,8 +42,8 @@ class TrackedMesh {
     /// The face with the corners a, b, c in this cyclic order.
     Id find(Id a, Id b, Id c) const;
 
-    /// Collapses the edge: faces of both go, those of `gone` become those of `kept`.
-    void merge(Id kept, Id gone);
+    /// Collapses the edge: faces of both go, those of `removed` become those of `kept`.
+    void merge(Id kept, Id removed);
 
   private:
     struct Incident {

@@ -39,7 +39,7 @@ void take_weights_out(BaseMesh& mesh, const FeatureSpace& space) {
         float* f = mesh.feature_of(v);
         for (int c = 0; c < space.features(); ++c) f[c] /= space.weight(c);
         if (!space.color || space.color_weight == 1) continue;
-        const Vec3f color = storable_color(Vec3f(f), space.gamut);
+        const Vec3f color = quantized_color(Vec3f(f), space.gamut);
         std::copy(color.data(), color.data() + 3, f);
     }
 }
@@ -83,19 +83,19 @@ struct Pipeline {
                          mask);
     }
 
-    std::vector<CollapseResult> collapse(const GridMesh& grid, const CollapseParams& limits,
-                                         std::span<const CollapseTarget> targets,
-                                         const CollapseHooks& hooks = {}) const {
+    std::vector<SimplifyResult> collapse(const GridMesh& grid, const SimplifyParams& limits,
+                                         std::span<const SimplifyTarget> targets,
+                                         const SimplifyHooks& hooks = {}) const {
         Stopwatch watch;
-        std::vector<CollapseResult> collapsed =
-            collapse_edges(grid, limits, targets, part_of(progress, 0, 0.7), hooks);
+        std::vector<SimplifyResult> collapsed =
+            simplify(grid, limits, targets, part_of(progress, 0, 0.7), hooks);
         report.seconds.collapse += watch.lap();
         return collapsed;
     }
 
     // Refinement, pixel map (`tracked` where there is one) and colours. Takes the share [begin, end] of the
     // progress.
-    Level finish(CollapseResult&& collapsed, const CollapseParams& limits, std::optional<PixelMap> tracked,
+    Level finish(SimplifyResult&& collapsed, const SimplifyParams& limits, std::optional<PixelMap> tracked,
                  LevelReport& figures, double begin, double end) const {
         Stopwatch watch;
         RefineParams refinement;
@@ -120,14 +120,14 @@ struct Pipeline {
         const PixelMap trivial = trivial_map(level.mesh, feature.width, feature.height, mask);
         figures = {map_rms(level.mesh, level.map, feature), map_rms(level.mesh, trivial, feature), {}};
         for (int c = space.color ? 3 : 0; c < space.features(); ++c)
-            figures.plain_rms.push_back(feature_rms(level.mesh, level.map, feature, c) / space.weight(c));
+            figures.auxiliary_rms.push_back(feature_rms(level.mesh, level.map, feature, c) / space.weight(c));
         take_weights_out(level.mesh, space);
         report.seconds.map += watch.lap();
         return level;
     }
 
     // Of the map of a mesh that is not refined, after one round.
-    double estimated_rms(CollapseResult&& collapsed) const {
+    double estimated_rms(SimplifyResult&& collapsed) const {
         Stopwatch watch;
         FitParams fit;
         fit.color_weight = map_color_weight(params);
@@ -142,16 +142,16 @@ struct Pipeline {
 };
 
 // Collapse and maps with the collapse's limits as they stand.
-void build_levels(const Pipeline& pipeline, const CollapseParams& limits,
-                  std::span<const CollapseTarget> targets, MeshImage& mesh_image) {
+void build_levels(const Pipeline& pipeline, const SimplifyParams& limits,
+                  std::span<const SimplifyTarget> targets, MeshImage& mesh_image) {
     Stopwatch watch;
     const GridMesh grid = pipeline.grid();
     Tracking tracking(grid, pipeline.feature.width, pipeline.feature.height, pipeline.params);
     BuildReport& report = pipeline.report;
     report.seconds.collapse += watch.lap();
-    std::vector<CollapseResult> collapsed = pipeline.collapse(grid, limits, targets, tracking.hooks());
+    std::vector<SimplifyResult> collapsed = pipeline.collapse(grid, limits, targets, tracking.hooks());
     report.collapses = collapsed.back().collapses;
-    report.retracted = tracking.retracted();
+    report.rejected = tracking.rejected();
     report.levels.assign(collapsed.size(), {});
     mesh_image.visits = tracking.take_visits();
     mesh_image.levels.clear();
@@ -172,16 +172,16 @@ constexpr double kEstimateShare = 0.85;
 // Meshes for the search of a wanted error.
 class RmsMeshes : public MeasuredMeshes {
   public:
-    RmsMeshes(const Pipeline& pipeline, const GridMesh& grid, CollapseParams& limits, MeshImage& mesh_image)
+    RmsMeshes(const Pipeline& pipeline, const GridMesh& grid, SimplifyParams& limits, MeshImage& mesh_image)
         : pipeline_(pipeline),
           limits_(limits),
           collapsing_(part_of(pipeline.progress, 0, 0.7)),
-          ladder_(
+          lods_(
               grid, [this](std::int64_t vertices) { return limits_for(vertices); }, collapsing_),
           mesh_image_(mesh_image) {}
 
     Probe finished(std::int64_t vertices) override {
-        CollapseResult collapsed = collapse(vertices, true);
+        SimplifyResult collapsed = collapse(vertices, true);
         collapses_ = collapsed.collapses;
         level_ = pipeline_.finish(std::move(collapsed), limits_, {}, figures_, 0.7, 1);
         least_ = std::min(least_, figures_.map_rms);
@@ -194,21 +194,21 @@ class RmsMeshes : public MeasuredMeshes {
         limits_.smoothing = smoothing_;
     }
     Probe estimated(std::int64_t vertices) override {
-        CollapseResult collapsed = collapse(vertices, false);
+        SimplifyResult collapsed = collapse(vertices, false);
         const auto count = static_cast<std::int64_t>(collapsed.mesh.vertex_count());
         return {count, kEstimateShare * pipeline_.estimated_rms(std::move(collapsed))};
     }
     double least() const { return least_; }
 
   private:
-    CollapseResult collapse(std::int64_t vertices, bool rungs) {
+    SimplifyResult collapse(std::int64_t vertices, bool lods) {
         Stopwatch watch;
-        CollapseResult collapsed = ladder_.mesh(vertices, rungs);
+        SimplifyResult collapsed = lods_.mesh(vertices, lods);
         pipeline_.report.seconds.collapse += watch.lap();
         return collapsed;
     }
-    CollapseParams limits_for(std::int64_t vertices) {
-        CollapseParams limits = limits_;
+    SimplifyParams limits_for(std::int64_t vertices) {
+        SimplifyParams limits = limits_;
         limits.smoothing = smoothing_ = collapse_params(pipeline_.params, {.vertices = vertices},
                                                         static_cast<double>(pipeline_.report.pixels))
                                             .smoothing;
@@ -216,10 +216,10 @@ class RmsMeshes : public MeasuredMeshes {
     }
 
     const Pipeline& pipeline_;
-    CollapseParams& limits_;
+    SimplifyParams& limits_;
     int smoothing_ = 0;  // of the run at hand
     Progress collapsing_;
-    MeshLadder ladder_;
+    LodMeshes lods_;
     MeshImage& mesh_image_;
     Level level_;
     LevelReport figures_;
@@ -228,7 +228,7 @@ class RmsMeshes : public MeasuredMeshes {
 };
 
 // The level that StopParams::rms asks for. limits.smoothing becomes what its collapse had.
-void build_to_rms(const Pipeline& pipeline, CollapseParams& limits, MeshImage& mesh_image) {
+void build_to_rms(const Pipeline& pipeline, SimplifyParams& limits, MeshImage& mesh_image) {
     const GridMesh grid = pipeline.grid();
     const double rms = *pipeline.params.stop.rms;
     mesh_image.levels.clear();
@@ -275,8 +275,8 @@ BuildResult build_mesh_image(const Image& image, const BuildParams& asked, const
     result.report.seconds.collapse = watch.lap();
     result.report.pixels = mask.empty() ? static_cast<std::int64_t>(image.pixel_count()) : mask.count();
     const auto pixels = static_cast<double>(result.report.pixels);
-    const std::vector<CollapseTarget> targets = collapse_targets(params, pixels);
-    CollapseParams collapse = collapse_params(params, targets.front(), pixels);
+    const std::vector<SimplifyTarget> targets = collapse_targets(params, pixels);
+    SimplifyParams collapse = collapse_params(params, targets.front(), pixels);
     const std::vector<Level>& levels = result.mesh_image.levels;
     if (params.max_cluster) collapse.max_face_area = static_cast<float>(*params.max_cluster);
     const Pipeline pipeline{feature, space, mask, params, result.report, progress};

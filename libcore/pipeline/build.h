@@ -90,9 +90,9 @@ struct BuildParams {
 
 /// Figures of a level, measured on what a reader gets back.
 struct LevelReport {
-    double map_rms = 0;             ///< through the pixel map [L*u*v*, or features with their weights]
-    double gouraud_rms = 0;         ///< base mesh drawn without the map, likewise
-    std::vector<double> plain_rms;  ///< of each channel beside the colour, through the map [its own unit]
+    double map_rms = 0;                 ///< through the pixel map [L*u*v*, or features with their weights]
+    double gouraud_rms = 0;             ///< base mesh drawn without the map, likewise
+    std::vector<double> auxiliary_rms;  ///< of each channel beside the colour, through the map [its own unit]
 };
 
 /// Wall time of the stages, all levels together [s].
@@ -106,7 +106,7 @@ struct BuildReport {
     BuildSeconds seconds;
     std::int64_t pixels = 0;  ///< meshed: those inside the mask, or all
     std::int64_t collapses = 0;
-    std::int64_t retracted = 0;  ///< collapses that the tracked map has forbidden
+    std::int64_t rejected = 0;  ///< collapses that the tracked map has forbidden
     std::vector<LevelReport> levels;
 };
 

@@ -11,18 +11,18 @@ namespace {
 // that are not small beside the picture they would take too much memory.
 constexpr double kStep = 0.015, kReach = 1.35, kSmall = 1.0 / 16;
 
-std::int64_t count_of(const CollapseResult& level) {
+std::int64_t count_of(const SimplifyResult& level) {
     return static_cast<std::int64_t>(level.mesh.vertex_count());
 }
 
 }  // namespace
 
-MeshLadder::MeshLadder(const GridMesh& grid, std::function<CollapseParams(std::int64_t)> params,
-                       const Progress& progress)
+LodMeshes::LodMeshes(const GridMesh& grid, std::function<SimplifyParams(std::int64_t)> params,
+                     const Progress& progress)
     : grid_(grid), params_(std::move(params)), progress_(progress) {}
 
-CollapseResult MeshLadder::mesh(std::int64_t vertices, bool rungs) {
-    for (const CollapseResult& level : kept_)
+SimplifyResult LodMeshes::mesh(std::int64_t vertices, bool lods) {
+    for (const SimplifyResult& level : kept_)
         if (count_of(level) <= vertices &&
             static_cast<double>(count_of(level)) >= (1 - kStep) * static_cast<double>(vertices) - 1)
             return level;
@@ -35,8 +35,8 @@ CollapseResult MeshLadder::mesh(std::int64_t vertices, bool rungs) {
         ++runs_;
     }
     const double most = kSmall * static_cast<double>(grid_.vertex_count());
-    if (rungs) {
-        std::erase_if(kept_, [&](const CollapseResult& level) {
+    if (lods) {
+        std::erase_if(kept_, [&](const SimplifyResult& level) {
             return static_cast<double>(count_of(level)) > kReach * static_cast<double>(vertices);
         });
         std::vector<std::int64_t> counts;
@@ -50,9 +50,9 @@ CollapseResult MeshLadder::mesh(std::int64_t vertices, bool rungs) {
             reached_ = count_of(kept_.back());
         }
     }
-    CollapseResult level = run_->to({.vertices = vertices}, progress_);
+    SimplifyResult level = run_->to({.vertices = vertices}, progress_);
     reached_ = count_of(level);
-    if (rungs && static_cast<double>(reached_) < most) kept_.push_back(level);
+    if (lods && static_cast<double>(reached_) < most) kept_.push_back(level);
     return level;
 }
 

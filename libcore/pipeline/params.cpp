@@ -125,14 +125,14 @@ double map_color_weight(const BuildParams& p) {
     return p.projection_color_weight.value_or(kUsualMapColorWeight);
 }
 
-std::vector<CollapseTarget> collapse_targets(const BuildParams& params, double pixels) {
-    std::vector<CollapseTarget> targets;
+std::vector<SimplifyTarget> collapse_targets(const BuildParams& params, double pixels) {
+    std::vector<SimplifyTarget> targets;
     for (const std::int64_t faces : params.levels.faces) targets.push_back({.faces = faces});
     for (const double error : params.levels.errors)
         targets.push_back({.max_error = error / params.color_weight});
     if (!targets.empty()) return targets;
 
-    CollapseTarget finest;
+    SimplifyTarget finest;
     const StopParams& stop = params.stop;
     finest.faces = stop.faces.value_or(0);
     finest.vertices = stop.vertices.value_or(0);
@@ -145,8 +145,8 @@ std::vector<CollapseTarget> collapse_targets(const BuildParams& params, double p
     return targets;
 }
 
-CollapseParams collapse_params(const BuildParams& params, const CollapseTarget& finest, double pixels) {
-    CollapseParams out;
+SimplifyParams collapse_params(const BuildParams& params, const SimplifyTarget& finest, double pixels) {
+    SimplifyParams out;
     out.metric = params.metric;
     out.solver = params.solver;
     out.geometry_weight = static_cast<float>(params.geometry_weight / params.color_weight);
@@ -169,7 +169,7 @@ std::int64_t refine_rounds(const BuildParams& params) {
     return params.refine.value_or(plain ? 0 : kUsualRefine);
 }
 
-std::vector<BuildParameter> listed_params(const BuildParams& p, const CollapseParams& collapse) {
+std::vector<BuildParameter> listed_params(const BuildParams& p, const SimplifyParams& collapse) {
     std::vector<BuildParameter> out{{"metric", std::string(metric_name(p.metric))},
                                     {"solver", std::string(solver_name(p.solver))}};
     if (!p.channels.empty()) out.emplace_back("channels", joined(p.channels));

@@ -12,13 +12,13 @@ namespace imgmesh {
 void check_params(const BuildParams& params);
 
 /// The collapse's targets, finest level first, for a picture of that many pixels.
-std::vector<CollapseTarget> collapse_targets(const BuildParams& params, double pixels);
+std::vector<SimplifyTarget> collapse_targets(const BuildParams& params, double pixels);
 
 /// The collapse's parameters, but for max_face_area.
-CollapseParams collapse_params(const BuildParams& params, const CollapseTarget& finest, double pixels);
+SimplifyParams collapse_params(const BuildParams& params, const SimplifyTarget& finest, double pixels);
 
 /// Every parameter that shaped the result, by its option's name.
-std::vector<BuildParameter> listed_params(const BuildParams& params, const CollapseParams& collapse);
+std::vector<BuildParameter> listed_params(const BuildParams& params, const SimplifyParams& collapse);
 
 /// Rounds of refinement: as wanted, or else none for published metrics and for colours of the quadrics, which
 /// are to be compared as they are, nor for a tracked map, which must end with the collapse.

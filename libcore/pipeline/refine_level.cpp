@@ -9,7 +9,7 @@
 namespace imgmesh {
 namespace {
 
-FeatureImage encoded_picture(const FeatureImage& luv) {
+FeatureImage encoded_image(const FeatureImage& luv) {
     FeatureImage out{luv.width, luv.height, 3, std::vector<float>(luv.data.size())};
     const LuvEncoder encoder(ColorSpace::kSrgb);
     parallel_blocks(0, luv.height, 16, [&](int first, int last) {
@@ -40,7 +40,7 @@ RefineReport refine_level(BaseMesh& mesh, const FeatureImage& feature, const Mas
     params.range = objective == Objective::kRgb ? ColorRange::kUnit : ColorRange::kLuv;
     if (objective == Objective::kLuv) return refine(mesh, feature, params, progress, mask);
     convert_colors(mesh, [](const Vec3f& luv) { return encoded_from_luv(ColorSpace::kSrgb, luv); });
-    RefineReport report = refine(mesh, encoded_picture(feature), params, progress, mask);
+    RefineReport report = refine(mesh, encoded_image(feature), params, progress, mask);
     convert_colors(mesh, [](const Vec3f& encoded) {
         return luv_from_linear(linear_from_encoded(ColorSpace::kSrgb, encoded));
     });

@@ -10,7 +10,7 @@
 
 namespace imgmesh {
 
-/// For one run of collapse_edges. Visits alone must not change the mesh: pixels then stay where they are in
+/// For one run of simplify. Visits alone must not change the mesh: pixels then stay where they are in
 /// the picture, which forbids no collapse, and are counted wherever a collapse changes the face they lie in.
 class Tracking {
   public:
@@ -19,20 +19,20 @@ class Tracking {
     Tracking(const Tracking&) = delete;  // hooks() point here
     Tracking& operator=(const Tracking&) = delete;
 
-    const CollapseHooks& hooks() const { return hooks_; }
+    const SimplifyHooks& hooks() const { return hooks_; }
     /// Whether the maps are the tracker's.
     bool tracked() const { return tracked_; }
     PixelMap take_map(std::size_t level) { return std::move(maps_[level]); }
     /// Down to the finest level; empty where not asked for.
     std::vector<Id> take_visits() { return std::move(visits_); }
-    std::int64_t retracted() const { return tracker_ ? tracker_->retracted() : 0; }
+    std::int64_t rejected() const { return tracker_ ? tracker_->rejected() : 0; }
 
   private:
     bool tracked_;
     std::optional<PixelTracker> tracker_;
     std::vector<PixelMap> maps_;
     std::vector<Id> visits_;
-    CollapseHooks hooks_;
+    SimplifyHooks hooks_;
 };
 
 }  // namespace imgmesh

@@ -113,7 +113,7 @@ class WireRow {
 
 Image encode_rows(const SourceInfo& source, const PixelMap& map, const RowFunction& row_function) {
     Image image = make_image(map.width, map.height, source.has_mask ? 4 : 3);
-    image.color_space = source.gamut == Gamut::kLight ? ColorSpace::kLinear : source.color_space;
+    image.color_space = source.gamut == Gamut::kHdr ? ColorSpace::kLinear : source.color_space;
     image.sample_type = source.sample_type;
     const LuvEncoder encoder(image.color_space);
     parallel_blocks(0, map.height, kGrainRows, [&](int first, int last) {

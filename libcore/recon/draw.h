@@ -23,7 +23,7 @@ struct DrawParams {
 };
 
 /// Draws level `level_index`. The result has the source's sample type and colour space (linear where light
-/// above 1 counts, Gamut::kLight), clamped to [0, 1] unless the space is linear; RGB, and A where the source
+/// above 1 counts, Gamut::kHdr), clamped to [0, 1] unless the space is linear; RGB, and A where the source
 /// has a mask (0 outside the mask for map, patches and visits, outside the mesh for the others). Size is
 /// round(scale * source size), at least 1; the centre of output pixel i is at (i + 0.5) / scale - 0.5 of the
 /// source. Throws Error(kUsage) for a level that is not there or a scale that the mode does not have,

@@ -25,10 +25,10 @@ std::vector<Origin> origins(const SplitNames& names, const Image& drawn) {
     // Grey is drawn as R = G = B.
     for (const std::string& name : names.color)
         out.push_back({name, drawn.channel(name == "Y" ? "G" : name), -1});
-    if (drawn.channel("A") >= 0 && std::ranges::count(names.plain, "A") == 0)
+    if (drawn.channel("A") >= 0 && std::ranges::count(names.auxiliary, "A") == 0)
         out.push_back({"A", drawn.channel("A"), -1});
     int feature = names.color.empty() ? 0 : 3;
-    for (const std::string& name : names.plain) out.push_back({name, -1, feature++});
+    for (const std::string& name : names.auxiliary) out.push_back({name, -1, feature++});
     return out;
 }
 

@@ -44,7 +44,7 @@ IMGMESH_INLINE double total(const Float8& v) {
 
 // Calls chunk(e, dx, dy, inside) for every eight pixels; e and dx have no meaning where not inside.
 template <class Chunk, class Flush>
-IMGMESH_INLINE void for_each_chunk(const PicturePlanes& picture, const Plane& plane, const Corner& a,
+IMGMESH_INLINE void for_each_chunk(const ImagePlanes& picture, const Plane& plane, const Corner& a,
                                    const Corner& b, const Corner& c, Chunk&& chunk, Flush&& flush) {
     int rows = 0;
     for_each_span(
@@ -73,7 +73,7 @@ IMGMESH_INLINE void for_each_chunk(const PicturePlanes& picture, const Plane& pl
     flush();
 }
 
-IMGMESH_INLINE CornerSums corner_sums_of(const PicturePlanes& picture, const Corner& a, const Corner& b,
+IMGMESH_INLINE CornerSums corner_sums_of(const ImagePlanes& picture, const Corner& a, const Corner& b,
                                          const Corner& c) {
     const Plane plane(a, b, c);
     const float wx = -plane.ux - plane.vx, wy = -plane.uy - plane.vy;
@@ -98,7 +98,7 @@ IMGMESH_INLINE CornerSums corner_sums_of(const PicturePlanes& picture, const Cor
     return sums;
 }
 
-IMGMESH_INLINE double squared_error_of(const PicturePlanes& picture, const Corner& a, const Corner& b,
+IMGMESH_INLINE double squared_error_of(const ImagePlanes& picture, const Corner& a, const Corner& b,
                                        const Corner& c) {
     double sum = 0;
     Float8 ee = {};
@@ -113,7 +113,7 @@ IMGMESH_INLINE double squared_error_of(const PicturePlanes& picture, const Corne
     return sum;
 }
 
-IMGMESH_INLINE FaceSums face_sums_of(const PicturePlanes& picture, const Corner& a, const Corner& b,
+IMGMESH_INLINE FaceSums face_sums_of(const ImagePlanes& picture, const Corner& a, const Corner& b,
                                      const Corner& c) {
     const Plane plane(a, b, c);
     FaceSums sums;
@@ -152,15 +152,15 @@ IMGMESH_INLINE FaceSums face_sums_of(const PicturePlanes& picture, const Corner&
 }
 
 #if defined(__x86_64__)
-__attribute__((target("avx2"))) CornerSums corner_sums_avx2(const PicturePlanes& picture, const Corner& a,
+__attribute__((target("avx2"))) CornerSums corner_sums_avx2(const ImagePlanes& picture, const Corner& a,
                                                             const Corner& b, const Corner& c) {
     return corner_sums_of(picture, a, b, c);
 }
-__attribute__((target("avx2"))) double squared_error_avx2(const PicturePlanes& picture, const Corner& a,
+__attribute__((target("avx2"))) double squared_error_avx2(const ImagePlanes& picture, const Corner& a,
                                                           const Corner& b, const Corner& c) {
     return squared_error_of(picture, a, b, c);
 }
-__attribute__((target("avx2"))) FaceSums face_sums_avx2(const PicturePlanes& picture, const Corner& a,
+__attribute__((target("avx2"))) FaceSums face_sums_avx2(const ImagePlanes& picture, const Corner& a,
                                                         const Corner& b, const Corner& c) {
     return face_sums_of(picture, a, b, c);
 }
@@ -172,7 +172,7 @@ bool has_avx2() {
 
 }  // namespace
 
-PicturePlanes::PicturePlanes(const FeatureImage& picture, const Mask& mask)
+ImagePlanes::ImagePlanes(const FeatureImage& picture, const Mask& mask)
     : width(picture.width), height(picture.height) {
     constexpr std::size_t kPadding = 8;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -184,28 +184,28 @@ PicturePlanes::PicturePlanes(const FeatureImage& picture, const Mask& mask)
     for (std::size_t i = 0; i < picture.pixel_count(); ++i) inside[i] = mask.contains(i) ? 1.0f : 0.0f;
 }
 
-CornerSums corner_sums(const PicturePlanes& picture, const Corner& a, const Corner& b, const Corner& c) {
+CornerSums corner_sums(const ImagePlanes& picture, const Corner& a, const Corner& b, const Corner& c) {
 #if defined(__x86_64__)
     if (has_avx2()) return corner_sums_avx2(picture, a, b, c);
 #endif
     return corner_sums_of(picture, a, b, c);
 }
 
-double squared_error(const PicturePlanes& picture, const Corner& a, const Corner& b, const Corner& c) {
+double squared_error(const ImagePlanes& picture, const Corner& a, const Corner& b, const Corner& c) {
 #if defined(__x86_64__)
     if (has_avx2()) return squared_error_avx2(picture, a, b, c);
 #endif
     return squared_error_of(picture, a, b, c);
 }
 
-FaceSums face_sums(const PicturePlanes& picture, const Corner& a, const Corner& b, const Corner& c) {
+FaceSums face_sums(const ImagePlanes& picture, const Corner& a, const Corner& b, const Corner& c) {
 #if defined(__x86_64__)
     if (has_avx2()) return face_sums_avx2(picture, a, b, c);
 #endif
     return face_sums_of(picture, a, b, c);
 }
 
-WorstPixel worst_pixel(const PicturePlanes& picture, const Corner& a, const Corner& b, const Corner& c) {
+WorstPixel worst_pixel(const ImagePlanes& picture, const Corner& a, const Corner& b, const Corner& c) {
     const Plane plane(a, b, c);
     WorstPixel worst;
     for_each_chunk(

@@ -11,9 +11,9 @@
 namespace imgmesh {
 
 /// A picture of three channels as planes, each padded so that eight floats can be read at any pixel.
-struct PicturePlanes {
+struct ImagePlanes {
     /// Pixels outside `mask`, which is empty() or of the picture's size, count nowhere.
-    explicit PicturePlanes(const FeatureImage& picture, const Mask& mask = {});
+    explicit ImagePlanes(const FeatureImage& picture, const Mask& mask = {});
     int width, height;
     std::vector<float> inside;  ///< 1 inside the mask and 0 outside, padded too; empty without a mask
     std::array<std::vector<float>, 3> channel;
@@ -41,16 +41,16 @@ struct FaceSums {
 
 /// Of the face (a, b, c), counter-clockwise on screen, drawn with colours interpolated linearly; pixels as
 /// for_each_span shares them out. Positions on kPositionStep. Same bits on every processor.
-CornerSums corner_sums(const PicturePlanes& picture, const Corner& a, const Corner& b, const Corner& c);
+CornerSums corner_sums(const ImagePlanes& picture, const Corner& a, const Corner& b, const Corner& c);
 /// CornerSums::ee alone, to the bit.
-double squared_error(const PicturePlanes& picture, const Corner& a, const Corner& b, const Corner& c);
-FaceSums face_sums(const PicturePlanes& picture, const Corner& a, const Corner& b, const Corner& c);
+double squared_error(const ImagePlanes& picture, const Corner& a, const Corner& b, const Corner& c);
+FaceSums face_sums(const ImagePlanes& picture, const Corner& a, const Corner& b, const Corner& c);
 
 /// The pixel of the face with the largest |e|^2, the first of several; (-1, -1) for a face without pixels.
 struct WorstPixel {
     int x = -1, y = -1;
     float error = -1;  ///< |e|^2
 };
-WorstPixel worst_pixel(const PicturePlanes& picture, const Corner& a, const Corner& b, const Corner& c);
+WorstPixel worst_pixel(const ImagePlanes& picture, const Corner& a, const Corner& b, const Corner& c);
 
 }  // namespace imgmesh

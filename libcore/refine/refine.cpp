@@ -14,7 +14,7 @@ constexpr double kLeastGain = 1e-4;
 
 RefineReport refine(BaseMesh& mesh, const FeatureImage& picture, const RefineParams& params,
                     const Progress& progress, const Mask& mask) {
-    const PicturePlanes planes(picture, mask);
+    const ImagePlanes planes(picture, mask);
     Refiner refiner(mesh, planes, params);
     mesh = refiner.result();
     RefineReport report;

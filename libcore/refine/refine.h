@@ -38,7 +38,8 @@ struct RefineReport {
 /// plus what shape weighs, and a round that does not lower the error alone is dropped with all after it: it
 /// never rises. The numbers of vertices and of faces stay.
 ///
-/// mesh     any outline, three channels, positions on kPositionStep; corners and outlines other than straight
+/// mesh     any boundary, three channels, positions on kPositionStep; corners and boundaries other than
+/// straight
 ///          sides of the bounding box stay, vertices of such sides slide
 /// picture  what to draw, in the space of mesh.feature; pixels outside the mesh do not count,
 ///          nor do those outside `mask`, which is empty() or of the picture's size

@@ -18,14 +18,16 @@ struct Star {
     bool closed = false;  ///< the vertex is inside the mesh
 };
 
-/// An editable triangle mesh with neighbours. Vertices and faces that are gone stay as holes until compact().
+/// An editable triangle mesh with neighbours. Vertices and faces that are removed stay as holes until
+/// compact().
 class RefineMesh {
   public:
     /// Coordinates that a vertex keeps, as bits.
     static constexpr std::uint8_t kFree = 0, kFixedX = 1, kFixedY = 2, kFixed = 3;
 
-    /// `mesh` has three channels and faces of positive area. Vertices of its outline may slide along where
-    /// the outline runs straight on along one side of its bounding box; all others of the outline are fixed.
+    /// `mesh` has three channels and faces of positive area. Vertices of its boundary may slide along where
+    /// the boundary runs straight on along one side of its bounding box; all others of the boundary are
+    /// fixed.
     explicit RefineMesh(const BaseMesh& mesh);
     BaseMesh compact() const;
 
@@ -39,8 +41,8 @@ class RefineMesh {
     bool live_face(Id f) const { return faces[f][0] != kNone; }
     std::size_t vertex_count() const { return live_vertices_; }
 
-    /// False where there are more than Star::kMost faces or the vertex is gone. Of a vertex with several fans
-    /// one fan alone.
+    /// False where there are more than Star::kMost faces or the vertex is removed. Of a vertex with several
+    /// fans one fan alone.
     bool star(Id v, Star& out) const;
 
     /// The edge opposite corner i of face f becomes the other diagonal of the quad; the two faces keep their
@@ -60,7 +62,7 @@ class RefineMesh {
     Id new_face(const Face& face);
     Id new_vertex(const Vec2f& p, const Vec3f& c, std::uint8_t fixed_axes);
 
-    std::vector<Id> face_of_;  // one face of each vertex, kNone where it is gone
+    std::vector<Id> face_of_;  // one face of each vertex, kNone where it is removed
     std::vector<Id> free_faces_, free_vertices_;
     std::size_t live_vertices_ = 0;
 };

@@ -21,7 +21,7 @@ void Refiner::add_shape(Cost& cost, const Vec2f& a, const Vec2f& b, const Vec2f&
     cost.shape += 1 / q - 1;
 }
 
-Refiner::Refiner(const BaseMesh& mesh, const PicturePlanes& picture, const RefineParams& params)
+Refiner::Refiner(const BaseMesh& mesh, const ImagePlanes& picture, const RefineParams& params)
     : picture_(picture), params_(params), mesh_(mesh), error_(mesh.faces.size(), 0.0) {
     fit_colors();
     shape_unit_ = params.shape_weight * total_error() / static_cast<double>(mesh.faces.size());
@@ -96,7 +96,7 @@ void Refiner::fit_colors() {
         mesh_.color[v] = next;
         change[v] = (next - before[v]).cast<double>();
     };
-    const std::vector<std::vector<Id>> classes = vertex_classes(mesh_.faces, mesh_.position.size());
+    const std::vector<std::vector<Id>> classes = vertex_coloring(mesh_.faces, mesh_.position.size());
     for (int pass = 0; pass < kPasses; ++pass)
         for (const std::vector<Id>& members : classes)
             for_each_id(members.size(), [&](Id k) { improve(members[k]); });
@@ -231,7 +231,7 @@ bool Refiner::move_vertex(Id v) {
 std::int64_t Refiner::move_vertices() {
     forget();
     std::vector<std::uint8_t> moved(mesh_.position.size(), false);
-    for (const std::vector<Id>& members : vertex_classes(mesh_.faces, mesh_.position.size()))
+    for (const std::vector<Id>& members : vertex_coloring(mesh_.faces, mesh_.position.size()))
         for_each_id(members.size(), [&](Id k) { moved[members[k]] = move_vertex(members[k]); });
     return std::count(moved.begin(), moved.end(), true);
 }

@@ -12,7 +12,7 @@ namespace imgmesh {
 /// Source and steps: refine.cpp. Every step keeps `error` of each face up to date.
 class Refiner {
   public:
-    Refiner(const BaseMesh& mesh, const PicturePlanes& picture, const RefineParams& params);
+    Refiner(const BaseMesh& mesh, const ImagePlanes& picture, const RefineParams& params);
 
     double total_error() const;
     BaseMesh result() const { return mesh_.compact(); }
@@ -91,7 +91,7 @@ class Refiner {
     Id insert(const Insertion& insertion);
     double face_error(const Face& face) const;
 
-    const PicturePlanes& picture_;
+    const ImagePlanes& picture_;
     RefineParams params_;
     RefineMesh mesh_;
     std::vector<double> error_;  // of each face

@@ -1,4 +1,4 @@
-// The engine of collapse_edges: which edges of a mesh may merge, where to, and the queue that says which is
+// The engine of simplify: which edges of a mesh may merge, where to, and the queue that says which is
 // next. It works on a whole mesh, or on one tile of it beside others that work on theirs.
 #pragma once
 
@@ -24,19 +24,19 @@ inline constexpr float kNever = std::numeric_limits<float>::infinity();
 
 /// A mesh with what its vertices carry.
 template <class Q>
-struct CollapseMesh {
+struct QuadricMesh {
     RingMesh rings;
     std::vector<Q> quadrics;
     std::vector<Id> pixel;  ///< the number in the grid mesh of each vertex; empty where it is the same
 };
 
 /// What has been collapsed, or may be.
-struct Tally {
+struct CollapseStats {
     std::int64_t vertices = 0, faces = 0;  ///< taken away
     double error = 0;                      ///< largest total quadric error of a merged vertex
     float postponed = kNever;              ///< least cost of the edges that are beyond the threshold
 
-    void add(const Tally& other) {
+    void add(const CollapseStats& other) {
         vertices += other.vertices;
         faces += other.faces;
         error = std::max(error, other.error);
@@ -44,45 +44,45 @@ struct Tally {
     }
 };
 
-inline constexpr Tally kAllMayGo{.vertices = std::numeric_limits<std::int64_t>::max(),
-                                 .faces = std::numeric_limits<std::int64_t>::max()};
+inline constexpr CollapseStats kAllMayGo{.vertices = std::numeric_limits<std::int64_t>::max(),
+                                         .faces = std::numeric_limits<std::int64_t>::max()};
 
 /// What holds for every collapse of a run.
-struct CollapseRules {
-    const CollapseParams& params;
-    const CollapseHooks& hooks;
+struct SimplifyRules {
+    const SimplifyParams& params;
+    const SimplifyHooks& hooks;
     StarLimits limits;
-    MaskOutline* outline = nullptr;  ///< of a cut-out
+    MaskBoundary* boundary = nullptr;  ///< of a masked image
     double max_error = std::numeric_limits<double>::infinity();
 };
 
-/// Source and steps: collapse_edges.cpp. `Q` is the quadric that vertices carry: kChannels features,
+/// Source and steps: simplify.cpp. `Q` is the quadric that vertices carry: kChannels features,
 /// merged(a, b), at(x, y), feature(c, x, y), error, the minimiser (px, py) and best_x(y), best_y(x) on a
 /// line where has_minimum(fixed); initial_quadrics and rebuilt_quadrics make vectors of it.
 ///
-/// Edges with a sealed end (Ring::sealed) are left alone. So several engines may work on one mesh at the
-/// same time where each has its own vertices, and those with a neighbour of another engine are sealed.
+/// Edges with a locked end (Ring::locked) are left alone. So several engines may work on one mesh at the
+/// same time where each has its own vertices, and those with a neighbour of another engine are locked.
 template <class Q>
 class EdgeCollapser {
   public:
-    EdgeCollapser(CollapseMesh<Q>& mesh, const CollapseRules& rules)
+    EdgeCollapser(QuadricMesh<Q>& mesh, const SimplifyRules& rules)
         : rings_(mesh.rings), quadrics_(mesh.quadrics), rules_(rules) {}
 
     /// Collapses the edges of the vertices [0, count) that vertex(n) gives, the cheapest first, until none is
-    /// left below `threshold` or as many vertices or faces are gone as may go. Each edge counts for its end
-    /// of the lower number, or with `whole_stars` for either.
+    /// left below `threshold` or as many vertices or faces are removed as may go. Each edge counts for its
+    /// end of the lower number, or with `whole_stars` for either.
     template <class Vertex>
-    Tally run(std::size_t count, const Vertex& vertex, float threshold, const Tally& may_go,
-              bool whole_stars = false) {
+    CollapseStats run(std::size_t count, const Vertex& vertex, float threshold, const CollapseStats& may_go,
+                      bool whole_stars = false) {
         threshold_ = threshold;
         may_go_ = may_go;
-        tally_ = {};
+        stats_ = {};
         for (std::size_t n = 0; n < count; ++n)
-            if (const Id i = vertex(n); rings_[i].live() && !rings_[i].sealed)
+            if (const Id i = vertex(n); rings_[i].live() && !rings_[i].locked)
                 file_star(i, whole_stars ? 0 : i);
         drain();
         queue_.clear();
-        return tally_;
+        return stats_;
     }
 
     /// What filing an edge of two vertices would cost; kNever where it may not merge.
@@ -135,11 +135,11 @@ class EdgeCollapser {
         return rings_[edge.i].version == edge.version_i && rings_[edge.j].version == edge.version_j;
     }
 
-    bool done() const { return tally_.vertices >= may_go_.vertices || tally_.faces >= may_go_.faces; }
+    bool done() const { return stats_.vertices >= may_go_.vertices || stats_.faces >= may_go_.faces; }
 
     // Where the merged vertex goes at best, and what that costs; legality of the star left aside.
     Placement minimiser(Id i, Id j, const Q& sum) const {
-        if (along_outline(i, j)) return outline_place(i, j, sum, [](const Placement&) { return true; });
+        if (along_boundary(i, j)) return boundary_place(i, j, sum, [](const Placement&) { return true; });
         const BorderConstraint border = border_constraint(rings_[i], rings_[j]);
         if (!border.allowed) return {};
         if (!sum.has_minimum(border.fixed))
@@ -158,17 +158,18 @@ class EdgeCollapser {
         return place;
     }
 
-    // Whether an edge joins two vertices on an outline of a cut-out, be it along it or through the inside.
-    bool along_outline(Id i, Id j) const {
-        return rules_.outline && rings_[i].border() && rings_[j].border();
+    // Whether an edge joins two vertices on a boundary of a masked image, be it along it or through the
+    // inside.
+    bool along_boundary(Id i, Id j) const {
+        return rules_.boundary && rings_[i].border() && rings_[j].border();
     }
 
-    // The cheapest of the places that the outline has for the merged vertex, of those allowed.
+    // The cheapest of the places that the boundary has for the merged vertex, of those allowed.
     template <class Allowed>
-    Placement outline_place(Id i, Id j, const Q& sum, const Allowed& allowed) const {
+    Placement boundary_place(Id i, Id j, const Q& sum, const Allowed& allowed) const {
         Placement best;
         if (rings_[i].neighbor[0] != j && rings_[j].neighbor[0] != i) return best;
-        const MaskOutline::Places places = rules_.outline->places(rings_, i, j, sum.px, sum.py);
+        const MaskBoundary::Places places = rules_.boundary->places(rings_, i, j, sum.px, sum.py);
         for (int k = 0; k < places.count; ++k) {
             const Vec2f& at = places.at[static_cast<std::size_t>(k)];
             Placement p{at.x(), at.y(), 0};
@@ -182,7 +183,7 @@ class EdgeCollapser {
     bool allowed(Id i, Id j, const MergedRing& ring, const Placement& place) {
         const bool border = rings_[i].border() || rings_[j].border();
         return rules_.limits.allow(rings_, ring, border, place.x, place.y) &&
-               (!along_outline(i, j) || rules_.outline->allows(rings_, i, j, place.x, place.y));
+               (!along_boundary(i, j) || rules_.boundary->allows(rings_, i, j, place.x, place.y));
     }
 
     float cost_at(Id i, Id j, const Q& sum, const Placement& place) const {
@@ -195,10 +196,10 @@ class EdgeCollapser {
         return rules_.params.total_priority ? added + (quadrics_[i].error + quadrics_[j].error) : added;
     }
 
-    // The cheapest legal one of midpoint and ends, or of the outline's places.
+    // The cheapest legal one of midpoint and ends, or of the boundary's places.
     Placement fallback(Id i, Id j, const MergedRing& ring, const Q& sum) {
         const auto legal = [&](const Placement& p) { return allowed(i, j, ring, p); };
-        if (along_outline(i, j)) return outline_place(i, j, sum, legal);
+        if (along_boundary(i, j)) return boundary_place(i, j, sum, legal);
         const BorderConstraint border = border_constraint(rings_[i], rings_[j]);
         return border.allowed ? cheapest_of_three(i, j, sum, border, legal) : Placement{};
     }
@@ -233,21 +234,21 @@ class EdgeCollapser {
                 if (place.cost < threshold_)
                     queue_.push(place.cost, edge);
                 else
-                    tally_.postponed = std::min(tally_.postponed, place.cost);
+                    stats_.postponed = std::min(stats_.postponed, place.cost);
                 return;
             }
         }
         const float total = sum.at(place.x, place.y);
         if (total > rules_.max_error) return;
         if (rules_.hooks.before && !may_happen(i, j, sum, place)) return;
-        tally_.error = std::max(tally_.error, static_cast<double>(total));
-        if (rules_.outline) rules_.outline->merge(rings_, i, j, place.x, place.y);
+        stats_.error = std::max(stats_.error, static_cast<double>(total));
+        if (rules_.boundary) rules_.boundary->merge(rings_, i, j, place.x, place.y);
         apply_merge(rings_, i, j, ring);
         rings_[i].x = place.x;
         rings_[i].y = place.y;
         quadrics_[i] = sum;
-        ++tally_.vertices;
-        tally_.faces += ring.faces_removed;
+        ++stats_.vertices;
+        stats_.faces += ring.faces_removed;
         file_star(i, 0);
     }
 
@@ -267,7 +268,7 @@ class EdgeCollapser {
         int count = 0;
         for (int k = 0; k < ring.valence; ++k) {
             const Id j = others[count] = ring.neighbor[k];
-            count += j >= from && !rings_[j].sealed;
+            count += j >= from && !rings_[j].locked;
         }
         if constexpr (kBatched) star_increments(quadrics_.data(), i, others, count, costs);
         for (int k = 0; k < count; ++k) {
@@ -277,7 +278,7 @@ class EdgeCollapser {
             if (cost_k < threshold_)
                 queue_.push(cost_k, {i, j, ring.version, rings_[j].version});
             else
-                tally_.postponed = std::min(tally_.postponed, cost_k);
+                stats_.postponed = std::min(stats_.postponed, cost_k);
         }
     }
 
@@ -286,10 +287,10 @@ class EdgeCollapser {
 
     RingMesh& rings_;
     std::vector<Q>& quadrics_;
-    const CollapseRules& rules_;
+    const SimplifyRules& rules_;
     BucketQueue queue_;
     float threshold_ = 0;
-    Tally tally_, may_go_;
+    CollapseStats stats_, may_go_;
 };
 
 }  // namespace imgmesh

@@ -1,5 +1,5 @@
 // Source: progressive hulls (Sander, Gu, Gortler, Hoppe and Snyder, "Silhouette clipping", 2000), in the
-// plane and by exact tests. Outlines run with the inside on their left.
+// plane and by exact tests. Boundarys run with the inside on their left.
 #include "libcore/simplify/mask_boundary.h"
 
 #include <algorithm>
@@ -22,7 +22,7 @@ double squared_distance(const Vec2f& p, const Vec2f& a, const Vec2f& b) {
     return (e - t * d).squaredNorm();
 }
 
-constexpr double kBand2 = double{kOutlineBand} * kOutlineBand;
+constexpr double kBand2 = double{kBoundaryBand} * kBoundaryBand;
 
 bool on_segment(const Vec2f& p, const Vec2f& a, const Vec2f& b) {
     return turn(a, b, p) == 0 && std::min(a.x(), b.x()) <= p.x() && p.x() <= std::max(a.x(), b.x()) &&
@@ -54,7 +54,7 @@ bool enters(const Vec2f& p, const Vec2f& q, const std::array<Vec2f, 3>& t) {
            segments_meet(p, q, t[2], t[0]);
 }
 
-// What the mesh gains when b and c of the outline a, b, c, d are replaced by m.
+// What the mesh gains when b and c of the boundary a, b, c, d are replaced by m.
 std::array<std::array<Vec2f, 3>, 3> gains(const Vec2f& a, const Vec2f& b, const Vec2f& c, const Vec2f& d,
                                           const Vec2f& m) {
     return {{{a, m, b}, {b, m, c}, {c, m, d}}};
@@ -62,7 +62,7 @@ std::array<std::array<Vec2f, 3>, 3> gains(const Vec2f& a, const Vec2f& b, const 
 
 }  // namespace
 
-MaskOutline::MaskOutline(const GridMesh& grid, const RingMesh& rings, const std::vector<Id>& number)
+MaskBoundary::MaskBoundary(const GridMesh& grid, const RingMesh& rings, const std::vector<Id>& number)
     : grid_(grid), first_point_(grid.vertex_count(), kNone), point_(rings.size(), kNone) {
     for (Id v = 0; v < rings.size(); ++v)
         if (rings[v].live() && rings[v].border()) {
@@ -74,13 +74,13 @@ MaskOutline::MaskOutline(const GridMesh& grid, const RingMesh& rings, const std:
     for (Point& point : points_) point.next = point_[rings[point.vertex].neighbor[0]];
 }
 
-MaskOutline::Sides MaskOutline::sides(const RingMesh& rings, Id i, Id j) {
+MaskBoundary::Sides MaskBoundary::sides(const RingMesh& rings, Id i, Id j) {
     const bool forward = rings[i].neighbor[0] == j;
     const Id b = forward ? i : j, c = forward ? j : i;
     return {rings[b].neighbor[rings[b].valence - 1], b, c, rings[c].neighbor[0]};
 }
 
-MaskOutline::Places MaskOutline::places(const RingMesh& rings, Id i, Id j, float x, float y) const {
+MaskBoundary::Places MaskBoundary::places(const RingMesh& rings, Id i, Id j, float x, float y) const {
     const Sides s = sides(rings, i, j);
     const auto at = [&](Id v) { return Vec2f(rings[v].x, rings[v].y); };
     const Vec2f a = at(s.a), b = at(s.b), c = at(s.c), d = at(s.d);
@@ -117,7 +117,7 @@ MaskOutline::Places MaskOutline::places(const RingMesh& rings, Id i, Id j, float
     return out;
 }
 
-void MaskOutline::collect_chain(const Sides& s) {
+void MaskBoundary::collect_chain(const Sides& s) {
     chain_.clear();
     const Id last = points_[point_[s.d]].anchor;
     Id n = points_[point_[s.a]].anchor;
@@ -129,7 +129,7 @@ void MaskOutline::collect_chain(const Sides& s) {
 }
 
 // The index in chain_, its ends left out.
-std::size_t MaskOutline::nearest_in_chain(float x, float y) const {
+std::size_t MaskBoundary::nearest_in_chain(float x, float y) const {
     std::size_t best = 1;
     double least = std::numeric_limits<double>::infinity();
     for (std::size_t k = 1; k + 1 < chain_.size(); ++k) {
@@ -144,7 +144,7 @@ std::size_t MaskOutline::nearest_in_chain(float x, float y) const {
 
 // A point of the new edge a m lies between the projections of two points of the chain on it, or between an
 // end and the nearest such projection; so it too is within the band of the chain.
-bool MaskOutline::within_band(const RingMesh& rings, const Sides& s, const Vec2f& m) const {
+bool MaskBoundary::within_band(const RingMesh& rings, const Sides& s, const Vec2f& m) const {
     const std::size_t middle = nearest_in_chain(m.x(), m.y());
     if ((points_[chain_[middle]].position - m).cast<double>().squaredNorm() > kBand2) return false;
     const Vec2f a(rings[s.a].x, rings[s.a].y), d(rings[s.d].x, rings[s.d].y);
@@ -158,10 +158,10 @@ bool MaskOutline::within_band(const RingMesh& rings, const Sides& s, const Vec2f
 }
 
 // What is gained lies within the band of the chain, other edges within that of their own. Points of an
-// outline are at most sqrt(2) apart, so something that touches has points nearer than 2 (1 + 0.71), which
+// boundary are at most sqrt(2) apart, so something that touches has points nearer than 2 (1 + 0.71), which
 // along either axis is 3 whole pixels. (Strips, whose points are not at pixel centres, are straight and
 // stay.)
-bool MaskOutline::collides(const RingMesh& rings, const Sides& s, const Vec2f& m) {
+bool MaskBoundary::collides(const RingMesh& rings, const Sides& s, const Vec2f& m) {
     constexpr int kReach = 3;
     const auto at = [&](Id v) { return Vec2f(rings[v].x, rings[v].y); };
     std::array<std::array<Vec2f, 3>, 3> gained = gains(at(s.a), at(s.b), at(s.c), at(s.d), m);
@@ -197,17 +197,17 @@ bool MaskOutline::collides(const RingMesh& rings, const Sides& s, const Vec2f& m
     return false;
 }
 
-bool MaskOutline::allows(const RingMesh& rings, Id i, Id j, float x, float y) {
+bool MaskBoundary::allows(const RingMesh& rings, Id i, Id j, float x, float y) {
     const Sides s = sides(rings, i, j);
     const Vec2f m(x, y), b(rings[s.b].x, rings[s.b].y), c(rings[s.c].x, rings[s.c].y);
-    const bool in_picture = x >= 0 && y >= 0 && x <= static_cast<float>(grid_.feature.width - 1) &&
-                            y <= static_cast<float>(grid_.feature.height - 1);
-    if (!in_picture && m != b && m != c) return false;  // the ends of strips may be outside already
+    const bool in_image = x >= 0 && y >= 0 && x <= static_cast<float>(grid_.feature.width - 1) &&
+                          y <= static_cast<float>(grid_.feature.height - 1);
+    if (!in_image && m != b && m != c) return false;  // the ends of strips may be outside already
     collect_chain(s);
     return within_band(rings, s, m) && !collides(rings, s, m);
 }
 
-void MaskOutline::merge(const RingMesh& rings, Id i, Id j, float x, float y) {
+void MaskBoundary::merge(const RingMesh& rings, Id i, Id j, float x, float y) {
     if (rings[i].border() && rings[j].border()) {
         const Sides s = sides(rings, i, j);
         collect_chain(s);

@@ -1,4 +1,4 @@
-// What may become of the outline of a cut-out: it covers the mask, and stays close to it.
+// What may become of the boundary of a masked image: it covers the mask, and stays close to it.
 #pragma once
 
 #include <array>
@@ -9,24 +9,24 @@
 
 namespace imgmesh {
 
-/// No point of a simplified outline is farther from the dense one than this, nor the other way round [px].
+/// No point of a simplified boundary is farther from the dense one than this, nor the other way round [px].
 /// The pixels of a straight line are less than one pixel from a line that covers them, so stairs of any slope
-/// become straight; with 0.75 the flat ones stay, and a disc of 300 pixels keeps 116 outline vertices instead
-/// of 76 (docs/decisions/0005-cut-outs.md).
-inline constexpr float kOutlineBand = 1.0f;
+/// become straight; with 0.75 the flat ones stay, and a disc of 300 pixels keeps 116 boundary vertices
+/// instead of 76 (docs/decisions/0005-cut-outs.md).
+inline constexpr float kBoundaryBand = 1.0f;
 
-/// Two neighbours on an outline may merge where
+/// Two neighbours on a boundary may merge where
 /// - the mesh only grows (a progressive hull), so that it always covers every pixel inside;
-/// - the part of the dense outline that the new edges stand for stays within kOutlineBand of them;
-/// - what is added touches no other edge of an outline, so that parts of the mesh never overlap;
+/// - the part of the dense boundary that the new edges stand for stays within kBoundaryBand of them;
+/// - what is added touches no other edge of a boundary, so that parts of the mesh never overlap;
 /// - nothing leaves the picture.
-/// All of it is decided exactly, on the kPositionStep grid. Vertices on an outline are named i and j as in
+/// All of it is decided exactly, on the kPositionStep grid. Vertices on a boundary are named i and j as in
 /// merge_rings(); `rings` is the mesh before the merge.
-class MaskOutline {
+class MaskBoundary {
   public:
-    /// rings   of a mesh whose outline is still the dense mesh's
+    /// rings   of a mesh whose boundary is still the dense mesh's
     /// number  of each of its vertices in the grid mesh; empty where it is the same
-    MaskOutline(const GridMesh& grid, const RingMesh& rings, const std::vector<Id>& number);
+    MaskBoundary(const GridMesh& grid, const RingMesh& rings, const std::vector<Id>& number);
 
     /// Places where the merged vertex would make the mesh only grow: at either end, where the outer
     /// neighbours' edges meet, at (x, y), and on a straight side as near to (x, y) as it goes. Snapped.
@@ -39,28 +39,28 @@ class MaskOutline {
     /// Whether (x, y), one of places(), is within the band and collides with nothing.
     bool allows(const RingMesh& rings, Id i, Id j, float x, float y);
 
-    /// To be told of every merge of j into i at (x, y), also of vertices that are on no outline.
+    /// To be told of every merge of j into i at (x, y), also of vertices that are on no boundary.
     void merge(const RingMesh& rings, Id i, Id j, float x, float y);
 
   private:
     struct Sides {
-        Id a, b, c, d;  ///< along the outline, inside on the left; b and c are i and j
+        Id a, b, c, d;  ///< along the boundary, inside on the left; b and c are i and j
     };
     static Sides sides(const RingMesh& rings, Id i, Id j);
-    /// The points of the dense outline from the one of `a` to that of `d`, as indices into points_.
+    /// The points of the dense boundary from the one of `a` to that of `d`, as indices into points_.
     void collect_chain(const Sides& s);
     std::size_t nearest_in_chain(float x, float y) const;
     bool within_band(const RingMesh& rings, const Sides& s, const Vec2f& m) const;
     bool collides(const RingMesh& rings, const Sides& s, const Vec2f& m);
 
-    /// A vertex of the dense outline.
+    /// A vertex of the dense boundary.
     struct Point {
         Vec2f position;
         Id pixel;
-        Id next;       ///< the point after it on the outline
+        Id next;       ///< the point after it on the boundary
         Id owner;      ///< of the current edge that stands for it: the point that its first end has taken
         Id vertex;     ///< whose place among the points this is, if it still lives
-        Id anchor;     ///< the point of the dense outline that this vertex stands for
+        Id anchor;     ///< the point of the dense boundary that this vertex stands for
         Id looked_at;  ///< number of the latest search that saw it
     };
     const GridMesh& grid_;

@@ -35,7 +35,7 @@ bool solve_lu(const Matrix& a, Column<Matrix>& v) {
 }
 
 template <int N>
-DenseMinimum<N> closed_minimum(const PlaneForm<N>& plane) {
+MatrixMinimum<N> closed_minimum(const PlaneForm<N>& plane) {
     const Eigen::Matrix2d& s = plane.s;
     const double trace = s.trace(), det = s.determinant();
     if (!(trace > kFlat * plane.steepest)) return {plane.at(Eigen::Vector2d::Zero()), false};
@@ -61,8 +61,8 @@ PlaneForm<N>::PlaneForm(const Eigen::Matrix<double, N, N>& a, const Eigen::Matri
 }
 
 template <int N>
-DenseMinimum<N> dense_minimum(const Eigen::Matrix<double, N, N>& a, const Eigen::Matrix<double, N, 1>& b,
-                              Solver solver) {
+MatrixMinimum<N> matrix_minimum(const Eigen::Matrix<double, N, N>& a, const Eigen::Matrix<double, N, 1>& b,
+                                Solver solver) {
     if (solver == Solver::kClosed) return closed_minimum(PlaneForm<N>(a, b));
     Column<Solved<N>> v = -b;
     const bool unique = solver == Solver::kSvd ? solve_svd<Solved<N>>(a, v) : solve_lu<Solved<N>>(a, v);
@@ -72,11 +72,11 @@ DenseMinimum<N> dense_minimum(const Eigen::Matrix<double, N, N>& a, const Eigen:
 template struct PlaneForm<5>;
 template struct PlaneForm<10>;
 template struct PlaneForm<18>;
-template DenseMinimum<5> dense_minimum(const Eigen::Matrix<double, 5, 5>&, const Eigen::Matrix<double, 5, 1>&,
-                                       Solver);
-template DenseMinimum<10> dense_minimum(const Eigen::Matrix<double, 10, 10>&,
-                                        const Eigen::Matrix<double, 10, 1>&, Solver);
-template DenseMinimum<18> dense_minimum(const Eigen::Matrix<double, 18, 18>&,
-                                        const Eigen::Matrix<double, 18, 1>&, Solver);
+template MatrixMinimum<5> matrix_minimum(const Eigen::Matrix<double, 5, 5>&,
+                                         const Eigen::Matrix<double, 5, 1>&, Solver);
+template MatrixMinimum<10> matrix_minimum(const Eigen::Matrix<double, 10, 10>&,
+                                          const Eigen::Matrix<double, 10, 1>&, Solver);
+template MatrixMinimum<18> matrix_minimum(const Eigen::Matrix<double, 18, 18>&,
+                                          const Eigen::Matrix<double, 18, 1>&, Solver);
 
 }  // namespace imgmesh

@@ -31,7 +31,7 @@ struct PlaneForm {
 };
 
 template <int N>
-struct DenseMinimum {
+struct MatrixMinimum {
     Eigen::Matrix<double, N, 1> at;  ///< where the function is least; any such point if not unique
     bool unique;
 };
@@ -39,7 +39,7 @@ struct DenseMinimum {
 /// Where v'Av + 2 b'v is least. A: symmetric, positive semidefinite, its last N - 2 rows and columns
 /// definite; b: in A's range, so that there is a least value. N is 5, 10 or 18.
 template <int N>
-DenseMinimum<N> dense_minimum(const Eigen::Matrix<double, N, N>& a, const Eigen::Matrix<double, N, 1>& b,
-                              Solver solver);
+MatrixMinimum<N> matrix_minimum(const Eigen::Matrix<double, N, N>& a, const Eigen::Matrix<double, N, 1>& b,
+                                Solver solver);
 
 }  // namespace imgmesh

@@ -16,7 +16,7 @@ namespace imgmesh {
 /// the picture's corner, w'Aw and c would be large and nearly cancel. 8 (N^2 + 2 N) bytes and a few, N = 2 +
 /// C.
 template <int C>
-struct DenseQuadric {
+struct MatrixQuadric {
     static constexpr int kChannels = C, kSize = 2 + C;
     using Vector = Eigen::Matrix<double, kSize, 1>;
     using Matrix = Eigen::Matrix<double, kSize, kSize>;
@@ -60,15 +60,15 @@ struct DenseQuadric {
     }
 
     void find_minimum() {
-        const DenseMinimum<kSize> least = dense_minimum<kSize>(a, b, solver);
+        const MatrixMinimum<kSize> least = matrix_minimum<kSize>(a, b, solver);
         unique = least.unique;
         px = static_cast<float>(origin[0] + least.at[0]);
         py = static_cast<float>(origin[1] + least.at[1]);
         error = std::max(0.0f, static_cast<float>(c + b.dot(least.at)));
     }
     /// The same function about another origin.
-    DenseQuadric moved(const Vector& to) const {
-        DenseQuadric q = *this;
+    MatrixQuadric moved(const Vector& to) const {
+        MatrixQuadric q = *this;
         const Vector w = to - origin;
         q.origin = to;
         q.c = value(w);
@@ -84,10 +84,10 @@ struct DenseQuadric {
 
 /// Q_i + Q_j; O(C^3).
 template <int C>
-DenseQuadric<C> merged(const DenseQuadric<C>& i, const DenseQuadric<C>& j) {
-    const typename DenseQuadric<C>::Vector middle = 0.5 * (i.origin + j.origin);
-    DenseQuadric<C> sum = i.moved(middle);
-    const DenseQuadric<C> other = j.moved(middle);
+MatrixQuadric<C> merged(const MatrixQuadric<C>& i, const MatrixQuadric<C>& j) {
+    const typename MatrixQuadric<C>::Vector middle = 0.5 * (i.origin + j.origin);
+    MatrixQuadric<C> sum = i.moved(middle);
+    const MatrixQuadric<C> other = j.moved(middle);
     sum.a += other.a;
     sum.b += other.b;
     sum.c += other.c;
@@ -97,11 +97,12 @@ DenseQuadric<C> merged(const DenseQuadric<C>& i, const DenseQuadric<C>& j) {
 
 /// The dense form of vertex_quadrics(), of params' metric, weight and solver; C is 3, 8 or 16.
 template <int C>
-std::vector<DenseQuadric<C>> dense_quadrics(const GridMesh& grid, const RingMesh& rings,
-                                            const FeaturePatch& gradients, const CollapseParams& params);
+std::vector<MatrixQuadric<C>> matrix_quadrics(const GridMesh& grid, const RingMesh& rings,
+                                              const FeaturePatch& gradients, const SimplifyParams& params);
 /// And of current_quadrics().
 template <int C>
-std::vector<DenseQuadric<C>> dense_quadrics(const RingMesh& rings, const std::vector<DenseQuadric<C>>& before,
-                                            const CollapseParams& params);
+std::vector<MatrixQuadric<C>> matrix_quadrics(const RingMesh& rings,
+                                              const std::vector<MatrixQuadric<C>>& before,
+                                              const SimplifyParams& params);
 
 }  // namespace imgmesh

@@ -37,7 +37,7 @@ class FaceSum {
         sum_.c += area * lambda_ * centroid.squaredNorm();
     }
 
-    DenseQuadric<C> finish(const Ring& ring, const Features& features, Solver solver) {
+    MatrixQuadric<C> finish(const Ring& ring, const Features& features, Solver solver) {
         sum_.origin << ring.x, ring.y, features;
         sum_.solver = solver;
         sum_.find_minimum();
@@ -52,7 +52,7 @@ class FaceSum {
         const double scale = std::sqrt(lambda_);
         Eigen::Matrix<double, N, 2> tangents;
         tangents << scale * Eigen::Matrix2d::Identity(), g;
-        typename DenseQuadric<C>::Matrix a = DenseQuadric<C>::Matrix::Identity();
+        typename MatrixQuadric<C>::Matrix a = MatrixQuadric<C>::Matrix::Identity();
         a -= tangents * (tangents.transpose() * tangents).inverse() * tangents.transpose();
         a.template topRows<2>() *= scale;
         a.template leftCols<2>() *= scale;
@@ -61,15 +61,15 @@ class FaceSum {
 
     Metric metric_;
     double lambda_;
-    DenseQuadric<C> sum_;
+    MatrixQuadric<C> sum_;
 };
 
 // One quadric a vertex. own(v): its features; slope_feature(v): the features that gradients are taken from.
 template <int C, class Own, class Slope>
-std::vector<DenseQuadric<C>> quadrics_of(const RingMesh& rings, const CollapseParams& params, const Own& own,
-                                         const Slope& slope_feature) {
+std::vector<MatrixQuadric<C>> quadrics_of(const RingMesh& rings, const SimplifyParams& params, const Own& own,
+                                          const Slope& slope_feature) {
     using Features = typename FaceSum<C>::Features;
-    std::vector<DenseQuadric<C>> quadrics(rings.size());
+    std::vector<MatrixQuadric<C>> quadrics(rings.size());
     parallel_blocks(0, static_cast<int>(rings.size()), 1 << 12, [&](int first, int last) {
         for (Id v = static_cast<Id>(first); v < static_cast<Id>(last); ++v) {
             const Ring& ring = rings[v];
@@ -97,8 +97,8 @@ Eigen::Matrix<double, C, 1> features_at(const float* pixel) {
 }  // namespace
 
 template <int C>
-std::vector<DenseQuadric<C>> dense_quadrics(const GridMesh& grid, const RingMesh& rings,
-                                            const FeaturePatch& gradients, const CollapseParams& params) {
+std::vector<MatrixQuadric<C>> matrix_quadrics(const GridMesh& grid, const RingMesh& rings,
+                                              const FeaturePatch& gradients, const SimplifyParams& params) {
     const Id w = static_cast<Id>(grid.feature.width);
     return quadrics_of<C>(
         rings, params, [&](Id v) { return features_at<C>(grid.feature.pixel(v)); },
@@ -109,8 +109,9 @@ std::vector<DenseQuadric<C>> dense_quadrics(const GridMesh& grid, const RingMesh
 }
 
 template <int C>
-std::vector<DenseQuadric<C>> dense_quadrics(const RingMesh& rings, const std::vector<DenseQuadric<C>>& before,
-                                            const CollapseParams& params) {
+std::vector<MatrixQuadric<C>> matrix_quadrics(const RingMesh& rings,
+                                              const std::vector<MatrixQuadric<C>>& before,
+                                              const SimplifyParams& params) {
     std::vector<Eigen::Matrix<double, C, 1>> features(rings.size());
     for (Id v = 0; v < rings.size(); ++v)
         if (rings[v].live())
@@ -119,17 +120,18 @@ std::vector<DenseQuadric<C>> dense_quadrics(const RingMesh& rings, const std::ve
     return quadrics_of<C>(rings, params, feature, feature);
 }
 
-template std::vector<DenseQuadric<3>> dense_quadrics(const GridMesh&, const RingMesh&, const FeaturePatch&,
-                                                     const CollapseParams&);
-template std::vector<DenseQuadric<8>> dense_quadrics(const GridMesh&, const RingMesh&, const FeaturePatch&,
-                                                     const CollapseParams&);
-template std::vector<DenseQuadric<16>> dense_quadrics(const GridMesh&, const RingMesh&, const FeaturePatch&,
-                                                      const CollapseParams&);
-template std::vector<DenseQuadric<3>> dense_quadrics(const RingMesh&, const std::vector<DenseQuadric<3>>&,
-                                                     const CollapseParams&);
-template std::vector<DenseQuadric<8>> dense_quadrics(const RingMesh&, const std::vector<DenseQuadric<8>>&,
-                                                     const CollapseParams&);
-template std::vector<DenseQuadric<16>> dense_quadrics(const RingMesh&, const std::vector<DenseQuadric<16>>&,
-                                                      const CollapseParams&);
+template std::vector<MatrixQuadric<3>> matrix_quadrics(const GridMesh&, const RingMesh&, const FeaturePatch&,
+                                                       const SimplifyParams&);
+template std::vector<MatrixQuadric<8>> matrix_quadrics(const GridMesh&, const RingMesh&, const FeaturePatch&,
+                                                       const SimplifyParams&);
+template std::vector<MatrixQuadric<16>> matrix_quadrics(const GridMesh&, const RingMesh&, const FeaturePatch&,
+                                                        const SimplifyParams&);
+template std::vector<MatrixQuadric<3>> matrix_quadrics(const RingMesh&, const std::vector<MatrixQuadric<3>>&,
+                                                       const SimplifyParams&);
+template std::vector<MatrixQuadric<8>> matrix_quadrics(const RingMesh&, const std::vector<MatrixQuadric<8>>&,
+                                                       const SimplifyParams&);
+template std::vector<MatrixQuadric<16>> matrix_quadrics(const RingMesh&,
+                                                        const std::vector<MatrixQuadric<16>>&,
+                                                        const SimplifyParams&);
 
 }  // namespace imgmesh

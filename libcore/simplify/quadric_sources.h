@@ -15,9 +15,9 @@ inline constexpr bool kCanonical = std::is_same_v<Q, Quadric<Q::kChannels>>;
 /// Those of the dense mesh; `rings` are the grid's, `gradients` those of all of it.
 template <class Q>
 std::vector<Q> initial_quadrics(const GridMesh& grid, const RingMesh& rings, const FeaturePatch& gradients,
-                                const CollapseParams& params) {
+                                const SimplifyParams& params) {
     if constexpr (!kCanonical<Q>)
-        return dense_quadrics<Q::kChannels>(grid, rings, gradients, params);
+        return matrix_quadrics<Q::kChannels>(grid, rings, gradients, params);
     else if (grid.mask.empty())
         return vertex_quadrics<Q::kChannels>(grid, gradients, params.geometry_weight);
     else
@@ -27,11 +27,11 @@ std::vector<Q> initial_quadrics(const GridMesh& grid, const RingMesh& rings, con
 /// Those of the mesh as it stands.
 template <class Q>
 std::vector<Q> rebuilt_quadrics(const RingMesh& rings, const std::vector<Q>& before,
-                                const CollapseParams& params) {
+                                const SimplifyParams& params) {
     if constexpr (kCanonical<Q>)
         return current_quadrics(rings, before, params.geometry_weight);
     else
-        return dense_quadrics<Q::kChannels>(rings, before, params);
+        return matrix_quadrics<Q::kChannels>(rings, before, params);
 }
 
 }  // namespace imgmesh

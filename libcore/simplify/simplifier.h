@@ -1,4 +1,4 @@
-// The schedule of collapse_edges: tiles by themselves while the goal is far, then the whole mesh.
+// The schedule of simplify: tiles by themselves while the goal is far, then the whole mesh.
 #pragma once
 
 #include <algorithm>
@@ -26,9 +26,9 @@ inline constexpr double kVerticesPerTile = 4096;
 inline constexpr std::int64_t kLeastTiled = 16384;
 
 template <class Q>
-class Collapser {
+class Simplifier {
   public:
-    Collapser(const GridMesh& grid, const CollapseParams& params, const CollapseHooks& hooks)
+    Simplifier(const GridMesh& grid, const SimplifyParams& params, const SimplifyHooks& hooks)
         : grid_(grid),
           params_(params),
           rules_{params_, hooks, StarLimits::of(params.max_face_area, params.min_shape)} {
@@ -36,14 +36,14 @@ class Collapser {
         if (hooks.before) params_.tiles = false;
     }
 
-    void run(const CollapseTarget& target, const Progress& progress) {
+    void run(const SimplifyTarget& target, const Progress& progress) {
         if (mesh_.rings.empty()) start(target, progress);
         set_target(target);
         while (!done()) {
             if (params_.rebuild_quadrics && near_rebuild()) rebuild_quadrics();
             const bool tiled = params_.tiles && far_from_done();
             const double might_go = tiled ? share_that_goes() * static_cast<double>(vertices_) : 0;
-            const Tally part = tiled ? round_of_tiles() : whole();
+            const CollapseStats part = tiled ? round_of_tiles() : whole();
             take(part);
             if (progress) progress(fraction_done(), "collapse");
             if (tiled) {
@@ -60,8 +60,8 @@ class Collapser {
         }
     }
 
-    CollapseResult snapshot() const {
-        CollapseResult result{{}, error_, dense_vertices_ - vertices_};
+    SimplifyResult snapshot() const {
+        SimplifyResult result{{}, error_, dense_vertices_ - vertices_};
         std::vector<Id> order = live_list(mesh_.rings);
         if (!mesh_.pixel.empty())
             std::sort(order.begin(), order.end(),
@@ -79,26 +79,27 @@ class Collapser {
 
   private:
     bool done() const { return vertices_ <= target_.vertices || faces_ <= target_.faces; }
-    double fraction_done(std::int64_t gone = 0) const {
-        const auto begin = static_cast<double>(dense_vertices_), left = static_cast<double>(vertices_ - gone);
+    double fraction_done(std::int64_t removed = 0) const {
+        const auto begin = static_cast<double>(dense_vertices_),
+                   left = static_cast<double>(vertices_ - removed);
         return (begin - left) / std::max(1.0, begin - static_cast<double>(target_.vertices));
     }
 
-    void set_target(const CollapseTarget& target) {
+    void set_target(const SimplifyTarget& target) {
         target_ = target;
         target_.faces = std::max(target.faces,
                                  static_cast<std::int64_t>(target.face_share * static_cast<double>(faces_)));
         rules_.max_error = target.max_error;
     }
 
-    void take(const Tally& part) {
+    void take(const CollapseStats& part) {
         vertices_ -= part.vertices;
         faces_ -= part.faces;
         error_ = std::max(error_, part.error);
     }
 
     // The dense mesh, or what its tiles leave of it.
-    void start(const CollapseTarget& target, const Progress& progress) {
+    void start(const SimplifyTarget& target, const Progress& progress) {
         if constexpr (kCanonical<Q>) {
             if (params_.tiles && !params_.total_priority) {
                 count_dense();
@@ -109,13 +110,13 @@ class Collapser {
                 if (share < kMostStartShare) {
                     threshold_ = start_threshold<Q>(grid_, rules_, share);
                     take(start_in_tiles(grid_, rules_, threshold_, share, share_that_goes(), mesh_,
-                                        [&](std::int64_t gone) {
-                                            if (progress) progress(fraction_done(gone), "collapse");
+                                        [&](std::int64_t removed) {
+                                            if (progress) progress(fraction_done(removed), "collapse");
                                         }));
                     threshold_ *= kTileWindow;
                     next_rebuild_ = vertices_ / 2;
                     if (!grid_.mask.empty())
-                        rules_.outline = &outline_.emplace(grid_, mesh_.rings, mesh_.pixel);
+                        rules_.boundary = &boundary_.emplace(grid_, mesh_.rings, mesh_.pixel);
                     return;
                 }
             }
@@ -125,7 +126,7 @@ class Collapser {
             grid_, mesh_.rings, smoothed_patch(grid_, params_.smoothing, whole_rect(grid_)), params_);
         count_dense();
         next_rebuild_ = vertices_ / 2;
-        if (!grid_.mask.empty()) rules_.outline = &outline_.emplace(grid_, mesh_.rings, mesh_.pixel);
+        if (!grid_.mask.empty()) rules_.boundary = &boundary_.emplace(grid_, mesh_.rings, mesh_.pixel);
         threshold_ = median(sampled_costs());
     }
 
@@ -150,13 +151,13 @@ class Collapser {
                    : goes;
     }
 
-    Tally round_of_tiles() {
+    CollapseStats round_of_tiles() {
         const RoundTiles tiles(grid_.feature.width, grid_.feature.height, vertices_, kVerticesPerTile,
                                ++rounds_);
-        Tally sum = tile_round(mesh_, rules_, tiles, threshold_, share_that_goes());
-        if (!rules_.outline) return sum;
-        // The outline knows all of itself, so one thread at a time may change it.
-        Tally may_go = left_to_go();
+        CollapseStats sum = tile_round(mesh_, rules_, tiles, threshold_, share_that_goes());
+        if (!rules_.boundary) return sum;
+        // The boundary knows all of itself, so one thread at a time may change it.
+        CollapseStats may_go = left_to_go();
         may_go.vertices -= sum.vertices;
         may_go.faces -= sum.faces;
         EdgeCollapser<Q> engine(mesh_, rules_);
@@ -168,13 +169,13 @@ class Collapser {
         return sum;
     }
 
-    Tally whole() {
+    CollapseStats whole() {
         EdgeCollapser<Q> engine(mesh_, rules_);
         return engine.run(
             mesh_.rings.size(), [](std::size_t v) { return static_cast<Id>(v); }, threshold_, left_to_go());
     }
 
-    Tally left_to_go() const {
+    CollapseStats left_to_go() const {
         return {.vertices = vertices_ - target_.vertices, .faces = faces_ - target_.faces};
     }
 
@@ -191,7 +192,7 @@ class Collapser {
     // The costs of edges of some vertices all over the picture; of those that may collapse, in ascending
     // order.
     std::vector<float> sampled_costs() const {
-        EdgeCollapser<Q> engine(const_cast<CollapseMesh<Q>&>(mesh_), rules_);
+        EdgeCollapser<Q> engine(const_cast<QuadricMesh<Q>&>(mesh_), rules_);
         const std::size_t step = std::max<std::size_t>(1, mesh_.rings.size() / kSampled);
         std::vector<float> costs;
         for (std::size_t v = 0; v < mesh_.rings.size(); v += step) {
@@ -226,19 +227,19 @@ class Collapser {
     static constexpr double kHalved = 1.25;
     // What the first tiles leave: little enough to make the dense mesh's memory and time theirs alone; the
     // seams do not show in the result (docs/decisions/0019-collapse-in-tiles.md). Where the goal is near,
-    // more; and of a cut-out, whose outline waits meanwhile.
+    // more; and of a masked image, whose boundary waits meanwhile.
     static constexpr double kStartShare = 0.12, kMaskedStartShare = 0.2, kStartAbove = 1.3,
                             kMostStartShare = 0.7;
 
     const GridMesh& grid_;
-    CollapseParams params_;
-    CollapseRules rules_;
-    std::optional<MaskOutline> outline_;  // of a cut-out
-    CollapseMesh<Q> mesh_;
+    SimplifyParams params_;
+    SimplifyRules rules_;
+    std::optional<MaskBoundary> boundary_;  // of a masked image
+    QuadricMesh<Q> mesh_;
     float threshold_ = 0;  // of the current window
     int rounds_ = 0;
     bool tiles_over_ = false;
-    CollapseTarget target_;
+    SimplifyTarget target_;
     std::int64_t dense_vertices_ = 0, vertices_ = 0, next_rebuild_ = 0, faces_ = 0;
     double error_ = 0;
 };

@@ -1,10 +1,10 @@
-// The collapse by dense quadrics, apart from collapse_edges.cpp so that both compile side by side.
+// The collapse by matrix quadrics, apart from simplify.cpp so that both compile side by side.
 #include "libcore/simplify/simplifier.h"
 
 namespace imgmesh {
 
-template class Collapser<DenseQuadric<3>>;
-template class Collapser<DenseQuadric<8>>;
-template class Collapser<DenseQuadric<16>>;
+template class Simplifier<MatrixQuadric<3>>;
+template class Simplifier<MatrixQuadric<8>>;
+template class Simplifier<MatrixQuadric<16>>;
 
 }  // namespace imgmesh

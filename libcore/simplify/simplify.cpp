@@ -14,13 +14,13 @@
 namespace imgmesh {
 
 // Compiled in dense_collapser.cpp.
-extern template class Collapser<DenseQuadric<3>>;
-extern template class Collapser<DenseQuadric<8>>;
-extern template class Collapser<DenseQuadric<16>>;
+extern template class Simplifier<MatrixQuadric<3>>;
+extern template class Simplifier<MatrixQuadric<8>>;
+extern template class Simplifier<MatrixQuadric<16>>;
 
-struct CollapseRun::Engine {
+struct SimplifyRun::Engine {
     virtual ~Engine() = default;
-    virtual CollapseResult to(const CollapseTarget& target, const Progress& progress) = 0;
+    virtual SimplifyResult to(const SimplifyTarget& target, const Progress& progress) = 0;
 };
 
 namespace {
@@ -36,21 +36,21 @@ std::vector<float> with_channels(const std::vector<float>& values, int from, int
 }
 
 template <class Q>
-class EngineOf : public CollapseRun::Engine {
+class EngineOf : public SimplifyRun::Engine {
   public:
-    EngineOf(const GridMesh& grid, const CollapseParams& params, const CollapseHooks& hooks)
-        : collapser_(grid, params, hooks) {}
-    CollapseResult to(const CollapseTarget& target, const Progress& progress) override {
-        collapser_.run(target, progress);
-        return collapser_.snapshot();
+    EngineOf(const GridMesh& grid, const SimplifyParams& params, const SimplifyHooks& hooks)
+        : simplifier_(grid, params, hooks) {}
+    SimplifyResult to(const SimplifyTarget& target, const Progress& progress) override {
+        simplifier_.run(target, progress);
+        return simplifier_.snapshot();
     }
 
   private:
-    Collapser<Q> collapser_;
+    Simplifier<Q> simplifier_;
 };
 
 // For a grid whose features are fewer than the quadrics have room for.
-class PaddedEngine : public CollapseRun::Engine {
+class PaddedEngine : public SimplifyRun::Engine {
   public:
     template <class MakeEngine>
     PaddedEngine(const GridMesh& grid, int padded, MakeEngine&& make)
@@ -59,8 +59,8 @@ class PaddedEngine : public CollapseRun::Engine {
         wide_.feature.data = with_channels(grid.feature.data, channels_, padded);
         engine_ = make(wide_);
     }
-    CollapseResult to(const CollapseTarget& target, const Progress& progress) override {
-        CollapseResult level = engine_->to(target, progress);
+    SimplifyResult to(const SimplifyTarget& target, const Progress& progress) override {
+        SimplifyResult level = engine_->to(target, progress);
         level.mesh.channels = channels_;
         level.mesh.feature = with_channels(level.mesh.feature, padded_, channels_);
         return level;
@@ -69,52 +69,52 @@ class PaddedEngine : public CollapseRun::Engine {
   private:
     int channels_, padded_;
     GridMesh wide_;
-    std::unique_ptr<CollapseRun::Engine> engine_;
+    std::unique_ptr<SimplifyRun::Engine> engine_;
 };
 
-std::unique_ptr<CollapseRun::Engine> make_engine(const GridMesh& grid, const CollapseParams& params,
-                                                 const CollapseHooks& hooks) {
+std::unique_ptr<SimplifyRun::Engine> make_engine(const GridMesh& grid, const SimplifyParams& params,
+                                                 const SimplifyHooks& hooks) {
     const int channels = grid.feature.channels;
     if (channels < 1 || channels > kMaxFeatures)
         throw Error(ErrorCode::kUsage, cat(channels, " features, expected 1 to ", kMaxFeatures));
-    return with_padded_features(channels, [&](auto padded) -> std::unique_ptr<CollapseRun::Engine> {
+    return with_padded_features(channels, [&](auto padded) -> std::unique_ptr<SimplifyRun::Engine> {
         constexpr int kPadded = padded();
-        const auto make = [&](const GridMesh& g) -> std::unique_ptr<CollapseRun::Engine> {
+        const auto make = [&](const GridMesh& g) -> std::unique_ptr<SimplifyRun::Engine> {
             if (params.metric == Metric::kFlattened && params.solver == Solver::kClosed)
                 return std::make_unique<EngineOf<Quadric<kPadded>>>(g, params, hooks);
-            return std::make_unique<EngineOf<DenseQuadric<kPadded>>>(g, params, hooks);
+            return std::make_unique<EngineOf<MatrixQuadric<kPadded>>>(g, params, hooks);
         };
         if (channels == kPadded) return make(grid);
         return std::make_unique<PaddedEngine>(grid, kPadded, make);
     });
 }
 
-const CollapseHooks kNoHooks;
+const SimplifyHooks kNoHooks;
 
 }  // namespace
 
-CollapseRun::CollapseRun(const GridMesh& grid, const CollapseParams& params)
+SimplifyRun::SimplifyRun(const GridMesh& grid, const SimplifyParams& params)
     : engine_(make_engine(grid, params, kNoHooks)) {}
-CollapseRun::~CollapseRun() = default;
-CollapseResult CollapseRun::to(const CollapseTarget& target, const Progress& progress) {
+SimplifyRun::~SimplifyRun() = default;
+SimplifyResult SimplifyRun::to(const SimplifyTarget& target, const Progress& progress) {
     return engine_->to(target, progress);
 }
 
-std::vector<CollapseResult> collapse_edges(const GridMesh& grid, const CollapseParams& params,
-                                           std::span<const CollapseTarget> targets, const Progress& progress,
-                                           const CollapseHooks& hooks) {
-    const std::unique_ptr<CollapseRun::Engine> engine = make_engine(grid, params, hooks);
-    std::vector<CollapseResult> levels;
-    for (const CollapseTarget& target : targets) {
+std::vector<SimplifyResult> simplify(const GridMesh& grid, const SimplifyParams& params,
+                                     std::span<const SimplifyTarget> targets, const Progress& progress,
+                                     const SimplifyHooks& hooks) {
+    const std::unique_ptr<SimplifyRun::Engine> engine = make_engine(grid, params, hooks);
+    std::vector<SimplifyResult> levels;
+    for (const SimplifyTarget& target : targets) {
         levels.push_back(engine->to(target, progress));
         if (hooks.reached) hooks.reached(levels.size() - 1, levels.back());
     }
     return levels;
 }
 
-CollapseResult collapse_edges(const GridMesh& grid, const CollapseParams& params,
-                              const CollapseTarget& target, const Progress& progress) {
-    return std::move(collapse_edges(grid, params, std::span(&target, 1), progress).front());
+SimplifyResult simplify(const GridMesh& grid, const SimplifyParams& params, const SimplifyTarget& target,
+                        const Progress& progress) {
+    return std::move(simplify(grid, params, std::span(&target, 1), progress).front());
 }
 
 }  // namespace imgmesh

@@ -17,7 +17,7 @@
 namespace imgmesh {
 
 /// Where a level of the pyramid ends; whichever limit comes first.
-struct CollapseTarget {
+struct SimplifyTarget {
     std::int64_t vertices = 0;  ///< at this many vertices
     std::int64_t faces = 0;     ///< or at this many faces
     double face_share = 0;      ///< or at this share of the faces of the level before
@@ -25,7 +25,7 @@ struct CollapseTarget {
     double max_error = std::numeric_limits<double>::infinity();
 };
 
-struct CollapseParams {
+struct SimplifyParams {
     Metric metric = Metric::kFlattened;
     Solver solver = Solver::kClosed;
     float geometry_weight = 3.0f;  ///< lambda, against colour [feature^2 / px^2]; > 0; kHoppe has none
@@ -35,7 +35,7 @@ struct CollapseParams {
     bool rebuild_quadrics = false;
     bool total_priority = false;  ///< edges go by the total error (the paper), not by what a merge adds to it
     /// while the goal is far, edges go tile by tile, on all threads: faster, but seams show in the order. Not
-    /// with CollapseHooks::before.
+    /// with SimplifyHooks::before.
     bool tiles = true;
     /// no new triangle larger than this [px^2]
     float max_face_area = std::numeric_limits<float>::infinity();
@@ -44,28 +44,28 @@ struct CollapseParams {
     float min_shape = 0;
 };
 
-struct CollapseResult {
+struct SimplifyResult {
     BaseMesh mesh;               ///< vertices in the order of their pixels; positions on kPositionStep
     double error = 0;            ///< largest total quadric error of a merged vertex so far
     std::int64_t collapses = 0;  ///< so far
 };
 
-/// A collapse that is about to happen: `gone` merges into `kept`, which moves. Vertices are numbered as in
+/// A collapse that is about to happen: `removed` merges into `kept`, which moves. Vertices are numbered as in
 /// the grid mesh.
 struct CollapseStep {
-    Id kept, gone;
+    Id kept, removed;
     float x, y;                      ///< of the merged vertex [pixels]
     std::span<const float> feature;  ///< of the merged vertex; perhaps with zeros behind the grid's channels
 };
 
 /// Who follows the collapse while it runs; both may be empty, and cost nothing then.
-struct CollapseHooks {
-    /// Before each collapse, in order. Returns false to retract it: the edge is tried again only when
+struct SimplifyHooks {
+    /// Before each collapse, in order. Returns false to reject it: the edge is tried again only when
     /// something around it has changed.
     std::function<bool(const CollapseStep&)> before;
     /// When a level's target is reached, with its result (features perhaps padded likewise), before the
     /// collapse goes on to the next.
-    std::function<void(std::size_t level, const CollapseResult&)> reached;
+    std::function<void(std::size_t level, const SimplifyResult&)> reached;
 };
 
 /// Collapses edges until a limit is reached or no edge may go. Every collapse keeps the mesh a triangulation
@@ -79,18 +79,18 @@ struct CollapseHooks {
 /// Any number of features, 1 to kMaxFeatures (Error(kUsage) else). About 70 bytes a pixel with up to three
 /// of them, 170 where it cannot begin in tiles (hooks, total priority, a goal above half the pixels),
 /// 480 with another metric or solver than the first; O(n). Deterministic, with any number of threads.
-std::vector<CollapseResult> collapse_edges(const GridMesh& grid, const CollapseParams& params,
-                                           std::span<const CollapseTarget> targets,
-                                           const Progress& progress = {}, const CollapseHooks& hooks = {});
+std::vector<SimplifyResult> simplify(const GridMesh& grid, const SimplifyParams& params,
+                                     std::span<const SimplifyTarget> targets, const Progress& progress = {},
+                                     const SimplifyHooks& hooks = {});
 
 /// The same, one target after the other: where it goes on may depend on what came of it so far.
-class CollapseRun {
+class SimplifyRun {
   public:
     /// `grid` must live as long as the run.
-    CollapseRun(const GridMesh& grid, const CollapseParams& params);
-    ~CollapseRun();
+    SimplifyRun(const GridMesh& grid, const SimplifyParams& params);
+    ~SimplifyRun();
     /// On from where it stands, to a target at least as coarse as the last.
-    CollapseResult to(const CollapseTarget& target, const Progress& progress = {});
+    SimplifyResult to(const SimplifyTarget& target, const Progress& progress = {});
 
     struct Engine;  ///< the run for one kind of quadric
 
@@ -99,7 +99,7 @@ class CollapseRun {
 };
 
 /// The mesh of a single level.
-CollapseResult collapse_edges(const GridMesh& grid, const CollapseParams& params,
-                              const CollapseTarget& target, const Progress& progress = {});
+SimplifyResult simplify(const GridMesh& grid, const SimplifyParams& params, const SimplifyTarget& target,
+                        const Progress& progress = {});
 
 }  // namespace imgmesh

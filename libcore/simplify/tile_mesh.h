@@ -32,15 +32,16 @@ struct StartTiles {
     }
 };
 
-/// A tile while it collapses. Its vertices that have a neighbour in another tile are sealed, like those on
-/// the outline of a cut-out; such a neighbour is a *ghost*: a place and features, without a ring of its own.
+/// A tile while it collapses. Its vertices that have a neighbour in another tile are locked, like those on
+/// the boundary of a masked image; such a neighbour is a *ghost*: a place and features, without a ring of its
+/// own.
 template <class Q>
 struct TileMesh {
-    CollapseMesh<Q> mesh;      ///< the tile's own vertices row by row, then ghosts
-    std::size_t own = 0;       ///< so many
-    std::int64_t live = 0;     ///< of them
-    std::int64_t outline = 0;  ///< of them on the outline of a cut-out
-    std::int64_t halved = 0;   ///< vertices at which quadrics are to be rebuilt next
+    QuadricMesh<Q> mesh;        ///< the tile's own vertices row by row, then ghosts
+    std::size_t own = 0;        ///< so many
+    std::int64_t live = 0;      ///< of them
+    std::int64_t boundary = 0;  ///< of them on the boundary of a masked image
+    std::int64_t halved = 0;    ///< vertices at which quadrics are to be rebuilt next
 };
 
 namespace tile_mesh {
@@ -52,7 +53,7 @@ inline bool contains(const PixelRect& rect, int x, int y) {
 // A ring of pixel (x, y) whose neighbours are named by their numbers in the grid mesh gets the tile's:
 // local(number, x, y) of those inside, and new ghosts.
 template <class Q, class Local>
-void localize(const GridMesh& grid, const PixelRect& rect, CollapseMesh<Q>& mesh, Ring& ring,
+void localize(const GridMesh& grid, const PixelRect& rect, QuadricMesh<Q>& mesh, Ring& ring,
               const Local& local) {
     const Id w = static_cast<Id>(grid.feature.width);
     for (int k = 0; k < ring.valence; ++k) {
@@ -63,7 +64,7 @@ void localize(const GridMesh& grid, const PixelRect& rect, CollapseMesh<Q>& mesh
             n = local(n, x, y);
             continue;
         }
-        ring.sealed = 1;
+        ring.locked = 1;
         mesh.pixel.push_back(n);
         n = static_cast<Id>(mesh.pixel.size() - 1);
     }
@@ -71,7 +72,7 @@ void localize(const GridMesh& grid, const PixelRect& rect, CollapseMesh<Q>& mesh
 
 // Rings and quadrics of what localize() has added to mesh.pixel.
 template <class Q>
-void add_ghosts(const GridMesh& grid, CollapseMesh<Q>& mesh) {
+void add_ghosts(const GridMesh& grid, QuadricMesh<Q>& mesh) {
     const std::size_t own = mesh.rings.size();
     mesh.rings.resize(mesh.pixel.size());
     mesh.quadrics.resize(mesh.pixel.size());
@@ -87,7 +88,7 @@ void add_ghosts(const GridMesh& grid, CollapseMesh<Q>& mesh) {
 // Without a mask, or where it leaves the tile and two pixels around it whole.
 template <class Q>
 void fill_whole(const GridMesh& grid, const FeaturePatch& gradients, float lambda, const PixelRect& rect,
-                CollapseMesh<Q>& mesh) {
+                QuadricMesh<Q>& mesh) {
     const Id w = static_cast<Id>(grid.feature.width), stride = static_cast<Id>(rect.width());
     const std::size_t own = stride * static_cast<std::size_t>(rect.height());
     const std::size_t most = own + 6 * (stride + static_cast<std::size_t>(rect.height()));  // with ghosts
@@ -116,7 +117,7 @@ void fill_whole(const GridMesh& grid, const FeaturePatch& gradients, float lambd
 
 template <class Q>
 void fill_masked(const GridMesh& grid, const FeaturePatch& gradients, float lambda, const PixelRect& rect,
-                 CollapseMesh<Q>& mesh) {
+                 QuadricMesh<Q>& mesh) {
     mesh.rings.clear();
     mesh.pixel.clear();
     Id first[kStartTile * kStartTile];  // of a pixel's vertices
@@ -137,7 +138,7 @@ void fill_masked(const GridMesh& grid, const FeaturePatch& gradients, float lamb
             while (mesh.pixel[v] != number) ++v;
             return v;
         });
-        ring.sealed |= ring.border();
+        ring.locked |= ring.border();
     }
     const std::size_t own = mesh.rings.size();
     add_ghosts(grid, mesh);
@@ -157,7 +158,7 @@ inline bool whole(const GridMesh& grid, const PixelRect& rect) {
 
 /// Makes `tile` the part of the dense mesh that has the vertices of the pixels in `rect`.
 template <class Q>
-void fill_tile(const GridMesh& grid, const CollapseParams& params, const PixelRect& rect, TileMesh<Q>& tile) {
+void fill_tile(const GridMesh& grid, const SimplifyParams& params, const PixelRect& rect, TileMesh<Q>& tile) {
     const FeaturePatch gradients = smoothed_patch(grid, params.smoothing, rect);
     const float lambda = params.geometry_weight;
     if (tile_mesh::whole(grid, rect))
@@ -168,7 +169,7 @@ void fill_tile(const GridMesh& grid, const CollapseParams& params, const PixelRe
     const auto end = std::find_if_not(tile.mesh.rings.begin(), tile.mesh.rings.end(), live);
     tile.own = static_cast<std::size_t>(end - tile.mesh.rings.begin());
     tile.live = end - tile.mesh.rings.begin();
-    tile.outline = grid.mask.empty() ? 0 : std::count_if(tile.mesh.rings.begin(), end, [](const Ring& ring) {
+    tile.boundary = grid.mask.empty() ? 0 : std::count_if(tile.mesh.rings.begin(), end, [](const Ring& ring) {
         return ring.border();
     });
     tile.halved = tile.live / 2;

@@ -35,11 +35,11 @@ struct RoundTiles {
 };
 
 /// Collapses edges below `threshold` in every tile, as long as at most `share_that_goes` of its vertices go;
-/// leaves edges that touch a neighbour of another tile, and with an outline those that touch the border. Same
+/// leaves edges that touch a neighbour of another tile, and with a boundary those that touch the border. Same
 /// result for any number of threads.
 template <class Q>
-Tally tile_round(CollapseMesh<Q>& mesh, const CollapseRules& rules, const RoundTiles& tiles, float threshold,
-                 double share_that_goes) {
+CollapseStats tile_round(QuadricMesh<Q>& mesh, const SimplifyRules& rules, const RoundTiles& tiles,
+                         float threshold, double share_that_goes) {
     RingMesh& rings = mesh.rings;
     const auto count = static_cast<int>(rings.size());
     constexpr int kGrain = 1 << 14;
@@ -59,27 +59,27 @@ Tally tile_round(CollapseMesh<Q>& mesh, const CollapseRules& rules, const RoundT
     parallel_blocks(0, count, kGrain, [&](int begin, int end) {
         for (auto v = static_cast<std::size_t>(begin); v < static_cast<std::size_t>(end); ++v) {
             Ring& ring = rings[v];
-            bool sealed = rules.outline != nullptr && ring.border();
-            for (int k = 0; k < ring.valence; ++k) sealed |= tile[ring.neighbor[k]] != tile[v];
-            ring.sealed = sealed;
+            bool locked = rules.boundary != nullptr && ring.border();
+            for (int k = 0; k < ring.valence; ++k) locked |= tile[ring.neighbor[k]] != tile[v];
+            ring.locked = locked;
         }
     });
-    std::vector<Tally> tallies(static_cast<std::size_t>(tiles.count()));
+    std::vector<CollapseStats> stats(static_cast<std::size_t>(tiles.count()));
     parallel_blocks(0, tiles.count(), 1, [&](int begin, int end) {
         EdgeCollapser<Q> engine(mesh, rules);
         for (auto t = static_cast<std::size_t>(begin); t < static_cast<std::size_t>(end); ++t) {
             const Id* vertices = listed.data() + first[t];
             const std::size_t members = first[t + 1] - first[t];
             const auto may_go = static_cast<std::int64_t>(share_that_goes * double(members));
-            tallies[t] = engine.run(members, [&](std::size_t n) { return vertices[n]; }, threshold,
-                                    {.vertices = may_go, .faces = 2 * may_go});
+            stats[t] = engine.run(members, [&](std::size_t n) { return vertices[n]; }, threshold,
+                                  {.vertices = may_go, .faces = 2 * may_go});
         }
     });
-    Tally sum;
-    for (const Tally& part : tallies) sum.add(part);
+    CollapseStats sum;
+    for (const CollapseStats& part : stats) sum.add(part);
     parallel_blocks(0, count, kGrain, [&](int begin, int end) {
         for (auto v = static_cast<std::size_t>(begin); v < static_cast<std::size_t>(end); ++v)
-            rings[v].sealed = 0;
+            rings[v].locked = 0;
     });
     return sum;
 }

@@ -24,17 +24,17 @@ inline constexpr int kStartTilesAtATime = 512;
 /// The threshold at which `share` of the vertices would be left, found out on some of the tiles; to a factor
 /// of kTileWindow, rather too low.
 template <class Q>
-float start_threshold(const GridMesh& grid, const CollapseRules& rules, double share);
+float start_threshold(const GridMesh& grid, const SimplifyRules& rules, double share);
 
 /// Collapses edges below `threshold` in every tile of the grid, as long as at most `share_that_goes` of its
-/// vertices go; vertices next to another tile stay, and those on the outline of a cut-out.
+/// vertices go; vertices next to another tile stay, and those on the boundary of a masked image.
 ///
 /// share     of the vertices that is expected to be left
 /// left      out: what is left, vertices tile by tile, in the grid's order within each
-/// progress  is told how many vertices are gone so far
+/// progress  is told how many vertices are removed so far
 template <class Q, class Progress>
-Tally start_in_tiles(const GridMesh& grid, const CollapseRules& rules, float threshold, double share,
-                     double share_that_goes, CollapseMesh<Q>& left, const Progress& progress);
+CollapseStats start_in_tiles(const GridMesh& grid, const SimplifyRules& rules, float threshold, double share,
+                             double share_that_goes, QuadricMesh<Q>& left, const Progress& progress);
 
 namespace tile_start {
 
@@ -42,16 +42,16 @@ namespace tile_start {
 inline constexpr Id kElsewhere = 1u << 31;
 
 // Collapses the tile's edges below `threshold`, rebuilding quadrics at every halving of its vertices where
-// that is asked for. What their neighbours in other tiles look like is known then: they too are sealed.
+// that is asked for. What their neighbours in other tiles look like is known then: they too are locked.
 template <class Q>
-Tally collapse_tile(EdgeCollapser<Q>& engine, const CollapseParams& params, TileMesh<Q>& tile,
-                    float threshold, std::int64_t may_go) {
-    Tally sum;
+CollapseStats collapse_tile(EdgeCollapser<Q>& engine, const SimplifyParams& params, TileMesh<Q>& tile,
+                            float threshold, std::int64_t may_go) {
+    CollapseStats sum;
     for (;;) {
         std::int64_t part_may = may_go - sum.vertices;
         if (params.rebuild_quadrics) part_may = std::min(part_may, tile.live - tile.halved);
-        const Tally part = engine.run(tile.own, [](std::size_t v) { return static_cast<Id>(v); }, threshold,
-                                      {.vertices = part_may, .faces = kAllMayGo.faces});
+        const CollapseStats part = engine.run(tile.own, [](std::size_t v) { return static_cast<Id>(v); },
+                                              threshold, {.vertices = part_may, .faces = kAllMayGo.faces});
         // What is put off while quadrics are old may be cheaper now.
         sum.postponed = kNever;
         sum.add(part);
@@ -66,11 +66,11 @@ Tally collapse_tile(EdgeCollapser<Q>& engine, const CollapseParams& params, Tile
 
 // What has survived, numbered from 0 on; writes these numbers to number[vertex].
 template <class Q>
-CollapseMesh<Q> survivors(const TileMesh<Q>& tile, std::vector<Id>& number) {
-    const CollapseMesh<Q>& mesh = tile.mesh;
+QuadricMesh<Q> survivors(const TileMesh<Q>& tile, std::vector<Id>& number) {
+    const QuadricMesh<Q>& mesh = tile.mesh;
     const std::vector<Id> live = live_list(mesh.rings);
     for (Id n = 0; n < live.size(); ++n) number[mesh.pixel[live[n]]] = n;
-    CollapseMesh<Q> out;
+    QuadricMesh<Q> out;
     out.rings.reserve(live.size());
     out.quadrics.reserve(live.size());
     out.pixel.reserve(live.size());
@@ -82,7 +82,7 @@ CollapseMesh<Q> survivors(const TileMesh<Q>& tile, std::vector<Id>& number) {
             else
                 n = mesh.pixel[n] | kElsewhere;
         ring.version = 0;
-        ring.sealed = 0;
+        ring.locked = 0;
         out.rings.push_back(ring);
         out.quadrics.push_back(mesh.quadrics[v]);
         out.pixel.push_back(mesh.pixel[v]);
@@ -119,11 +119,11 @@ inline std::vector<int> some_tiles(const StartTiles& tiles) {
 }
 
 template <class Q>
-float median_cost(CollapseMesh<Q>& mesh, const CollapseRules& rules) {
+float median_cost(QuadricMesh<Q>& mesh, const SimplifyRules& rules) {
     std::vector<float> costs;
     EdgeCollapser<Q> engine(mesh, rules);
     for (Id v = 0; v < mesh.rings.size(); ++v)
-        if (const Ring& ring = mesh.rings[v]; ring.live() && !ring.sealed)
+        if (const Ring& ring = mesh.rings[v]; ring.live() && !ring.locked)
             if (const float cost = engine.cost(v, ring.neighbor[0]); cost < kNever) costs.push_back(cost);
     if (costs.empty()) return 0;
     std::nth_element(costs.begin(), costs.begin() + costs.size() / 2, costs.end());
@@ -133,7 +133,7 @@ float median_cost(CollapseMesh<Q>& mesh, const CollapseRules& rules) {
 }  // namespace tile_start
 
 template <class Q>
-float start_threshold(const GridMesh& grid, const CollapseRules& rules, double share) {
+float start_threshold(const GridMesh& grid, const SimplifyRules& rules, double share) {
     using namespace tile_start;
     const StartTiles tiles(grid);
     const std::vector<int> some = some_tiles(tiles);
@@ -147,20 +147,20 @@ float start_threshold(const GridMesh& grid, const CollapseRules& rules, double s
         fill_tile(grid, rules.params, tiles.rect(some[n]), meshes[n]);
         medians[n] = median_cost(meshes[n].mesh, rules);
     });
-    std::int64_t all = 0, gone = 0;
-    for (const TileMesh<Q>& tile : meshes) all += tile.live - tile.outline;
+    std::int64_t all = 0, removed = 0;
+    for (const TileMesh<Q>& tile : meshes) all += tile.live - tile.boundary;
     std::nth_element(medians.begin(), medians.begin() + medians.size() / 2, medians.end());
     float threshold = std::max(medians[medians.size() / 2], std::numeric_limits<float>::min());
     for (float next = threshold;; next *= kTileWindow) {
-        std::vector<Tally> tallies(some.size());
+        std::vector<CollapseStats> stats(some.size());
         each([&](std::size_t n) {
             EdgeCollapser<Q> engine(meshes[n].mesh, rules);
-            tallies[n] = collapse_tile(engine, rules.params, meshes[n], next, kAllMayGo.vertices);
+            stats[n] = collapse_tile(engine, rules.params, meshes[n], next, kAllMayGo.vertices);
         });
-        Tally sum;
-        for (const Tally& tally : tallies) sum.add(tally);
-        gone += sum.vertices;
-        if (static_cast<double>(gone) > (1 - share) * static_cast<double>(all)) return threshold;
+        CollapseStats sum;
+        for (const CollapseStats& part : stats) sum.add(part);
+        removed += sum.vertices;
+        if (static_cast<double>(removed) > (1 - share) * static_cast<double>(all)) return threshold;
         threshold = next;
         if (sum.postponed == kNever) return threshold;
         while (next < sum.postponed && sum.vertices == 0) next *= kTileWindow;
@@ -168,8 +168,8 @@ float start_threshold(const GridMesh& grid, const CollapseRules& rules, double s
 }
 
 template <class Q, class Progress>
-Tally start_in_tiles(const GridMesh& grid, const CollapseRules& rules, float threshold, double share,
-                     double share_that_goes, CollapseMesh<Q>& left, const Progress& progress) {
+CollapseStats start_in_tiles(const GridMesh& grid, const SimplifyRules& rules, float threshold, double share,
+                             double share_that_goes, QuadricMesh<Q>& left, const Progress& progress) {
     using namespace tile_start;
     const StartTiles tiles(grid);
     // Room that is not touched costs nothing.
@@ -179,14 +179,14 @@ Tally start_in_tiles(const GridMesh& grid, const CollapseRules& rules, float thr
     left.pixel.reserve(expected);
     std::vector<Id> first(static_cast<std::size_t>(tiles.count()) + 1, 0);
     std::vector<Id> number = parallel_vector<Id>(grid.vertex_count());
-    Tally sum;
-    std::atomic<std::int64_t> gone = 0;
+    CollapseStats sum;
+    std::atomic<std::int64_t> removed = 0;
     const std::thread::id caller = std::this_thread::get_id();
     // Some tiles at a time, so that their parts' memory serves again and again.
     for (int begin = 0; begin < tiles.count(); begin += kStartTilesAtATime) {
         const int end = std::min(begin + kStartTilesAtATime, tiles.count());
-        std::vector<CollapseMesh<Q>> parts(static_cast<std::size_t>(end - begin));
-        std::vector<Tally> tallies(parts.size());
+        std::vector<QuadricMesh<Q>> parts(static_cast<std::size_t>(end - begin));
+        std::vector<CollapseStats> stats(parts.size());
         parallel_blocks(begin, end, kStartTilesPerBlock, [&](int from, int to) {
             TileMesh<Q> tile;
             EdgeCollapser<Q> engine(tile.mesh, rules);
@@ -194,15 +194,15 @@ Tally start_in_tiles(const GridMesh& grid, const CollapseRules& rules, float thr
                 const auto n = static_cast<std::size_t>(t - begin);
                 fill_tile(grid, rules.params, tiles.rect(t), tile);
                 const auto may_go = static_cast<std::int64_t>(share_that_goes *
-                                                              static_cast<double>(tile.live - tile.outline));
-                tallies[n] = collapse_tile(engine, rules.params, tile, threshold, may_go);
+                                                              static_cast<double>(tile.live - tile.boundary));
+                stats[n] = collapse_tile(engine, rules.params, tile, threshold, may_go);
                 parts[n] = survivors(tile, number);
-                gone += tallies[n].vertices;
+                removed += stats[n].vertices;
             }
-            if (std::this_thread::get_id() == caller) progress(gone);
+            if (std::this_thread::get_id() == caller) progress(removed);
         });
         for (std::size_t n = 0; n < parts.size(); ++n) {
-            sum.add(tallies[n]);
+            sum.add(stats[n]);
             append(left.rings, parts[n].rings);
             append(left.quadrics, parts[n].quadrics);
             append(left.pixel, parts[n].pixel);

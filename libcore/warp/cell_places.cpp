@@ -70,7 +70,7 @@ bool CellPlaces::reaches(int y, int first, int last) const {
 
 Cover CellPlaces::cover(int x, int y) const {
     const bool rim = x < 0 || y < 0 || x + 1 >= field_.width || y + 1 >= field_.height;
-    if (!field_.has_mask) return rim ? Cover::kOutline : Cover::kSolid;
+    if (!field_.has_mask) return rim ? Cover::kBoundary : Cover::kSolid;
     int inside = 0;
     for (int j = y; j <= y + 1; ++j)
         for (int i = x; i <= x + 1; ++i) {
@@ -79,7 +79,7 @@ Cover CellPlaces::cover(int x, int y) const {
             if (role == PixelRole::kOutside) return Cover::kNothing;
             inside += role == PixelRole::kInside;
         }
-    return inside == 0 ? Cover::kNothing : inside == 4 && !rim ? Cover::kSolid : Cover::kOutline;
+    return inside == 0 ? Cover::kNothing : inside == 4 && !rim ? Cover::kSolid : Cover::kBoundary;
 }
 
 }  // namespace imgmesh

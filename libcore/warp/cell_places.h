@@ -35,7 +35,7 @@ class CellPlaces {
     /// Whether a cell between the rows y and y + 1 may touch the output rows [first, last).
     bool reaches(int y, int first, int last) const;
     /// What the cell with the top left pixel (x, y) covers with: kNothing where it is not drawn, kSolid where
-    /// its four pixels are, else kOutline.
+    /// its four pixels are, else kBoundary.
     Cover cover(int x, int y) const;
 
   private:

@@ -24,7 +24,7 @@ struct CellPoint {
 };
 
 /// Where several triangles cover a centre, the highest of these wins, of equal ones the later row and column.
-enum class Cover : std::uint8_t { kNothing, kTurnedOutline, kOutline, kTurned, kSolid };
+enum class Cover : std::uint8_t { kNothing, kTurnedBoundary, kBoundary, kTurned, kSolid };
 
 /// Draws cells into rows [first_row, last_row) of a `width` wide output.
 ///

@@ -11,7 +11,7 @@ namespace imgmesh {
 
 enum class PixelRole : std::uint8_t {
     kOutside,  ///< not drawn
-    kGhost,    ///< beside the picture's outline: moves along with it, so that it has a soft edge
+    kGhost,    ///< beside the picture's boundary: moves along with it, so that it has a soft edge
     kInside    ///< drawn
 };
 
@@ -38,7 +38,7 @@ DisplacementField displacement_field(const MeshImage& mesh_image, const std::vec
 
 /// Gives pixels outside a way to go, ring by ring from the inside outwards: each the mean of its (up to
 /// eight) neighbours that have one. One ring are ghosts; a pixel outside that the picture's own alpha `alpha`
-/// (size W * H, or empty) makes neither clear nor opaque belongs to a soft outline, becomes kInside, and the
+/// (size W * H, or empty) makes neither clear nor opaque belongs to a soft boundary, becomes kInside, and the
 /// ring goes around it. The alpha of pixels becomes 0 where they stay outside. No effect without a mask.
 void extend_outside(DisplacementField& field, std::vector<float>& alpha);
 

@@ -140,7 +140,7 @@ std::vector<double> side_places(const BaseMesh& mesh, int axis, int side, int si
 
 VertexMoves retarget_moves(const BaseMesh& mesh, int width, int height, const OutputSize& size) {
     constexpr int kTurns = 30;
-    // Faces smaller than this share of their size under plain scaling are as good as gone.
+    // Faces smaller than this share of their size under plain scaling are as good as removed.
     constexpr double kLeastShare = 0.02;
     const std::vector<FaceEnergy> energy = energies(mesh);
     Axis x(mesh, energy, side_places(mesh, 0, width, size.width)),
@@ -175,7 +175,7 @@ VertexMoves retarget_moves(const BaseMesh& mesh, int width, int height, const Ou
 DisplacementField retarget_field(const MeshImage& mesh_image, const OutputSize& size) {
     const SourceInfo& source = mesh_image.source;
     if (source.has_mask)
-        throw Error(ErrorCode::kUnsupported, "a cut-out has no sides to give another size to");
+        throw Error(ErrorCode::kUnsupported, "a masked image has no sides to give another size to");
     MeshImage by_place;
     by_place.source = source;
     by_place.levels.resize(1);

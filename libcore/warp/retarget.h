@@ -20,7 +20,7 @@ VertexMoves retarget_moves(const BaseMesh& mesh, int width, int height, const Ou
 
 /// The field that draws level 0 so. Pixels move with the face that covers them, not through the pixel map,
 /// which follows edges too closely for moves as large as these. Throws as retarget_moves(),
-/// Error(kUnsupported) for a cut-out, which has no sides.
+/// Error(kUnsupported) for a masked image, which has no sides.
 DisplacementField retarget_field(const MeshImage& mesh_image, const OutputSize& size);
 
 /// The sum of two fields of one picture.

@@ -18,7 +18,7 @@ struct VertexSelection {
     std::optional<std::array<double, 3>> circle;  ///< all within: centre x, y and radius
     std::optional<std::array<double, 3>> beyond;  ///< all outside of a circle
     std::optional<std::array<double, 4>> box;     ///< all within: left, top, right, bottom
-    bool border = false;                          ///< all on the mesh's outlines
+    bool border = false;                          ///< all on the mesh's boundaries
     std::string where;  ///< how messages call it, e.g. "edits.json: /edits/0/pins/1"
 };
 

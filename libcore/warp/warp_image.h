@@ -21,7 +21,7 @@ struct OutputSize {
 /// - Shrinking: where a step of one output pixel to the right goes n source pixels far and one down m, both
 ///   rounded and at least 1, the pixel is the mean of n x m such points, evenly over its footprint. A
 ///   footprint longer than 64 is sampled 64 times.
-/// - Folds: of several triangles over one point those with four drawn pixels win against the outline's, then
+/// - Folds: of several triangles over one point those with four drawn pixels win against the boundary's, then
 ///   those not turned over, then the later row, then the later column.
 /// - Alpha is a weight in all means. The picture's sides, half a pixel outside the outermost centres, and
 ///   pixels outside the mask are clear; sides that move get the share of the pixel that the picture covers.

@@ -23,13 +23,13 @@ Image forward_map_image(const DisplacementField& field) {
     return image;
 }
 
-Image st_map_image(const InverseMap& map, int picture_width, int picture_height) {
+Image st_map_image(const InverseMap& map, int image_width, int image_height) {
     Image image = float_image(map.width, map.height, {"R", "G", "A"});
     float* out = image.data.data();
     for (std::size_t i = 0; i < map.source.size(); ++i, out += 3) {
         if (map.coverage[i] == 0) continue;
-        out[0] = static_cast<float>((double(map.source[i].x()) + 0.5) / picture_width);
-        out[1] = static_cast<float>(1 - (double(map.source[i].y()) + 0.5) / picture_height);
+        out[0] = static_cast<float>((double(map.source[i].x()) + 0.5) / image_width);
+        out[1] = static_cast<float>(1 - (double(map.source[i].y()) + 0.5) / image_height);
         out[2] = map.coverage[i];
     }
     return image;

@@ -14,6 +14,6 @@ Image forward_map_image(const DisplacementField& field);
 /// picture, W x H pixels, that each pixel of the drawing shows. So both run from 0 to 1 over the picture from
 /// side to side, G upwards, and the centre of the bottom left pixel is (0.5 / W, 0.5 / H). A: the share of
 /// the pixel that the picture covers; where it is 0, R and G are 0.
-Image st_map_image(const InverseMap& map, int picture_width, int picture_height);
+Image st_map_image(const InverseMap& map, int image_width, int image_height);
 
 }  // namespace imgmesh

@@ -91,14 +91,14 @@ std::vector<StageRow> measure_stages(const std::string& path, const std::string&
     FeatureImage feature = bench.stage("luv", [&] { return extract_features(image, space); });
     GridMesh grid = bench.stage("grid", [&] { return grid_mesh(feature); });
     const auto pixels = static_cast<double>(image.pixel_count());
-    const std::vector<CollapseTarget> targets = collapse_targets(params, pixels);
-    const CollapseParams limits = collapse_params(params, targets.front(), pixels);
+    const std::vector<SimplifyTarget> targets = collapse_targets(params, pixels);
+    const SimplifyParams limits = collapse_params(params, targets.front(), pixels);
     bench.stage("quadrics", [&] {
         return vertex_quadrics<3>(grid, smoothed_patch(grid, limits.smoothing, whole_rect(grid)),
                                   limits.geometry_weight);
     });
-    const CollapseResult collapsed =
-        bench.stage("collapse", [&] { return collapse_edges(grid, limits, targets.front()); });
+    const SimplifyResult collapsed =
+        bench.stage("collapse", [&] { return simplify(grid, limits, targets.front()); });
     bench.rms(map_rms(collapsed.mesh, trivial_map(collapsed.mesh, image.width, image.height), feature));
     grid = {};
 

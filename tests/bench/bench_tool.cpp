@@ -124,7 +124,7 @@ int measure(const Arguments& a) {
 }  // namespace
 
 int main(int argc, char** argv) {
-    use_large_pages();  // as the tools do
+    use_huge_pages();  // as the tools do
     const std::map<std::string, std::function<int(const Arguments&)>> commands = {
         {"mosaic", mosaic}, {"stages", stages}, {"features", features}, {"measure", measure}};
     const auto at = argc > 1 ? commands.find(argv[1]) : commands.end();

@@ -110,7 +110,7 @@ class Info(CliCase):
         self.assertEqual(verdict["code"], "json.syntax")
         self.assertTrue(verdict["message"].startswith("parse error at line 1, column 1"), verdict)
 
-    def test_companion_files(self):
+    def test_sidecar_files(self):
         exr, binary = (self.folder / "g.exr").read_bytes(), (self.folder / "g.bin").read_bytes()
         (self.folder / "g.exr").unlink()
         self.assert_error("imgmesh-info", ["g.gltf", "--validate"], 3, "g.exr")

@@ -78,9 +78,9 @@ void add_mesh_cases(std::map<std::string, Case>& cases) {
     cases["mesh.position"] = mesh_case([](StoredMesh& m) { m.position[1][1] = -2.01f; });
     cases["mesh.color"] = mesh_case([](StoredMesh& m) { m.color[3][3] = 0; });
     cases["mesh.light"] = mesh_case([](StoredMesh& m) {
-        m.light = {{0, 0, 0}, {1, 2, 3}, {5, -1, 0}, {0, 0, 9}};
+        m.hdr = {{0, 0, 0}, {1, 2, 3}, {5, -1, 0}, {0, 0, 9}};
     });
-    cases["mesh.light"].sample.asset.source.gamut = Gamut::kLight;
+    cases["mesh.light"].sample.asset.source.gamut = Gamut::kHdr;
     cases["mesh.channel"] = mesh_case([](StoredMesh& m) { m.channels = {{1, 2, INFINITY, 4}}; });
     cases["mesh.channel"].sample.asset.source.channel_names = {"R", "G", "B", "depth.Z"};
     cases["mesh.orientation"] = mesh_case([](StoredMesh& m) { std::swap(m.faces[0][0], m.faces[0][1]); });

@@ -52,9 +52,9 @@ int run(const fs::path& out) {
     masked.write(out / "valid-mask-visits", true);
     Sample channels(2, DracoMode::kEdgebreaker);
     channels.asset.source.channel_names = {"R", "G", "B", "depth.Z"};
-    channels.asset.source.gamut = Gamut::kLight;
+    channels.asset.source.gamut = Gamut::kHdr;
     for (StoredMesh& mesh : channels.meshes) {
-        mesh.light = {{0, 0, 0}, {2, 0, 0}, {0, 3, 0}, {0, 0, 4}};
+        mesh.hdr = {{0, 0, 0}, {2, 0, 0}, {0, 3, 0}, {0, 0, 4}};
         mesh.channels = {{0, -1, 2, 1e30f}};
     }
     channels.write(out / "valid-channels-light", true);

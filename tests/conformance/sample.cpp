@@ -38,7 +38,7 @@ AssetLevel store(const StoredMesh& mesh, DracoMode mode, double error, Bytes& bu
         level.indices = append(buffer, mesh.faces);
         level.positions = append(buffer, mesh.position);
         level.colors = append(buffer, mesh.color);
-        level.light = append(buffer, mesh.light);
+        level.hdr = append(buffer, mesh.hdr);
         for (const std::vector<float>& channel : mesh.channels)
             level.channels.push_back(append(buffer, channel));
         level.texcoords = append(buffer, mesh.texcoord);

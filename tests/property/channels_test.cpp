@@ -49,7 +49,7 @@ FeatureImage waves(int width, int height, int channels) {
 FeatureSpace plain_space(int channels) {
     FeatureSpace space;
     space.color = false;
-    space.plain.assign(static_cast<std::size_t>(channels), "x");
+    space.auxiliary.assign(static_cast<std::size_t>(channels), "x");
     space.plain_weight.assign(static_cast<std::size_t>(channels), 1.0f);
     return space;
 }
@@ -61,7 +61,7 @@ struct Fitted {
 
 Fitted fitted(const FeatureImage& feature, std::int64_t vertices, const FeatureSpace& space) {
     Fitted out;
-    out.mesh = collapse_edges(grid_mesh(feature), {}, CollapseTarget{.vertices = vertices}).mesh;
+    out.mesh = simplify(grid_mesh(feature), {}, SimplifyTarget{.vertices = vertices}).mesh;
     FitParams params;
     params.space = space;
     out.map = fit_map(out.mesh, feature, params);
@@ -132,8 +132,7 @@ TEST_CASE("channels: a constant one is reproduced exactly enough") {
 
 TEST_CASE("channels: none and too many are refused") {
     for (const int channels : {0, 17})
-        CHECK_THROWS_AS(collapse_edges(grid_mesh(zeros(8, 8, channels)), {}, CollapseTarget{.vertices = 9}),
-                        Error);
+        CHECK_THROWS_AS(simplify(grid_mesh(zeros(8, 8, channels)), {}, SimplifyTarget{.vertices = 9}), Error);
 }
 
 namespace {
@@ -192,8 +191,8 @@ TEST_CASE("channels: the mesh follows an edge of depth that is none of colour") 
     CHECK(share_at_step(with.mesh_image.levels[0].mesh) > 0.25);
     CHECK(with.mesh_image.source.channel_names == std::vector<std::string>{"R", "G", "B", "depth.Z"});
     // In the depth's own unit, whatever its weight: a step of 2 is off by far less in the mean.
-    REQUIRE(with.report.levels[0].plain_rms.size() == 1);
-    CHECK(with.report.levels[0].plain_rms[0] < 0.06);
+    REQUIRE(with.report.levels[0].auxiliary_rms.size() == 1);
+    CHECK(with.report.levels[0].auxiliary_rms[0] < 0.06);
 
     const Image drawn = draw_channels(with.mesh_image, 0, {});
     CHECK(drawn.channel_names == image.channel_names);
@@ -204,7 +203,7 @@ TEST_CASE("channels: the mesh follows an edge of depth that is none of colour") 
         for (int x = 0; x < kWidth; ++x)
             sum += std::pow(double(drawn.pixel(x, y)[3] - image.pixel(x, y)[3]), 2);
     CHECK(std::sqrt(sum / (kWidth * kHeight)) ==
-          doctest::Approx(with.report.levels[0].plain_rms[0]).epsilon(1e-3));
+          doctest::Approx(with.report.levels[0].auxiliary_rms[0]).epsilon(1e-3));
 }
 
 TEST_CASE(
@@ -286,7 +285,7 @@ TEST_CASE("light: highlights above 1 come back, in half and float pictures, and 
         image.sample_type = type;
         const MeshImage built = build_mesh_image(image, chosen({}, 60)).mesh_image;
         const bool floats = type != SampleType::kUint16;
-        CHECK(built.source.gamut == (floats ? Gamut::kLight : Gamut::kDisplay));
+        CHECK(built.source.gamut == (floats ? Gamut::kHdr : Gamut::kDisplay));
         CHECK(map_quality(built.levels[0].mesh, built.levels[0].map).flipped_triangles == 0);
         const Image drawn = draw(built, 0, {});
         CHECK(drawn.pixel(40, 20)[0] == doctest::Approx(floats ? 80 : 1).epsilon(0.02));
@@ -295,7 +294,7 @@ TEST_CASE("light: highlights above 1 come back, in half and float pictures, and 
         CHECK(drawn.pixel(5, 5)[2] == doctest::Approx(0).epsilon(0.02));
         for (Id v = 0; v < built.levels[0].mesh.vertex_count(); ++v) {
             const Vec3f luv(built.levels[0].mesh.feature_of(v));
-            CHECK(storable_color(luv, built.source.gamut) == luv);
+            CHECK(quantized_color(luv, built.source.gamut) == luv);
         }
     }
 }

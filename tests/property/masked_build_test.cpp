@@ -1,4 +1,4 @@
-// The whole pipeline on cut-outs.
+// The whole pipeline on masked images.
 #include <doctest/doctest.h>
 
 #include "libcore/base/error.h"
@@ -29,13 +29,13 @@ bool same(const Level& a, const Level& b) {
 
 }  // namespace
 
-TEST_CASE("cut-outs: masks that do not fit, or have nothing inside, are refused") {
+TEST_CASE("masked images: masks that do not fit, or have nothing inside, are refused") {
     const Image image = sample_picture(Kind::kDisc, 9, 7);
     CHECK(failure(image, mask_where(9, 7, [](int, int) { return false; })) == ErrorCode::kUnsupported);
     CHECK(failure(image, mask_where(7, 9, [](int, int) { return true; })) == ErrorCode::kBadFile);
 }
 
-TEST_CASE("cut-outs: a mask with all pixels inside gives what none gives") {
+TEST_CASE("masked images: a mask with all pixels inside gives what none gives") {
     const Image image = sample_picture(Kind::kNoise, 40, 30);
     const BuildResult with =
                           build_mesh_image(image, {}, {}, mask_where(40, 30, [](int, int) { return true; })),
@@ -45,7 +45,7 @@ TEST_CASE("cut-outs: a mask with all pixels inside gives what none gives") {
     CHECK(with.report.pixels == 1200);
 }
 
-TEST_CASE("cut-outs: percents are of the pixels inside") {
+TEST_CASE("masked images: percents are of the pixels inside") {
     const Mask mask = mask_where(100, 80, [](int x, int y) { return x < 50 && y < 40; });
     BuildParams params;
     params.stop.density = 5;
@@ -55,7 +55,7 @@ TEST_CASE("cut-outs: percents are of the pixels inside") {
     CHECK(built.mesh_image.source.has_mask);
 }
 
-TEST_CASE("cut-outs: every level has the mask, no fold, and no more pixels a face than allowed") {
+TEST_CASE("masked images: every level has the mask, no fold, and no more pixels a face than allowed") {
     for (const auto& [name, mask] : sample_masks(36)) {
         INFO(name);
         BuildParams params;
@@ -77,7 +77,7 @@ TEST_CASE("cut-outs: every level has the mask, no fold, and no more pixels a fac
     }
 }
 
-TEST_CASE("cut-outs: the same result for any number of threads") {
+TEST_CASE("masked images: the same result for any number of threads") {
     const Mask mask = sample_masks(90)[4].mask;
     const Image image = sample_picture(Kind::kNoise, 90, 90);
     const Level first = build_mesh_image(image, {}, {}, mask).mesh_image.levels[0];

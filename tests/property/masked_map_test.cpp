@@ -1,4 +1,4 @@
-// What must hold for the pixel map of any cut-out.
+// What must hold for the pixel map of any masked image.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -24,14 +24,14 @@ struct Scene {
     BaseMesh mesh;
     std::vector<FaceField> fields;
     std::vector<Face> neighbors;
-    MovingPixels pixels;
+    PixelEmbedding pixels;
 };
 
 Scene scene(Kind kind, const Mask& mask, std::int64_t vertices) {
     Scene s;
     s.feature = sample_feature(kind, mask.width, mask.height);
     s.mask = mask;
-    s.mesh = collapse_edges(grid_mesh(s.feature, mask), {}, CollapseTarget{.vertices = vertices}).mesh;
+    s.mesh = simplify(grid_mesh(s.feature, mask), {}, SimplifyTarget{.vertices = vertices}).mesh;
     s.fields = face_fields(s.mesh);
     s.neighbors = face_neighbors(s.mesh);
     s.pixels = resting_pixels(trivial_map(s.mesh, mask.width, mask.height, mask), mask);
@@ -78,7 +78,7 @@ bool straight_side(const Mask& m, int x, int y, int dx, int dy) {
     return (full(1) && bare(-1)) || (full(-1) && bare(1));
 }
 
-void check_outline(const Scene& s) {
+void check_boundary(const Scene& s) {
     for (int y = 0; y < s.mask.height; ++y)
         for (int x = 0; x < s.mask.width; ++x) {
             if (!s.mask.at(x, y)) continue;
@@ -90,7 +90,7 @@ void check_outline(const Scene& s) {
             int straight_neighbors = 0;
             for (const int k : {1, 3, 5, 7}) straight_neighbors += s.mask.at(x + k % 3 - 1, y + k / 3 - 1);
             if (deep || straight_neighbors == 4) continue;  // inside
-            if (moved_x && moved_y) FAIL_CHECK("pixel (" << x << ", " << y << ") left the outline");
+            if (moved_x && moved_y) FAIL_CHECK("pixel (" << x << ", " << y << ") left the boundary");
             if (moved_x) CHECK(straight_side(s.mask, x, y, 1, 0));
             if (moved_y) CHECK(straight_side(s.mask, x, y, 0, 1));
         }
@@ -112,7 +112,7 @@ void check_faces(const Scene& s) {
         }
 }
 
-double total_displacement(const MovingPixels& pixels) {
+double total_displacement(const PixelEmbedding& pixels) {
     double sum = 0;
     for (std::size_t i = 0; i < pixels.face.size(); ++i)
         if (!pixels.outside(i)) sum += std::hypot(pixels.dx[i], pixels.dy[i]);
@@ -121,7 +121,7 @@ double total_displacement(const MovingPixels& pixels) {
 
 }  // namespace
 
-TEST_CASE("cut-outs: relaxed pixels fold nowhere, stay in the mesh, and keep to the outline") {
+TEST_CASE("masked images: relaxed pixels fold nowhere, stay in the mesh, and keep to the boundary") {
     for (const auto& [name, mask] : sample_masks(40))
         for (const Kind kind : {Kind::kNoise, Kind::kDisc})
             for (const float smoothness : {1e-3f, 30.0f}) {
@@ -129,12 +129,12 @@ TEST_CASE("cut-outs: relaxed pixels fold nowhere, stay in the mesh, and keep to 
                 Scene s = scene(kind, mask, 60);
                 relax(s.pixels, s.fields, s.neighbors, s.feature, smoothness, 6);
                 CHECK(least_area2(s) >= double(kLeastMovingArea) - 1e-4);
-                check_outline(s);
+                check_boundary(s);
                 check_faces(s);
             }
 }
 
-TEST_CASE("cut-outs: pixels do move") {
+TEST_CASE("masked images: pixels do move") {
     for (const int k : {0, 2, 7, 10}) {
         Scene s = scene(Kind::kDisc, sample_masks(60)[static_cast<std::size_t>(k)].mask, 60);
         relax(s.pixels, s.fields, s.neighbors, s.feature, 30, 8);
@@ -142,8 +142,8 @@ TEST_CASE("cut-outs: pixels do move") {
     }
 }
 
-// The outlines of a mask with all pixels inside are the picture's sides.
-TEST_CASE("cut-outs: a mask with all pixels inside relaxes as if there were none") {
+// The boundaries of a mask with all pixels inside are the picture's sides.
+TEST_CASE("masked images: a mask with all pixels inside relaxes as if there were none") {
     const Mask full = mask_where(45, 40, [](int, int) { return true; });
     Scene s = scene(Kind::kNoise, Mask{45, 40, {}}, 70), t = s;
     t.pixels = resting_pixels(trivial_map(t.mesh, 45, 40, full), full);
@@ -155,7 +155,7 @@ TEST_CASE("cut-outs: a mask with all pixels inside relaxes as if there were none
 }
 
 // Without the bit that says that they are free, all pixels go one by one.
-TEST_CASE("cut-outs: eight at a time is one at a time") {
+TEST_CASE("masked images: eight at a time is one at a time") {
     std::vector<NamedMask> masks = sample_masks(80);
     masks.push_back(
         {"holes of a pixel", mask_where(80, 40, [](int x, int y) { return x % 9 != 4 || y % 5; })});
@@ -174,7 +174,7 @@ TEST_CASE("cut-outs: eight at a time is one at a time") {
     }
 }
 
-TEST_CASE("cut-outs: what is stored has the mask to the pixel and no fold") {
+TEST_CASE("masked images: what is stored has the mask to the pixel and no fold") {
     std::vector<NamedMask> masks = sample_masks(40);
     for (std::uint32_t seed = 1; seed <= 100; ++seed)
         masks.push_back({"random mask " + std::to_string(seed), random_mask(seed)});
@@ -182,7 +182,7 @@ TEST_CASE("cut-outs: what is stored has the mask to the pixel and no fold") {
         for (const Kind kind : {Kind::kNoise, Kind::kGradient}) {
             INFO(name << ", " << name_of(kind));
             const FeatureImage feature = sample_feature(kind, mask.width, mask.height);
-            BaseMesh mesh = collapse_edges(grid_mesh(feature, mask), {}, CollapseTarget{.vertices = 80}).mesh;
+            BaseMesh mesh = simplify(grid_mesh(feature, mask), {}, SimplifyTarget{.vertices = 80}).mesh;
             const PixelMap map = fit_map(mesh, feature, {}, {}, mask);
             for (std::size_t i = 0; i < map.coords.size(); ++i)
                 if (mask.contains(i) != (map.coords[i].face != kNone)) FAIL_CHECK("pixel " << i);
@@ -196,11 +196,11 @@ TEST_CASE("cut-outs: what is stored has the mask to the pixel and no fold") {
         }
 }
 
-TEST_CASE("cut-outs: the same map with any number of threads") {
+TEST_CASE("masked images: the same map with any number of threads") {
     const Mask mask = sample_masks(90)[10].mask;
     const FeatureImage feature = sample_feature(Kind::kNoise, 90, 90);
     const auto made = [&] {
-        BaseMesh mesh = collapse_edges(grid_mesh(feature, mask), {}, CollapseTarget{.vertices = 300}).mesh;
+        BaseMesh mesh = simplify(grid_mesh(feature, mask), {}, SimplifyTarget{.vertices = 300}).mesh;
         return fit_map(mesh, feature, {}, {}, mask).coords;
     };
     const std::vector<PixelCoord> first = made();

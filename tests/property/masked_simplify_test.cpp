@@ -1,4 +1,5 @@
-// What must hold for the mesh of any cut-out: its topology, that it covers the mask, and that it stays close.
+// What must hold for the mesh of any masked image: its topology, that it covers the mask, and that it stays
+// close.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -33,7 +34,7 @@ BaseMesh dense_mesh(const GridMesh& grid) {
 }
 
 BaseMesh coarse_mesh(const GridMesh& grid, std::int64_t vertices) {
-    return collapse_edges(grid, {}, CollapseTarget{.vertices = vertices}).mesh;
+    return simplify(grid, {}, SimplifyTarget{.vertices = vertices}).mesh;
 }
 
 // Straight from the rule: two triangles for a cell of four, one for three; n pixels of a bare run make 2 (n -
@@ -95,7 +96,7 @@ void check_covers(const BaseMesh& mesh, const Mask& mask) {
 }  // namespace
 
 // Small enough to count by hand. Vertices, faces, components, and Euler characteristic.
-TEST_CASE("cut-outs: the dense mesh of small masks") {
+TEST_CASE("masked images: the dense mesh of small masks") {
     struct Case {
         std::vector<std::string> rows;
         std::size_t vertices, faces;
@@ -128,7 +129,7 @@ TEST_CASE("cut-outs: the dense mesh of small masks") {
 }
 
 // A pixel with triangles to its left and right and none between them is two vertices.
-TEST_CASE("cut-outs: a pinch is split") {
+TEST_CASE("masked images: a pinch is split") {
     const GridMesh pinched = cut_out(mask_of({"#.#", "###", "#.#"}));
     // Left: triangles (0,0) (0,1) (1,1) and (0,1) (0,2) (1,1); right likewise: the middle is shared by both.
     REQUIRE(pinched.copies == std::vector<Id>{4});
@@ -140,7 +141,7 @@ TEST_CASE("cut-outs: a pinch is split") {
     CHECK(mesh_quality(dense_mesh(pinched)).components == 2);
 }
 
-TEST_CASE("cut-outs: the dense mesh has the faces that the cells say, once each") {
+TEST_CASE("masked images: the dense mesh has the faces that the cells say, once each") {
     for (const auto& [name, mask] : sample_masks(40)) {
         INFO(name);
         const BaseMesh mesh = dense_mesh(cut_out(mask));
@@ -153,14 +154,14 @@ TEST_CASE("cut-outs: the dense mesh has the faces that the cells say, once each"
     }
 }
 
-TEST_CASE("cut-outs: a mask with all pixels inside is meshed as if there were none") {
+TEST_CASE("masked images: a mask with all pixels inside is meshed as if there were none") {
     const Mask full = mask_where(30, 22, [](int, int) { return true; });
     const BaseMesh with = dense_mesh(cut_out(full)), without = dense_mesh(cut_out(Mask{30, 22, {}}));
     CHECK(with.position == without.position);
     CHECK(with.faces == without.faces);
 }
 
-TEST_CASE("cut-outs: topology is kept, every pixel stays covered, and the outline stays close") {
+TEST_CASE("masked images: topology is kept, every pixel stays covered, and the boundary stays close") {
     for (const auto& [name, mask] : sample_masks(40))
         for (const Kind kind : {Kind::kNoise, Kind::kConstant, Kind::kDisc}) {
             const GridMesh grid = cut_out(mask, kind);
@@ -173,37 +174,37 @@ TEST_CASE("cut-outs: topology is kept, every pixel stays covered, and the outlin
                 check_covers(mesh, mask);
                 if (vertices != 0) continue;
                 check_hull(mesh, dense, mask);
-                const auto from = outline(dense), to = outline(mesh);
+                const auto from = boundary(dense), to = boundary(mesh);
                 for (const auto& [a, b] : from)  // the pixels are covered: so is what lies between them
-                    if (!covers(mesh, (a + b) / 2)) FAIL_CHECK("the outline at " << a << " is cut off");
-                CHECK(distance_from_to(from, to) <= kOutlineBand + 1e-4);
-                CHECK(distance_from_to(to, from) <= kOutlineBand + 1e-4);
+                    if (!covers(mesh, (a + b) / 2)) FAIL_CHECK("the boundary at " << a << " is cut off");
+                CHECK(distance_from_to(from, to) <= kBoundaryBand + 1e-4);
+                CHECK(distance_from_to(to, from) <= kBoundaryBand + 1e-4);
             }
         }
 }
 
-TEST_CASE("cut-outs: masks at random keep topology, pixels and distance") {
+TEST_CASE("masked images: masks at random keep topology, pixels and distance") {
     for (std::uint32_t seed = 1; seed <= 150; ++seed) {
         INFO("seed " << seed);
         const Mask mask = random_mask(seed);
         const GridMesh grid = cut_out(mask, kAllKinds[seed % 5]);
         const BaseMesh dense = dense_mesh(grid);
-        const CollapseTarget targets[] = {{.vertices = static_cast<std::int64_t>(dense.vertex_count()) / 2},
+        const SimplifyTarget targets[] = {{.vertices = static_cast<std::int64_t>(dense.vertex_count()) / 2},
                                           {.vertices = 0}};
-        for (const CollapseResult& level :
-             collapse_edges(grid, {.geometry_weight = seed % 2 ? 3.0f : 0.01f}, targets)) {
+        for (const SimplifyResult& level :
+             simplify(grid, {.geometry_weight = seed % 2 ? 3.0f : 0.01f}, targets)) {
             check_topology(level.mesh, mesh_quality(dense));
             check_covers(level.mesh, mask);
             check_hull(level.mesh, dense, mask);
-            CHECK(distance_from_to(outline(dense), outline(level.mesh)) <= kOutlineBand + 1e-4);
-            CHECK(distance_from_to(outline(level.mesh), outline(dense)) <= kOutlineBand + 1e-4);
+            CHECK(distance_from_to(boundary(dense), boundary(level.mesh)) <= kBoundaryBand + 1e-4);
+            CHECK(distance_from_to(boundary(level.mesh), boundary(dense)) <= kBoundaryBand + 1e-4);
         }
     }
 }
 
 // A ring around a circle of radius r and one pixel thick has room for pi / acos(1 - 1 / r) edges at the
 // least, 16 for this disc, a rounded one of pixels for some more. Stairs of every slope become straight.
-TEST_CASE("cut-outs: outlines become simple") {
+TEST_CASE("masked images: boundaries become simple") {
     const GridMesh disc = cut_out(sample_masks(120)[0].mask, Kind::kConstant);
     CHECK(coarse_mesh(disc, 0).vertex_count() <= 55);
     for (const int slope : {1, 2, 3, 7, 20}) {
@@ -218,15 +219,15 @@ TEST_CASE("cut-outs: outlines become simple") {
     CHECK(mesh_quality(mesh).area == 45 * 23);
 }
 
-TEST_CASE("cut-outs: levels, limits and rebuilt quadrics keep the topology") {
+TEST_CASE("masked images: levels, limits and rebuilt quadrics keep the topology") {
     for (const auto& [name, mask] : sample_masks(48)) {
         INFO(name);
         const GridMesh grid = cut_out(mask, Kind::kDisc);
         const MeshQuality dense = mesh_quality(dense_mesh(grid));
-        const CollapseTarget targets[] = {{.vertices = 600}, {.vertices = 150}, {.vertices = 20}};
-        for (const CollapseParams& params : {CollapseParams{}, CollapseParams{.rebuild_quadrics = true},
-                                             CollapseParams{.max_face_area = 6, .min_shape = 0.4f}})
-            for (const CollapseResult& level : collapse_edges(grid, params, targets)) {
+        const SimplifyTarget targets[] = {{.vertices = 600}, {.vertices = 150}, {.vertices = 20}};
+        for (const SimplifyParams& params : {SimplifyParams{}, SimplifyParams{.rebuild_quadrics = true},
+                                             SimplifyParams{.max_face_area = 6, .min_shape = 0.4f}})
+            for (const SimplifyResult& level : simplify(grid, params, targets)) {
                 check_topology(level.mesh, dense);
                 check_covers(level.mesh, mask);
                 if (params.max_face_area == 6) CHECK(mesh_quality(level.mesh).min_shape >= 0.3999);
@@ -234,8 +235,8 @@ TEST_CASE("cut-outs: levels, limits and rebuilt quadrics keep the topology") {
     }
 }
 
-// Large enough for several rounds of tiles with outlines through them.
-TEST_CASE("cut-outs: tiles keep topology, pixels and distance, the same with any number of threads") {
+// Large enough for several rounds of tiles with boundaries through them.
+TEST_CASE("masked images: tiles keep topology, pixels and distance, the same with any number of threads") {
     const Mask mask = sample_masks(220)[2].mask;  // a ring
     const GridMesh grid = cut_out(mask);
     const BaseMesh first = coarse_mesh(grid, 1500);
@@ -249,7 +250,7 @@ TEST_CASE("cut-outs: tiles keep topology, pixels and distance, the same with any
     }
 }
 
-TEST_CASE("cut-outs: the same mesh every time, with any number of threads") {
+TEST_CASE("masked images: the same mesh every time, with any number of threads") {
     const Mask mask = sample_masks(150)[4].mask;
     const GridMesh grid = cut_out(mask);
     const BaseMesh first = coarse_mesh(grid, 400);
@@ -263,7 +264,7 @@ TEST_CASE("cut-outs: the same mesh every time, with any number of threads") {
 }
 
 // Red outside would show in the gradients, and so in where vertices go, if it did bleed in.
-TEST_CASE("cut-outs: colours outside do not count") {
+TEST_CASE("masked images: colours outside do not count") {
     const Mask mask = sample_masks(40)[2].mask;
     FeatureImage one = sample_feature(Kind::kGradient, 40, 40), other = one;
     for (std::size_t i = 0; i < other.pixel_count(); ++i)

@@ -18,8 +18,8 @@ constexpr Metric kMetrics[] = {Metric::kFlattened, Metric::kHoppe, Metric::kGarl
 constexpr Solver kSolvers[] = {Solver::kClosed, Solver::kSvd, Solver::kLu};
 constexpr Size kSizes[] = {{1, 1}, {2, 2}, {3, 3}, {1, 9}, {9, 1}, {5, 7}, {32, 24}};
 
-CollapseResult collapse(const FeatureImage& feature, std::int64_t vertices, const CollapseParams& params) {
-    return collapse_edges(grid_mesh(feature), params, CollapseTarget{.vertices = vertices});
+SimplifyResult collapse(const FeatureImage& feature, std::int64_t vertices, const SimplifyParams& params) {
+    return simplify(grid_mesh(feature), params, SimplifyTarget{.vertices = vertices});
 }
 
 }  // namespace
@@ -38,7 +38,7 @@ TEST_CASE("metrics: every one makes a sound mesh of every picture, by every solv
                 for (const std::int64_t vertices : {size.width * size.height / 10, 4}) {
                     INFO(metric_name(metric) << ", " << solver_name(solver) << ", " << name_of(kind) << " "
                                              << size.width << " x " << size.height << " to " << vertices);
-                    const CollapseResult result =
+                    const SimplifyResult result =
                         collapse(feature, vertices, {.metric = metric, .solver = solver});
                     check_sound(result.mesh, size);
                     if (vertices > 8) CHECK(result.mesh.vertex_count() == std::size_t(vertices));
@@ -52,8 +52,8 @@ TEST_CASE("metrics: with rebuilt quadrics and total priority as well, each a mes
         INFO(metric_name(metric));
         const BaseMesh plain = collapse(feature, 80, {.metric = metric}).mesh;
         CHECK(plain.position != collapse(feature, 80, {}).mesh.position);
-        for (const CollapseParams& params : {CollapseParams{.metric = metric, .rebuild_quadrics = true},
-                                             CollapseParams{.metric = metric, .total_priority = true}}) {
+        for (const SimplifyParams& params : {SimplifyParams{.metric = metric, .rebuild_quadrics = true},
+                                             SimplifyParams{.metric = metric, .total_priority = true}}) {
             const BaseMesh mesh = collapse(feature, 80, params).mesh;
             check_sound(mesh, {32, 24});
             CHECK(mesh.vertex_count() == 80);
@@ -68,9 +68,9 @@ TEST_CASE("metrics: solvers and forms differ by rounding alone") {
     const FeatureImage feature = sample_feature(Kind::kNoise, 32, 24);
     for (const Metric metric : kMetrics) {
         INFO(metric_name(metric));
-        const CollapseResult closed = collapse(feature, 60, {.metric = metric, .tiles = false});
+        const SimplifyResult closed = collapse(feature, 60, {.metric = metric, .tiles = false});
         for (const Solver solver : {Solver::kSvd, Solver::kLu}) {
-            const CollapseResult other =
+            const SimplifyResult other =
                 collapse(feature, 60, {.metric = metric, .solver = solver, .tiles = false});
             CHECK(other.mesh.vertex_count() == closed.mesh.vertex_count());
             CHECK(other.error == doctest::Approx(closed.error).epsilon(0.1));
@@ -90,7 +90,7 @@ TEST_CASE("metrics: a linear picture is free of error to all but the flattened m
         }
     for (const Metric metric : kMetrics) {
         INFO(metric_name(metric));
-        const CollapseResult result = collapse(feature, 12, {.metric = metric, .smoothing = 0});
+        const SimplifyResult result = collapse(feature, 12, {.metric = metric, .smoothing = 0});
         check_sound(result.mesh, {20, 16});
         if (metric == Metric::kFlattened)
             CHECK(result.error > 1);
@@ -134,16 +134,15 @@ TEST_CASE("metrics: the same mesh with any number of threads") {
     }
 }
 
-TEST_CASE("metrics: cut-outs keep their topology") {
+TEST_CASE("metrics: masked images keep their topology") {
     for (const NamedMask& named : sample_masks(32))
         for (const Metric metric : {Metric::kHoppe, Metric::kGarland}) {
             INFO(named.name << ", " << metric_name(metric));
             const GridMesh grid =
                 grid_mesh(sample_feature(Kind::kDisc, named.mask.width, named.mask.height), named.mask);
             const MeshQuality dense =
-                mesh_quality(collapse_edges(grid, {.metric = metric}, {.vertices = 1 << 20}).mesh);
-            const MeshQuality coarse =
-                mesh_quality(collapse_edges(grid, {.metric = metric}, {.vertices = 0}).mesh);
+                mesh_quality(simplify(grid, {.metric = metric}, {.vertices = 1 << 20}).mesh);
+            const MeshQuality coarse = mesh_quality(simplify(grid, {.metric = metric}, {.vertices = 0}).mesh);
             CHECK(coarse.components == dense.components);
             CHECK(coarse.euler == dense.euler);
             CHECK(coarse.flipped_faces == 0);

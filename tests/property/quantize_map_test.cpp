@@ -19,10 +19,10 @@ struct Scene {
     BaseMesh mesh;
     std::vector<FaceField> fields;
     std::vector<Face> neighbors;
-    MovingPixels pixels;
+    PixelEmbedding pixels;
 
     std::optional<PixelMap> stored(WeightPrecision precision) const {
-        return storable_map(mesh, pixels, fields, neighbors, precision);
+        return quantize_map(mesh, pixels, fields, neighbors, precision);
     }
 };
 
@@ -37,8 +37,8 @@ Scene at_rest(BaseMesh mesh, int width, int height) {
 
 Scene relaxed(Kind kind, int width, int height, std::int64_t vertices, float smoothness) {
     const FeatureImage feature = sample_feature(kind, width, height);
-    Scene s = at_rest(collapse_edges(grid_mesh(feature), {}, CollapseTarget{.vertices = vertices}).mesh,
-                      width, height);
+    Scene s =
+        at_rest(simplify(grid_mesh(feature), {}, SimplifyTarget{.vertices = vertices}).mesh, width, height);
     relax(s.pixels, s.fields, s.neighbors, feature, smoothness, 12);
     return s;
 }
@@ -94,7 +94,7 @@ double largest_move(const Scene& s, const PixelMap& map) {
 
 }  // namespace
 
-TEST_CASE("storable map: both grids hold the relaxed map of any picture without a fold") {
+TEST_CASE("quantized map: both grids hold the relaxed map of any picture without a fold") {
     for (const Kind kind : kAllKinds)
         for (const float smoothness : {0.01f, 30.0f}) {
             const Scene s = relaxed(kind, 48, 36, 30, smoothness);
@@ -110,7 +110,7 @@ TEST_CASE("storable map: both grids hold the relaxed map of any picture without 
         }
 }
 
-TEST_CASE("storable map: at rest every pixel stays, to the step of the weights") {
+TEST_CASE("quantized map: at rest every pixel stays, to the step of the weights") {
     const Scene s = at_rest(jittered_grid(0, 0, 39, 29, 6, 5, 3), 40, 30);
     const double step = 1 / 2048.0;
     const std::optional<PixelMap> half = s.stored(WeightPrecision::kHalf),
@@ -123,7 +123,7 @@ TEST_CASE("storable map: at rest every pixel stays, to the step of the weights")
 }
 
 // 1300 px / 2048 is more than half a pixel: neighbours fall onto each other, wherever they are moved.
-TEST_CASE("storable map: a face too large for half weights needs float ones") {
+TEST_CASE("quantized map: a face too large for half weights needs float ones") {
     BaseMesh mesh;
     mesh.position = {{0, 0}, {0, 3}, {2600, 3}, {2600, 0}};
     mesh.feature.assign(12, 0.0f);
@@ -135,7 +135,7 @@ TEST_CASE("storable map: a face too large for half weights needs float ones") {
     check_storable(s, *full, WeightPrecision::kFloat);
 }
 
-TEST_CASE("storable map: the few cells that rounding folds are mended") {
+TEST_CASE("quantized map: the few cells that rounding folds are repaired") {
     constexpr int kWidth = 241, kHeight = 121;
     const FeatureImage feature = sample_feature(Kind::kNoise, kWidth, kHeight);
     BaseMesh mesh = jittered_grid(0, 0, kWidth - 1, kHeight - 1, 2, 1, 5);

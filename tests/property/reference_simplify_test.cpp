@@ -14,7 +14,7 @@ using namespace imgmesh::test;
 
 namespace {
 
-BaseMesh reference_mesh(const FeatureImage& feature, const CollapseParams& params, std::size_t vertices) {
+BaseMesh reference_mesh(const FeatureImage& feature, const SimplifyParams& params, std::size_t vertices) {
     const GridMesh grid = grid_mesh(feature);
     ReferenceCollapse reference(grid, smoothed(feature, params.smoothing), double{params.geometry_weight},
                                 params.total_priority);
@@ -64,9 +64,9 @@ TEST_CASE("collapse: as good as the plain one with an exactly sorted queue") {
             double fast = 0, plain = 0;
             for (const FeatureImage& feature : pictures) {
                 const std::size_t vertices = feature.pixel_count() / static_cast<std::size_t>(share);
-                const CollapseParams params{.smoothing = total ? 0 : 2, .total_priority = total};
-                const CollapseTarget target{.vertices = static_cast<std::int64_t>(vertices)};
-                const BaseMesh mesh = collapse_edges(grid_mesh(feature), params, target).mesh;
+                const SimplifyParams params{.smoothing = total ? 0 : 2, .total_priority = total};
+                const SimplifyTarget target{.vertices = static_cast<std::int64_t>(vertices)};
+                const BaseMesh mesh = simplify(grid_mesh(feature), params, target).mesh;
                 const BaseMesh reference = reference_mesh(feature, params, vertices);
                 CHECK(mesh.vertex_count() == reference.vertex_count());
                 fast += gouraud_rms(mesh, feature);

@@ -20,11 +20,11 @@ using namespace imgmesh::test;
 namespace {
 
 BaseMesh collapsed(const FeatureImage& feature, std::int64_t vertices, float min_shape = 0) {
-    CollapseParams params;
+    SimplifyParams params;
     params.min_shape = min_shape;
-    CollapseTarget target;
+    SimplifyTarget target;
     target.vertices = vertices;
-    return collapse_edges(grid_mesh(feature), params, target).mesh;
+    return simplify(grid_mesh(feature), params, target).mesh;
 }
 
 // Squared error of the mesh as it is drawn, from the rasteriser and in another order than the refinement's.
@@ -207,7 +207,7 @@ TEST_CASE("refine: remembered removals are those that are found anew") {
     const FeatureImage feature = sample_feature(Kind::kDisc, 90, 70);
     RefineParams params;
     params.shape_weight = 0.2;
-    const PicturePlanes planes(feature);
+    const ImagePlanes planes(feature);
     Refiner refiner(collapsed(feature, 300), planes, params);
     const auto check = [&](const char* after) {
         INFO(std::string(after));
@@ -233,8 +233,8 @@ TEST_CASE("refine: remembered removals are those that are found anew") {
     check("an exchange");
 }
 
-// Pixels outside the mask have no say, the outline stays where it is, and the map stays one to one.
-TEST_CASE("refine: cut-outs keep outline and topology") {
+// Pixels outside the mask have no say, the boundary stays where it is, and the map stays one to one.
+TEST_CASE("refine: masked images keep boundary and topology") {
     for (const auto& [name, mask] : sample_masks(40)) {
         INFO(name);
         Image image = sample_picture(Kind::kNoise, mask.width, mask.height);

@@ -20,13 +20,13 @@ struct Scene {
     BaseMesh mesh;
     std::vector<FaceField> fields;
     std::vector<Face> neighbors;
-    MovingPixels pixels;
+    PixelEmbedding pixels;
 };
 
 Scene scene(FeatureImage feature, std::int64_t vertices) {
     Scene out;
     out.feature = std::move(feature);
-    out.mesh = collapse_edges(grid_mesh(out.feature), {}, CollapseTarget{.vertices = vertices}).mesh;
+    out.mesh = simplify(grid_mesh(out.feature), {}, SimplifyTarget{.vertices = vertices}).mesh;
     out.fields = face_fields(out.mesh);
     out.neighbors = face_neighbors(out.mesh);
     out.pixels = resting_pixels(trivial_map(out.mesh, out.feature.width, out.feature.height));
@@ -42,7 +42,7 @@ double area2(const Vec2f& p, const Vec2f& q, const Vec2f& r) {
     return a.x() * b.y() - a.y() * b.x();
 }
 
-double least_area2(const MovingPixels& pixels) {
+double least_area2(const PixelEmbedding& pixels) {
     double least = 1;
     for (int y = 0; y + 1 < pixels.height; ++y)
         for (int x = 0; x + 1 < pixels.width; ++x) {
@@ -56,7 +56,7 @@ double least_area2(const MovingPixels& pixels) {
     return least;
 }
 
-void check_border(const MovingPixels& pixels) {
+void check_border(const PixelEmbedding& pixels) {
     const int right = pixels.width - 1, bottom = pixels.height - 1;
     for (int y = 0; y <= bottom; ++y)
         for (int x = 0; x <= right; ++x) {
@@ -248,13 +248,13 @@ TEST_CASE("face fields: weights and colours at the corners, neighbours across th
     }
 }
 
-TEST_CASE("walk_to: from any face to the one that holds the point") {
+TEST_CASE("locate_face: from any face to the one that holds the point") {
     const Scene s = scene(sample_feature(Kind::kDisc, 20, 20), 40);
     std::mt19937 random(1);
     for (int n = 0; n < 500; ++n) {
         const Vec2f p(static_cast<float>(random() % 1901) / 100, static_cast<float>(random() % 1901) / 100);
         const FaceField& field =
-            s.fields[walk_to(p, static_cast<Id>(random() % s.fields.size()), s.fields, s.neighbors)];
+            s.fields[locate_face(p, static_cast<Id>(random() % s.fields.size()), s.fields, s.neighbors)];
         const float u = field.u(p.x(), p.y()), v = field.v(p.x(), p.y());
         CHECK(std::min({u, v, 1 - u - v}) >= -1e-5f);
     }

@@ -98,29 +98,29 @@ TEST_CASE("rms search: errors that follow no law") {
 }
 
 // What is handed out is the mesh asked for; a little finer ones are there still, others begin anew.
-TEST_CASE("mesh ladder: meshes of any number of vertices, from as few runs as possible") {
+TEST_CASE("mesh lods: meshes of any number of vertices, from as few runs as possible") {
     const FeatureImage feature = sample_feature(Kind::kNoise, 150, 120);
     const GridMesh grid = grid_mesh(feature);
-    const auto params = [](std::int64_t) { return CollapseParams{}; };
+    const auto params = [](std::int64_t) { return SimplifyParams{}; };
     const Progress none;
-    MeshLadder ladder(grid, params, none);
-    const auto count = [&](std::int64_t vertices, bool rungs) {
-        const CollapseResult level = ladder.mesh(vertices, rungs);
+    LodMeshes lods(grid, params, none);
+    const auto count = [&](std::int64_t vertices, bool lods) {
+        const SimplifyResult level = lods.mesh(vertices, lods);
         CHECK(level.mesh.faces.size() > 0);
         return static_cast<std::int64_t>(level.mesh.vertex_count());
     };
     CHECK(count(5000, false) == 5000);
     CHECK(count(900, false) == 900);
     CHECK(count(600, true) == 600);
-    CHECK(ladder.runs() == 1);
+    CHECK(lods.runs() == 1);
     for (const std::int64_t finer : {600, 601, 650, 700, 790}) {
         CHECK(count(finer, true) <= finer);
         CHECK(count(finer, true) >= 0.98 * double(finer) - 1);
     }
     CHECK(count(590, true) <= 590);
-    CHECK(ladder.runs() == 1);
+    CHECK(lods.runs() == 1);
     CHECK(count(2000, true) == 2000);
-    CHECK(ladder.runs() == 2);
+    CHECK(lods.runs() == 2);
     CHECK(count(4, true) == 4);
 }
 

@@ -16,12 +16,12 @@ using namespace imgmesh::test;
 
 namespace {
 
-CollapseResult collapse(const FeatureImage& feature, const CollapseTarget& target,
-                        const CollapseParams& params = {}) {
-    return collapse_edges(grid_mesh(feature), params, target);
+SimplifyResult collapse(const FeatureImage& feature, const SimplifyTarget& target,
+                        const SimplifyParams& params = {}) {
+    return simplify(grid_mesh(feature), params, target);
 }
 
-CollapseTarget to_vertices(std::int64_t vertices) {
+SimplifyTarget to_vertices(std::int64_t vertices) {
     return {.vertices = vertices};
 }
 
@@ -41,7 +41,7 @@ TEST_CASE("collapse: the base mesh triangulates the picture's rectangle, down to
             for (const std::int64_t target :
                  {pixels, pixels / 2, pixels / 10, pixels / 40, std::int64_t{4}}) {
                 INFO(name_of(kind) << " " << size.width << " x " << size.height << " to " << target);
-                const CollapseResult result = collapse(feature, to_vertices(target));
+                const SimplifyResult result = collapse(feature, to_vertices(target));
                 check_sound(result.mesh, size);
                 const auto vertices = static_cast<std::int64_t>(result.mesh.vertex_count());
                 const auto dense =
@@ -90,7 +90,7 @@ TEST_CASE("collapse: no vertex costs more than the largest error allowed") {
         const FeatureImage feature = sample_feature(kind, 20, 15);
         std::size_t vertices_before = 20 * 15 + 1;
         for (const double limit : {0.0, 10.0, 1e3, 1e5}) {
-            const CollapseResult result = collapse(feature, {.max_error = limit});
+            const SimplifyResult result = collapse(feature, {.max_error = limit});
             CHECK(result.error <= limit);
             check_sound(result.mesh, {20, 15});
             CHECK(result.mesh.vertex_count() <= vertices_before);
@@ -158,7 +158,7 @@ TEST_CASE("collapse: a linear picture keeps its colours at every vertex") {
 TEST_CASE("collapse: more geometry weight makes rounder triangles") {
     const FeatureImage feature = sample_feature(Kind::kNoise, 40, 30);
     const auto roundness = [&](float geometry_weight) {
-        const CollapseResult result =
+        const SimplifyResult result =
             collapse(feature, to_vertices(120), {.geometry_weight = geometry_weight});
         return mesh_quality(result.mesh).mean_radius_ratio;
     };
@@ -168,34 +168,34 @@ TEST_CASE("collapse: more geometry weight makes rounder triangles") {
 TEST_CASE("collapse: progress never falls and stays within 0 and 1") {
     double last = 0;
     int calls = 0;
-    collapse_edges(grid_mesh(sample_feature(Kind::kGradient, 300, 260)), {}, to_vertices(500),
-                   [&](double f, std::string_view) {
-                       CHECK(f >= last);
-                       CHECK(f <= 1);
-                       last = f;
-                       ++calls;
-                   });
+    simplify(grid_mesh(sample_feature(Kind::kGradient, 300, 260)), {}, to_vertices(500),
+             [&](double f, std::string_view) {
+                 CHECK(f >= last);
+                 CHECK(f <= 1);
+                 last = f;
+                 ++calls;
+             });
     CHECK(calls > 0);
 }
 
 // The coarser level goes on from the finer one: the finer must not depend on what comes after it.
 TEST_CASE("collapse: levels of one run are what single runs give, each coarser than the one before") {
     const FeatureImage feature = sample_feature(Kind::kDisc, 40, 30);
-    const CollapseTarget targets[] = {{.vertices = 300}, {.vertices = 120}, {.faces = 60}};
-    const auto levels = collapse_edges(grid_mesh(feature), {}, targets);
+    const SimplifyTarget targets[] = {{.vertices = 300}, {.vertices = 120}, {.faces = 60}};
+    const auto levels = simplify(grid_mesh(feature), {}, targets);
     REQUIRE(levels.size() == 3);
     CHECK(levels[0].mesh.position == collapse(feature, targets[0]).mesh.position);
     CHECK(levels[0].mesh.faces == collapse(feature, targets[0]).mesh.faces);
     CHECK(levels[1].mesh.vertex_count() == 120);
     CHECK(levels[2].mesh.faces.size() <= 60);
     CHECK(levels[2].error >= levels[1].error);
-    for (const CollapseResult& level : levels) check_sound(level.mesh, {40, 30});
+    for (const SimplifyResult& level : levels) check_sound(level.mesh, {40, 30});
 }
 
 TEST_CASE("collapse: no face is larger or thinner than the limits allow") {
     for (const Kind kind : {Kind::kConstant, Kind::kNoise, Kind::kDisc}) {
         INFO(name_of(kind));
-        const CollapseResult result =
+        const SimplifyResult result =
             collapse(sample_feature(kind, 40, 30), to_vertices(0), {.max_face_area = 9, .min_shape = 0.5f});
         check_sound(result.mesh, {40, 30});
         CHECK(result.collapses > 0);
@@ -210,10 +210,10 @@ TEST_CASE("collapse: rebuilt quadrics and total priority give sound meshes of th
     for (const Kind kind : {Kind::kNoise, Kind::kDisc}) {
         INFO(name_of(kind));
         const FeatureImage feature = sample_feature(kind, 40, 30);
-        const CollapseTarget target = to_vertices(100);
+        const SimplifyTarget target = to_vertices(100);
         const BaseMesh plain = collapse(feature, target).mesh;
-        for (const CollapseParams& params :
-             {CollapseParams{.rebuild_quadrics = true}, CollapseParams{.total_priority = true}}) {
+        for (const SimplifyParams& params :
+             {SimplifyParams{.rebuild_quadrics = true}, SimplifyParams{.total_priority = true}}) {
             const BaseMesh mesh = collapse(feature, target, params).mesh;
             check_sound(mesh, {40, 30});
             CHECK(mesh.vertex_count() == 100);

@@ -21,16 +21,16 @@ PixelTracker tracked(const FeatureImage& feature, const TrackParams& params,
                      const std::vector<std::int64_t>& vertices, const MapCheck& check) {
     const GridMesh grid = grid_mesh(feature);
     PixelTracker tracker(track_start(grid, feature.width, feature.height), params);
-    std::vector<CollapseTarget> targets;
+    std::vector<SimplifyTarget> targets;
     for (const std::int64_t v : vertices) targets.push_back({.vertices = v});
-    CollapseHooks hooks;
+    SimplifyHooks hooks;
     hooks.before = [&](const CollapseStep& step) {
-        return tracker.collapse(step.kept, step.gone, {step.x, step.y}, step.feature);
+        return tracker.collapse(step.kept, step.removed, {step.x, step.y}, step.feature);
     };
-    hooks.reached = [&](std::size_t, const CollapseResult& result) {
+    hooks.reached = [&](std::size_t, const SimplifyResult& result) {
         check(result.mesh, tracker.map(result.mesh));
     };
-    collapse_edges(grid, {}, targets, {}, hooks);
+    simplify(grid, {}, targets, {}, hooks);
     return tracker;
 }
 
@@ -114,7 +114,7 @@ TEST_CASE("track: in the plane every pixel is where it was, whatever the picture
                                                  check_map(mesh, map);
                                                  CHECK(map_quality(mesh, map).max_displacement < 1e-4);
                                              });
-        CHECK(tracker.retracted() == 0);
+        CHECK(tracker.rejected() == 0);
     }
 }
 
@@ -133,11 +133,11 @@ TEST_CASE("track: colour weight brings a map that is closer to the picture than 
 }
 
 // Colours as far apart as the pixels of noise, weighed as heavily as here, give layouts that fold.
-TEST_CASE("track: collapses are retracted where the flattened mesh would degenerate") {
+TEST_CASE("track: collapses are rejected where the flattened mesh would degenerate") {
     TrackParams params;
     params.color_weight = 1e4;
     const PixelTracker tracker = tracked(sample_feature(Kind::kNoise, 33, 26), params, {12}, check_map);
-    CHECK(tracker.retracted() > 0);
+    CHECK(tracker.rejected() > 0);
 }
 
 namespace {
@@ -181,23 +181,23 @@ TEST_CASE("track: a pixel counts as an end, and whenever it is projected anew") 
 TEST_CASE("collapse hooks: called for each collapse in order, and their word counts") {
     const FeatureImage feature = sample_feature(Kind::kNoise, 30, 20);
     const GridMesh grid = grid_mesh(feature);
-    const std::vector<CollapseTarget> targets{{.vertices = 100}, {.vertices = 30}};
-    const std::vector<CollapseResult> plain = collapse_edges(grid, {.tiles = false}, targets);
+    const std::vector<SimplifyTarget> targets{{.vertices = 100}, {.vertices = 30}};
+    const std::vector<SimplifyResult> plain = simplify(grid, {.tiles = false}, targets);
     std::int64_t calls = 0;
     std::vector<std::int64_t> calls_at_level;
-    CollapseHooks hooks;
+    SimplifyHooks hooks;
     hooks.before = [&](const CollapseStep& step) {
         ++calls;
-        CHECK(step.kept != step.gone);
+        CHECK(step.kept != step.removed);
         CHECK(step.feature.size() == 3);
         return true;
     };
-    hooks.reached = [&](std::size_t level, const CollapseResult& result) {
+    hooks.reached = [&](std::size_t level, const SimplifyResult& result) {
         CHECK(level == calls_at_level.size());
         CHECK(result.collapses == calls);
         calls_at_level.push_back(calls);
     };
-    const std::vector<CollapseResult> followed = collapse_edges(grid, {}, targets, {}, hooks);
+    const std::vector<SimplifyResult> followed = simplify(grid, {}, targets, {}, hooks);
     CHECK(calls_at_level == std::vector<std::int64_t>{500, 570});
     for (std::size_t k = 0; k < 2; ++k) {
         CHECK(followed[k].mesh.position == plain[k].mesh.position);
@@ -206,5 +206,5 @@ TEST_CASE("collapse hooks: called for each collapse in order, and their word cou
     }
     hooks.before = [](const CollapseStep&) { return false; };
     hooks.reached = {};
-    CHECK(collapse_edges(grid, {}, targets, {}, hooks).back().collapses == 0);
+    CHECK(simplify(grid, {}, targets, {}, hooks).back().collapses == 0);
 }

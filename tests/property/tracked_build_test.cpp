@@ -115,7 +115,7 @@ TEST_CASE("tracked build: the same result for any number of threads") {
     }
 }
 
-TEST_CASE("tracked build: cut-outs keep their mask to the pixel") {
+TEST_CASE("tracked build: masked images keep their mask to the pixel") {
     const Image image = sample_picture(Kind::kNoise, 40, 36);
     Mask ring{40, 36, std::vector<std::uint8_t>(40 * 36)}, specks = ring;
     for (int y = 0; y < 36; ++y)
@@ -153,7 +153,7 @@ TEST_CASE("tracked build: visits belong to the finest level and leave the relaxe
     const MeshImage three = build_mesh_image(image, params).mesh_image;
     CHECK(one.visits == three.visits);
     CHECK(map_quality(one.levels[0].mesh, one.levels[0].map).flipped_triangles == 0);
-    // 90 % of the vertices are gone, so that nearly all pixels were an end, and some were touched again.
+    // 90 % of the vertices are removed, so that nearly all pixels were an end, and some were touched again.
     std::int64_t sum = 0;
     for (const Id v : one.visits) sum += v;
     CHECK(sum > 2 * 40 * 30);

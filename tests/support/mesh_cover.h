@@ -1,4 +1,4 @@
-// What a mesh covers of the plane, and where its outline is, told by looking at every face.
+// What a mesh covers of the plane, and where its boundary is, told by looking at every face.
 #pragma once
 
 #include <algorithm>
@@ -17,7 +17,7 @@ inline double distance_to_segment(const Vec2d& p, const Vec2d& a, const Vec2d& b
 }
 
 using Segment = std::pair<Vec2d, Vec2d>;
-inline std::vector<Segment> outline(const BaseMesh& mesh) {
+inline std::vector<Segment> boundary(const BaseMesh& mesh) {
     std::map<std::pair<Id, Id>, int> faces;
     for (const auto& [a, b, c] : mesh.faces)
         for (const auto& [p, q] : {std::pair(a, b), std::pair(b, c), std::pair(c, a)})

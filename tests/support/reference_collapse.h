@@ -198,10 +198,10 @@ class ReferenceCollapse {
 
     // Every face around the edge but those that go keeps its shape's least.
     bool star_allows(Id i, Id j, const Vec2d& p) const {
-        const std::vector<Id> gone = shared(i, j);
+        const std::vector<Id> removed = shared(i, j);
         for (const Id v : {i, j})
             for (const Id f : vertices_[v].faces) {
-                if (std::find(gone.begin(), gone.end(), f) != gone.end()) continue;
+                if (std::find(removed.begin(), removed.end(), f) != removed.end()) continue;
                 Vec2d corner[3];
                 for (std::size_t k = 0; k < 3; ++k)
                     corner[k] = faces_[f][k] == v ? p : vertices_[faces_[f][k]].position;
@@ -216,13 +216,13 @@ class ReferenceCollapse {
     }
 
     bool try_collapse(Id i, Id j, double filed) {
-        const std::vector<Id> gone = shared(i, j);
+        const std::vector<Id> removed = shared(i, j);
         const std::set<Id> a = neighbors(i), b = neighbors(j);
         std::vector<Id> common;
         std::set_intersection(a.begin(), a.end(), b.begin(), b.end(), std::back_inserter(common));
         const auto on_border = [&](Id v) { return side_x(v) || side_y(v); };
-        if (on_border(i) && on_border(j) && gone.size() != 1) return false;
-        if (common.size() != gone.size()) return false;
+        if (on_border(i) && on_border(j) && removed.size() != 1) return false;
+        if (common.size() != removed.size()) return false;
         if (a.size() + b.size() - common.size() - 2 > 12) return false;
         const Sum sum = sum_of(i, j);
         Vec2d p;
@@ -247,7 +247,7 @@ class ReferenceCollapse {
         }
         for (const Id n : a) unfile(i, n);
         for (const Id n : b) unfile(j, n);
-        for (const Id f : gone) {
+        for (const Id f : removed) {
             for (const Id v : faces_[f]) vertices_[v].faces.erase(f);
             faces_[f] = {kNone, kNone, kNone};
         }

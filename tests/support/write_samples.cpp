@@ -22,7 +22,7 @@ void paint(MeshImage& image) {
             const Vec2f& p = level.mesh.position[v];
             const Vec3f linear(0.5f + 0.4f * std::sin(0.1f * p.x()), 0.5f + 0.4f * std::cos(0.13f * p.y()),
                                0.4f + 0.3f * std::sin(0.07f * (p.x() + p.y())));
-            const Vec3f luv = storable_color(luv_from_linear(linear));
+            const Vec3f luv = quantized_color(luv_from_linear(linear));
             std::copy(luv.data(), luv.data() + 3, level.mesh.feature_of(v));
         }
 }
@@ -52,7 +52,7 @@ void write_with_channels(const std::filesystem::path& folder, const std::string&
                          DracoMode mode) {
     MeshImage channels = image, light = image;
     channels.source.channel_names = {"R", "G", "B", "depth.Z", "depth z"};
-    light.source.gamut = Gamut::kLight;
+    light.source.gamut = Gamut::kHdr;
     light.source.color_space = ColorSpace::kLinear;
     light.source.sample_type = SampleType::kFloat;
     for (std::size_t k = 0; k < image.levels.size(); ++k) {
@@ -67,7 +67,7 @@ void write_with_channels(const std::filesystem::path& folder, const std::string&
             // to.
             mesh.feature.push_back(100 + plain.position[v].x());
             mesh.feature.push_back(-plain.position[v].y());
-            const Vec3f luv = storable_color(luv_from_linear(4 * linear_from_luv(Vec3f(f))), Gamut::kLight);
+            const Vec3f luv = quantized_color(luv_from_linear(4 * linear_from_luv(Vec3f(f))), Gamut::kHdr);
             std::copy(luv.data(), luv.data() + 3, light.levels[k].mesh.feature_of(v));
         }
     }

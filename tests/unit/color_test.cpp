@@ -42,7 +42,7 @@ TEST_CASE("colour spaces: encode inverts decode, and names parse back") {
 }
 
 // The container's colours must survive any number of reads and writes unchanged.
-TEST_CASE("storable colours: every stored code reads back as itself") {
+TEST_CASE("quantized colours: every stored code reads back as itself") {
     std::mt19937 random(2);
     for (int i = 0; i < 5000; ++i) {
         std::array<std::uint16_t, 3> codes;

@@ -274,7 +274,7 @@ TEST_CASE("refusals: truncated and flipped containers give an Error, never a cra
 TEST_CASE("glTF JSON: read(write(x)) == x") {
     Asset asset;
     asset.version = "1.0";
-    asset.source = {640, 480, ColorSpace::kDisplayP3, SampleType::kHalf, {"Y", "ä"}, true, Gamut::kLight};
+    asset.source = {640, 480, ColorSpace::kDisplayP3, SampleType::kHalf, {"Y", "ä"}, true, Gamut::kHdr};
     asset.generator = "test";
     asset.parameters = {{"a", std::int64_t{-5}}, {"b", 0.1}, {"c", std::string("x")}, {"d", false}};
     asset.buffer_length = 5000;

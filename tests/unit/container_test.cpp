@@ -27,8 +27,8 @@ std::vector<double> stored_values(const MeshImage& image, const BaseMesh& mesh, 
     if (!split_names(image.source.channel_names).color.empty()) {
         const Vec3f color(f);
         for (std::size_t k = 0; k < 3; ++k)
-            out.push_back(image.source.gamut == Gamut::kLight
-                              ? storable_light(color)[static_cast<Eigen::Index>(k)]
+            out.push_back(image.source.gamut == Gamut::kHdr
+                              ? quantized_hdr(color)[static_cast<Eigen::Index>(k)]
                               : float(color_codes(color)[k]));
         f += 3;
     }

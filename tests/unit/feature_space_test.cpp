@@ -51,7 +51,7 @@ TEST_CASE("feature space: values times weights, colour as L*u*v*") {
         feature_space(image, {{"N.X", 2}, {"R", 0.5}, {"B", 0.5}, {"depth.Z", 100}, {"G", 0.5}});
     const FeatureImage features = extract_features(image, space);
     const FeatureImage luv = luv_image(image);
-    CHECK(space.gamut == Gamut::kLight);
+    CHECK(space.gamut == Gamut::kHdr);
     REQUIRE(features.channels == 5);
     for (std::size_t i = 0; i < features.pixel_count(); ++i) {
         for (int c = 0; c < 3; ++c) CHECK(features.pixel(i)[c] == 0.5f * luv.pixel(i)[c]);
@@ -102,10 +102,10 @@ TEST_CASE("gamut: light counts where floats have more than 1, in linear light") 
         CHECK(gamut_of(image) == Gamut::kDisplay);
         image.data[4] = 1.001f;
         const bool floats = type == SampleType::kHalf || type == SampleType::kFloat;
-        CHECK(gamut_of(image) == (floats ? Gamut::kLight : Gamut::kDisplay));
+        CHECK(gamut_of(image) == (floats ? Gamut::kHdr : Gamut::kDisplay));
     }
     image.channel_names = {"X", "Y", "Z"};
-    CHECK(gamut_of(image) == Gamut::kLight);
+    CHECK(gamut_of(image) == Gamut::kHdr);
     image.channel_names = {"R", "G", "Z"};
     CHECK(gamut_of(image) == Gamut::kDisplay);  // no colour
 }
@@ -130,26 +130,26 @@ TEST_CASE("light: what is stored is close, is not negative, and is stored again 
         // Powers of two, where the step changes, and a little below.
         if (n % 4 == 0) light[1] = std::ldexp(1 - static_cast<float>(n % 3) * 1e-6f, std::ilogb(light[1]));
         INFO("light " << light.transpose());
-        const Vec3f luv = storable_color(luv_from_linear(light), Gamut::kLight);
-        const Vec3f stored = storable_light(luv);
-        CHECK(storable_color(luv, Gamut::kLight) == luv);
+        const Vec3f luv = quantized_color(luv_from_linear(light), Gamut::kHdr);
+        const Vec3f stored = quantized_hdr(luv);
+        CHECK(quantized_color(luv, Gamut::kHdr) == luv);
         CHECK(luv_from_linear(stored) == luv);
         CHECK(stored.minCoeff() >= 0);
         const float size = std::max(light.maxCoeff(), 1.0f / 32);
         CHECK((stored - light).cwiseAbs().maxCoeff() <= 4e-5f * size);
     }
-    CHECK(storable_light(luv_from_linear(Vec3f::Zero())) == Vec3f::Zero());
-    CHECK(storable_light(luv_from_linear(Vec3f::Constant(1e30f))) == Vec3f::Constant(kMostLight));
+    CHECK(quantized_hdr(luv_from_linear(Vec3f::Zero())) == Vec3f::Zero());
+    CHECK(quantized_hdr(luv_from_linear(Vec3f::Constant(1e30f))) == Vec3f::Constant(kMaxHdr));
 }
 
 TEST_CASE("light: colours without an upper bound stay, others become light that exists") {
     std::mt19937 random(2);
     for (int n = 0; n < 3000; ++n) {
         const Vec3f luv = luv_from_linear(random_light(random));
-        CHECK(in_gamut(luv, Gamut::kLight) == luv);
-        const Vec3f wild(luv[0], 3 * luv[1] + 50, 3 * luv[2] - 50), tamed = in_gamut(wild, Gamut::kLight);
+        CHECK(in_gamut(luv, Gamut::kHdr) == luv);
+        const Vec3f wild(luv[0], 3 * luv[1] + 50, 3 * luv[2] - 50), tamed = in_gamut(wild, Gamut::kHdr);
         const Vec3f linear = linear_from_luv(tamed);
         CHECK(linear.minCoeff() >= -1e-5f * std::max(1.0f, linear.maxCoeff()));
-        CHECK(in_gamut(tamed, Gamut::kLight) == tamed);
+        CHECK(in_gamut(tamed, Gamut::kHdr) == tamed);
     }
 }

@@ -48,7 +48,7 @@ Eigen::MatrixXd dense_solution(const BaseMesh& mesh, const FeatureImage& feature
 }
 
 BaseMesh collapsed(const FeatureImage& feature, std::int64_t vertices) {
-    return collapse_edges(grid_mesh(feature), {}, CollapseTarget{.vertices = vertices}).mesh;
+    return simplify(grid_mesh(feature), {}, SimplifyTarget{.vertices = vertices}).mesh;
 }
 
 double objective(const BaseMesh& mesh, const FeatureImage& feature, const std::vector<FitTerm>& terms) {
@@ -152,7 +152,7 @@ TEST_CASE("fit map: a constant picture is reproduced by any mesh") {
             const PixelMap map = fit_map(mesh, feature, {});
             // 16-bit codes are all that is lost.
             const Vec3f color(feature.data.data());
-            CHECK(map_rms(mesh, map, feature) <= double((storable_color(color) - color).norm()) + 2e-4);
+            CHECK(map_rms(mesh, map, feature) <= double((quantized_color(color) - color).norm()) + 2e-4);
         }
     }
 }
@@ -164,7 +164,7 @@ TEST_CASE("fit map: every colour is one that a container holds") {
         fit_map(mesh, feature, {});
         for (Id v = 0; v < mesh.vertex_count(); ++v) {
             const Vec3f luv(mesh.feature_of(v));
-            CHECK(storable_color(luv) == luv);
+            CHECK(quantized_color(luv) == luv);
         }
     }
 }

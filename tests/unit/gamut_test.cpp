@@ -81,11 +81,11 @@ TEST_CASE("in_gamut: much closer than clamped channels where colours are dark") 
     CHECK(sum < 0.7 * sum_clamped);
 }
 
-TEST_CASE("storable colours: storing twice is storing once, from anywhere") {
+TEST_CASE("quantized colours: storing twice is storing once, from anywhere") {
     for (const Vec3f& luv : colors()) {
-        const Vec3f once = storable_color(luv);
+        const Vec3f once = quantized_color(luv);
         INFO("L*u*v* " << luv.transpose());
-        CHECK(storable_color(once) == once);
+        CHECK(quantized_color(once) == once);
         CHECK(color_codes(once) == color_codes(luv));
         // Rounding to 16 bits is all that separates it from the colour in gamut.
         CHECK((linear_from_luv(once) - linear_from_luv(in_gamut(luv))).cwiseAbs().maxCoeff() < 1.2e-5f);

@@ -29,16 +29,16 @@ TEST_CASE("masks: alpha from the threshold on") {
 }
 
 TEST_CASE("masks: a mask's picture counts by its alpha, else by its light") {
-    CHECK(picture_mask(row_of(1, {0, 0.5f, 1}), 0.5f).inside == Inside{0, 1, 1});
-    CHECK(picture_mask(row_of(3, {0, 0, 0, 0.6f, 0.6f, 0.2f, 1, 0.5f, 0}), 0.5f).inside == Inside{0, 0, 1});
+    CHECK(image_mask(row_of(1, {0, 0.5f, 1}), 0.5f).inside == Inside{0, 1, 1});
+    CHECK(image_mask(row_of(3, {0, 0, 0, 0.6f, 0.6f, 0.2f, 1, 0.5f, 0}), 0.5f).inside == Inside{0, 0, 1});
     // An alpha that shows something, and one that is opaque.
-    CHECK(picture_mask(row_of(2, {1, 0, 0, 1, 1, 1}), 0.5f).inside == Inside{0, 1, 1});
-    CHECK(picture_mask(row_of(2, {1, 1, 0, 1, 1, 1}), 0.5f).inside == Inside{1, 0, 1});
+    CHECK(image_mask(row_of(2, {1, 0, 0, 1, 1, 1}), 0.5f).inside == Inside{0, 1, 1});
+    CHECK(image_mask(row_of(2, {1, 1, 0, 1, 1, 1}), 0.5f).inside == Inside{1, 0, 1});
     Image alpha = row_of(1, {1, 1, 1});
     alpha.channel_names = {"A"};
-    CHECK(picture_mask(alpha, 0.5f).inside == Inside{1, 1, 1});
+    CHECK(image_mask(alpha, 0.5f).inside == Inside{1, 1, 1});
     alpha.channel_names = {"Z"};
-    CHECK_THROWS_AS(picture_mask(alpha, 0.5f), Error);
+    CHECK_THROWS_AS(image_mask(alpha, 0.5f), Error);
 }
 
 TEST_CASE("masks: nothing is inside beyond the picture") {

@@ -19,12 +19,12 @@ constexpr Solver kSolvers[] = {Solver::kClosed, Solver::kSvd, Solver::kLu};
 
 using Point = Eigen::Matrix<double, 5, 1>;
 
-CollapseParams params_of(Metric metric, Solver solver = Solver::kClosed) {
+SimplifyParams params_of(Metric metric, Solver solver = Solver::kClosed) {
     return {.metric = metric, .solver = solver, .geometry_weight = kLambda};
 }
 
-std::vector<DenseQuadric<3>> quadrics_of(const GridMesh& grid, const CollapseParams& params) {
-    return dense_quadrics<3>(grid, ring_mesh(grid), FeaturePatch{grid.feature}, params);
+std::vector<MatrixQuadric<3>> quadrics_of(const GridMesh& grid, const SimplifyParams& params) {
+    return matrix_quadrics<3>(grid, ring_mesh(grid), FeaturePatch{grid.feature}, params);
 }
 
 // The definitions, face by face, each written as a distance and not as a matrix.
@@ -71,7 +71,7 @@ Point random_point(std::mt19937& random, const Point& about, double radius) {
 
 }  // namespace
 
-TEST_CASE("dense quadrics: equal to the distances that each metric is made of, single and summed") {
+TEST_CASE("matrix quadrics: equal to the distances that each metric is made of, single and summed") {
     std::mt19937 random(1);
     for (const Metric metric : kMetrics)
         for (const Kind kind : kAllKinds) {
@@ -81,7 +81,7 @@ TEST_CASE("dense quadrics: equal to the distances that each metric is made of, s
             for (const std::size_t count : {1u, 2u, 20u}) {
                 std::vector<Id> ids(count);
                 for (Id& id : ids) id = static_cast<Id>(random() % quadrics.size());
-                DenseQuadric<3> sum = quadrics[ids[0]];
+                MatrixQuadric<3> sum = quadrics[ids[0]];
                 for (std::size_t k = 1; k < count; ++k) sum = merged(sum, quadrics[ids[k]]);
                 for (int n = 0; n < 20; ++n) {
                     const Point at = random_point(random, sum.origin, n % 2 ? 0.2 : 5.0);
@@ -93,7 +93,7 @@ TEST_CASE("dense quadrics: equal to the distances that each metric is made of, s
         }
 }
 
-TEST_CASE("dense quadrics: the flattened one is the canonical one") {
+TEST_CASE("matrix quadrics: the flattened one is the canonical one") {
     std::mt19937 random(2);
     for (const Kind kind : kAllKinds)
         for (const Solver solver : kSolvers) {
@@ -102,11 +102,11 @@ TEST_CASE("dense quadrics: the flattened one is the canonical one") {
             const FeaturePatch smooth{smoothed(grid.feature, 1)};
             const auto canonical = vertex_quadrics<3>(grid, smooth, kLambda);
             const auto dense =
-                dense_quadrics<3>(grid, ring_mesh(grid), smooth, params_of(Metric::kFlattened, solver));
+                matrix_quadrics<3>(grid, ring_mesh(grid), smooth, params_of(Metric::kFlattened, solver));
             for (int trial = 0; trial < 30; ++trial) {
                 const Id a = static_cast<Id>(random() % 64), b = static_cast<Id>(random() % 64);
                 const Quadric<3> q = merged(canonical[a], canonical[b]);
-                const DenseQuadric<3> d = merged(dense[a], dense[b]);
+                const MatrixQuadric<3> d = merged(dense[a], dense[b]);
                 CHECK(d.unique);
                 CHECK(double(d.px) == doctest::Approx(double(q.px)).epsilon(1e-3));
                 CHECK(double(d.py) == doctest::Approx(double(q.py)).epsilon(1e-3));
@@ -120,7 +120,7 @@ TEST_CASE("dense quadrics: the flattened one is the canonical one") {
         }
 }
 
-TEST_CASE("dense quadrics: all solvers find the least point, and its value is the error") {
+TEST_CASE("matrix quadrics: all solvers find the least point, and its value is the error") {
     std::mt19937 random(3);
     for (const Metric metric : kMetrics)
         for (const Solver solver : kSolvers) {
@@ -129,7 +129,7 @@ TEST_CASE("dense quadrics: all solvers find the least point, and its value is th
             const auto quadrics = quadrics_of(grid, params_of(metric, solver));
             for (int trial = 0; trial < 30; ++trial) {
                 const Id a = static_cast<Id>(random() % 64), b = static_cast<Id>(random() % 64);
-                const DenseQuadric<3> q = merged(quadrics[a], quadrics[b]);
+                const MatrixQuadric<3> q = merged(quadrics[a], quadrics[b]);
                 REQUIRE(q.unique);
                 Point least;
                 least << q.px, q.py, q.feature(0, q.px, q.py), q.feature(1, q.px, q.py),
@@ -151,7 +151,7 @@ TEST_CASE("dense quadrics: all solvers find the least point, and its value is th
 
 // Where colours are linear every position along the plane is as good for all metrics but the paper's: the
 // singular case, in which every solver has to notice it, and still to find the least value, which is zero.
-TEST_CASE("dense quadrics: on a linear picture only the flattened metric has a minimiser") {
+TEST_CASE("matrix quadrics: on a linear picture only the flattened metric has a minimiser") {
     FeatureImage feature{6, 6, 3, {}};
     for (int y = 0; y < 6; ++y)
         for (int x = 0; x < 6; ++x)
@@ -163,7 +163,7 @@ TEST_CASE("dense quadrics: on a linear picture only the flattened metric has a m
         for (const Solver solver : kSolvers) {
             INFO(metric_name(metric) << ", " << solver_name(solver));
             const auto quadrics = quadrics_of(grid, params_of(metric, solver));
-            const DenseQuadric<3> q = merged(merged(quadrics[7], quadrics[8]), quadrics[20]);
+            const MatrixQuadric<3> q = merged(merged(quadrics[7], quadrics[8]), quadrics[20]);
             CHECK(q.unique == (metric == Metric::kFlattened));
             CHECK(q.has_minimum(kFixedX) == (metric == Metric::kFlattened));
             if (metric == Metric::kFlattened) continue;
@@ -174,7 +174,7 @@ TEST_CASE("dense quadrics: on a linear picture only the flattened metric has a m
 }
 
 // A picture that changes along x alone: along y all is free, so only x is to be found.
-TEST_CASE("dense quadrics: a step that is the same all along has a best place across only") {
+TEST_CASE("matrix quadrics: a step that is the same all along has a best place across only") {
     FeatureImage feature{6, 6, 3, {}};
     for (int y = 0; y < 6; ++y)
         for (int x = 0; x < 6; ++x) feature.data.insert(feature.data.end(), {x < 3 ? 0.f : 60.f, 0, 0});
@@ -182,7 +182,7 @@ TEST_CASE("dense quadrics: a step that is the same all along has a best place ac
     for (const Solver solver : kSolvers) {
         INFO(solver_name(solver));
         const auto quadrics = quadrics_of(grid, params_of(Metric::kHoppe, solver));
-        const DenseQuadric<3> q = merged(quadrics[2 * 6 + 2], quadrics[3 * 6 + 2]);
+        const MatrixQuadric<3> q = merged(quadrics[2 * 6 + 2], quadrics[3 * 6 + 2]);
         CHECK_FALSE(q.unique);
         CHECK_FALSE(q.has_minimum(kFixedX));  // y would be free
         CHECK(q.has_minimum(kFixedY));
@@ -193,7 +193,7 @@ TEST_CASE("dense quadrics: a step that is the same all along has a best place ac
     }
 }
 
-TEST_CASE("dense_minimum: padded features of value zero change nothing") {
+TEST_CASE("matrix_minimum: padded features of value zero change nothing") {
     const GridMesh grid = grid_mesh(sample_feature(Kind::kNoise, 5, 5));
     GridMesh wide = grid;
     wide.feature = {5, 5, 8, std::vector<float>(25 * 8, 0.0f)};
@@ -204,9 +204,9 @@ TEST_CASE("dense_minimum: padded features of value zero change nothing") {
         for (const Solver solver : kSolvers) {
             INFO(metric_name(metric) << ", " << solver_name(solver));
             const auto three =
-                dense_quadrics<3>(grid, rings, FeaturePatch{grid.feature}, params_of(metric, solver));
+                matrix_quadrics<3>(grid, rings, FeaturePatch{grid.feature}, params_of(metric, solver));
             const auto eight =
-                dense_quadrics<8>(wide, rings, FeaturePatch{wide.feature}, params_of(metric, solver));
+                matrix_quadrics<8>(wide, rings, FeaturePatch{wide.feature}, params_of(metric, solver));
             const auto q = merged(three[6], three[12]);
             const auto p = merged(eight[6], eight[12]);
             CHECK(double(p.px) == doctest::Approx(double(q.px)).epsilon(1e-5));

@@ -144,7 +144,7 @@ TEST_CASE("map_quality: a pixel moved across, one unmapped, one outside the simp
     CHECK(q.mean_displacement == Approx(1.5 / 9));
     CHECK(q.outside_simplex == 0);
 
-    map.row(1)[1].face = kNone;  // every triangle that held it is gone, one is left in each cell
+    map.row(1)[1].face = kNone;  // every triangle that held it is removed, one is left in each cell
     q = map_quality(mesh, map);
     CHECK(q.pixels == 9);
     CHECK(q.unmapped == 1);

@@ -47,7 +47,7 @@ long peak_kilobytes() {
 
 }  // namespace
 
-// Never half a picture: a prefix is an error, or (where only what follows the pixels is gone) the whole
+// Never half a picture: a prefix is an error, or (where only what follows the pixels is removed) the whole
 // picture.
 TEST_CASE("hostile: truncated files at many lengths") {
     const TemporaryFolder folder;

@@ -76,7 +76,7 @@ TEST_CASE("vertex classes: every vertex that has a face is in one, and no face h
         for (const Face& face : mesh.faces)
             for (const Id v : face)
                 if (face[0] != kNone) ++faces_of[v];
-        const auto classes = vertex_classes(mesh.faces, mesh.vertex_count());
+        const auto classes = vertex_coloring(mesh.faces, mesh.vertex_count());
         CHECK(classes.size() <= 9);
         std::vector<Id> class_of(mesh.vertex_count(), kNone);
         for (Id c = 0; c < classes.size(); ++c)
@@ -91,8 +91,8 @@ TEST_CASE("vertex classes: every vertex that has a face is in one, and no face h
                     (class_of[a] != class_of[b] && class_of[b] != class_of[c] && class_of[c] != class_of[a]));
     }
     // One face, and nothing at all.
-    CHECK(vertex_classes(std::vector<Face>{{0, 1, 2}}, 3).size() == 3);
-    CHECK(vertex_classes({}, 0).empty());
+    CHECK(vertex_coloring(std::vector<Face>{{0, 1, 2}}, 3).size() == 3);
+    CHECK(vertex_coloring({}, 0).empty());
 }
 
 // Grids whose vertices lie on pixel centres, lines through centres, slivers: each pixel counts exactly once.
@@ -120,7 +120,7 @@ TEST_CASE("spans: the faces of a mesh share out all pixels") {
 // Against sums in double, pixel by pixel, for faces from a sliver to hundreds of rows.
 TEST_CASE("sums over the pixels of a face") {
     const FeatureImage picture = sample_feature(Kind::kNoise, 70, 90);
-    const PicturePlanes planes(picture);
+    const ImagePlanes planes(picture);
     for (const auto& [columns, rows, seed] : {std::tuple{1, 1, 1u}, {7, 9, 2u}, {20, 25, 3u}}) {
         const BaseMesh mesh = colored_grid(70, 90, columns, rows, seed);
         double whole = 0, expected_whole = 0;
@@ -259,7 +259,7 @@ TEST_CASE("refine mesh: corners are fixed, vertices of the sides slide, others a
 }
 
 // An L: the vertices of its inner corner and of the two sides there are not on a side of the bounding box.
-TEST_CASE("refine mesh: an outline inside the bounding box is fixed") {
+TEST_CASE("refine mesh: a boundary inside the bounding box is fixed") {
     BaseMesh mesh = jittered_grid(0, 0, 40, 40, 4, 4, 3);
     for (int j = 0; j < 5; ++j)
         for (int i = 0; i < 5; ++i)

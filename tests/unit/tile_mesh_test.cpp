@@ -26,7 +26,7 @@ bool close(float a, float b) {
 
 // The tiles together must be the dense mesh as ring_mesh() and initial_quadrics() make it whole.
 void check_tiles(const GridMesh& grid) {
-    const CollapseParams params;
+    const SimplifyParams params;
     const FeaturePatch gradients = smoothed_patch(grid, params.smoothing, whole_rect(grid));
     const RingMesh rings = ring_mesh(grid);
     const auto quadrics = initial_quadrics<Quadric<3>>(grid, rings, gradients, params);
@@ -35,8 +35,8 @@ void check_tiles(const GridMesh& grid) {
     TileMesh<Quadric<3>> tile;  // used again: nothing of one tile may stay in the next
     for (int t = 0; t < tiles.count(); ++t) {
         fill_tile(grid, params, tiles.rect(t), tile);
-        const CollapseMesh<Quadric<3>>& mesh = tile.mesh;
-        std::int64_t outline = 0;
+        const QuadricMesh<Quadric<3>>& mesh = tile.mesh;
+        std::int64_t boundary = 0;
         for (Id v = 0; v < tile.own; ++v) {
             const Id number = mesh.pixel[v];
             const Ring &ring = mesh.rings[v], &expected = rings[number];
@@ -56,8 +56,8 @@ void check_tiles(const GridMesh& grid) {
             }
             CHECK(rotation(around, wanted) >= 0);
             if (ring.border()) CHECK(around == wanted);
-            CHECK((ring.sealed != 0) == (leaves || (ring.border() && !grid.mask.empty())));
-            outline += ring.border() && !grid.mask.empty();
+            CHECK((ring.locked != 0) == (leaves || (ring.border() && !grid.mask.empty())));
+            boundary += ring.border() && !grid.mask.empty();
             const Quadric<3>&q = mesh.quadrics[v], &wanted_q = quadrics[number];
             for (const Vec2f& p : {Vec2f(ring.x, ring.y), Vec2f(ring.x + 1, ring.y - 2)}) {
                 CHECK(close(q.at(p.x(), p.y()), wanted_q.at(p.x(), p.y())));
@@ -66,7 +66,7 @@ void check_tiles(const GridMesh& grid) {
             }
         }
         CHECK(tile.live == static_cast<std::int64_t>(tile.own));
-        CHECK(tile.outline == outline);
+        CHECK(tile.boundary == boundary);
         for (std::size_t v = tile.own; v < mesh.rings.size(); ++v) {
             CHECK(!mesh.rings[v].live());
             const float* color = grid.feature.pixel(mesh.pixel[v]);
@@ -87,7 +87,7 @@ TEST_CASE("start tiles: together they are the dense mesh") {
     }
 }
 
-TEST_CASE("start tiles: together they are the dense mesh of a cut-out") {
+TEST_CASE("start tiles: together they are the dense mesh of a masked image") {
     for (const auto& [name, mask] : sample_masks(150)) {
         INFO(name);
         check_tiles(grid_mesh(sample_feature(Kind::kNoise, mask.width, mask.height), mask));

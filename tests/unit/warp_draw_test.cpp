@@ -239,7 +239,7 @@ TEST_CASE("warp_image: folds show what is not turned over, then the later row") 
         for (int k = 0; k < 2; ++k) {
             CHECK(rows.pixel(i, k)[0] == static_cast<float>((k + 3) * 6 + i));
             CHECK(columns.pixel(k, i)[0] == static_cast<float>(i * 6 + k + 3));
-            // In the last row both are outlines, and the rim beside the fold is not turned over.
+            // In the last row both are boundaries, and the rim beside the fold is not turned over.
             if (i < 5) CHECK(back.pixel(k + 1, i)[0] == static_cast<float>(i * 6 + k + 1));
         }
     CHECK(folded_cells(field_of(6, 6, [](int, int y) { return Vec2f(0, y < 3 ? 0 : -3); })) == 5);
@@ -271,7 +271,7 @@ TEST_CASE("warp_image: a side that rests is opaque") {
         CHECK(warp_image(noise_image(30, 24, 3), field, size).channels == 3);
 }
 
-TEST_CASE("warp_image: cut-outs keep their alpha, soft outlines included") {
+TEST_CASE("warp_image: masked images keep their alpha, soft boundaries included") {
     MeshImage m = grid_pyramid(24, 20, {5});
     const auto distance = [](int x, int y) { return std::hypot(x - 11.5, y - 9.5); };
     cut_out(m, [&](int x, int y) { return distance(x, y) < 6; });
@@ -306,7 +306,7 @@ TEST_CASE("warp_image: cut-outs keep their alpha, soft outlines included") {
         }
 }
 
-// Colours outside must not bleed in, wherever the outline goes.
+// Colours outside must not bleed in, wherever the boundary goes.
 TEST_CASE("warp_image: what is outside shows nowhere") {
     MeshImage m = grid_pyramid(40, 30, {6});
     cut_out(m, [](int x, int y) { return (x / 3 + y / 4) % 2 == 0 && x != 20; });

@@ -8,7 +8,7 @@
 #include <new>
 
 namespace imgmesh {
-void use_large_pages() {}
+void use_huge_pages() {}
 }  // namespace imgmesh
 
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)

@@ -7,6 +7,6 @@ namespace imgmesh {
 /// huge pages are there on request or always) for blocks that hold one or more: page by page a picture's
 /// memory costs a fifth of a build (docs/performance.md). Nothing to call at run time; calling it makes the
 /// linker take it in. Not with a sanitizer, which has an operator new of its own.
-void use_large_pages();
+void use_huge_pages();
 
 }  // namespace imgmesh

@@ -171,7 +171,7 @@ int run_tool(const Tool& tool, int argc, char** argv) {
     // A reader that goes away and a limit on file size are errors of write(), not the end of the process.
     std::signal(SIGPIPE, SIG_IGN);
     std::signal(SIGXFSZ, SIG_IGN);
-    use_large_pages();
+    use_huge_pages();
     remove_temporaries_on_signals();
     try {
         return static_cast<int>(parse_and_run(tool, argc, argv));

@@ -131,7 +131,7 @@ def figures_7_8(tools, pictures):
 
 
 def figure_5(tools, pictures):
-    """A cut-out at several errors, and patches without and with colour."""
+    """A masked image at several errors, and patches without and with colour."""
     path = pictures / "kodim23.png"
     mask = Image.new("L", Image.open(path).size, 0)
     draw = ImageDraw.Draw(mask)
@@ -145,7 +145,7 @@ def figure_5(tools, pictures):
     for args in (("--projection-color-weight", 0, "--refine", 0), ()):
         tools.build(path, "--mask", mask_path, "--density", 0.3, *args)
         patches.append(tools.draw("patches"))
-    return "<h2>Figure 5: a cut-out at several errors, and its patches</h2>" + table(
+    return "<h2>Figure 5: a masked image at several errors, and its patches</h2>" + table(
         ["error 2,000", "error 20,000", "error 100,000"], [meshes]) + table(
         ["patches, no colour in the map", "patches, defaults"], [patches])
 

@@ -49,7 +49,7 @@ def picture(path, width=384):
     """An HTML image that holds its bytes."""
     image = Image.open(path).convert("RGBA")
     white = Image.new("RGBA", image.size, "white")
-    image = Image.alpha_composite(white, image).convert("RGB")  # what a cut-out leaves empty
+    image = Image.alpha_composite(white, image).convert("RGB")  # what a masked image leaves empty
     image = image.resize((width, round(image.height * width / image.width)), Image.Resampling.LANCZOS)
     data = io.BytesIO()
     image.save(data, "JPEG", quality=88)
