@@ -1,4 +1,4 @@
-// imgmesh-build: pictures in, containers out.
+// imgmesh-build: images in, containers out.
 #include <filesystem>
 #include <map>
 #include <mutex>
@@ -50,7 +50,7 @@ struct Job {
 };
 
 void add_options(CLI::App& app, Options& o) {
-    add_inputs(app, "IMAGE", o.inputs, "Pictures to read");
+    add_inputs(app, "IMAGE", o.inputs, "Images to read");
     add_output(app, o.output,
                "Container to write (.glb, .gltf), or a folder, ended by /, for NAME.glb of each");
     // Before all that it sets, so that other options, wherever they stand, count after it.
@@ -164,11 +164,11 @@ void add_options(CLI::App& app, Options& o) {
     add_choice(app, "--bary", o.params.bary, bary_choices(),
                "Precision of the pixel map (default half where the map stays one to one, else float)");
     add_choice(app, "--draco", o.draco, draco_choices(), "Mesh compression (default edgebreaker)");
-    add_texture_options(app, o.texture, "Put the picture on the meshes, for engines and viewers", false);
+    add_texture_options(app, o.texture, "Put the image on the meshes, for engines and viewers", false);
     add_choice(app, "--color-space", o.color_space, color_space_choices(),
-               "Of the pictures' numbers, whatever their files say");
+               "Of the images' numbers, whatever their files say");
     add_count(app, "--max-pixels", o.limits.max_pixels, {1},
-              cat("Refuse a larger picture (default ", o.limits.max_pixels, ")"));
+              cat("Refuse a larger image (default ", o.limits.max_pixels, ")"));
     add_choice<bool, bool>(app, "--alpha", o.cut, {{"cut", true}, {"ignore", false}},
                            "What becomes of an alpha channel: only pixels that it shows are meshed, or all "
                            "(default cut)");
@@ -178,14 +178,14 @@ void add_options(CLI::App& app, Options& o) {
             if (text.empty()) throw Error(ErrorCode::kUsage, "--mask '': expected a file name");
             o.mask = text;
         },
-        "Picture of the pictures' size: only pixels that its alpha, or else its light, shows are meshed, "
+        "Image of the images' size: only pixels that its alpha, or else its light, shows are meshed, "
         "whatever their own alpha says");
     add_number(
         app, "--alpha-threshold", o.alpha_threshold, {0, 1, true},
         cat("Alpha, or light of a mask, from which on a pixel is meshed (default ", o.alpha_threshold, ")"));
 }
 
-// Which container each picture goes to. Throws Error(kUsage) for what can be seen to be wrong before any
+// Which container each image goes to. Throws Error(kUsage) for what can be seen to be wrong before any
 // work.
 std::vector<Job> plan_jobs(const Options& o) {
     std::vector<Job> jobs;
@@ -193,7 +193,7 @@ std::vector<Job> plan_jobs(const Options& o) {
     if (!folder) {
         if (o.inputs.size() > 1)
             throw Error(ErrorCode::kUsage, cat("-o ", o.output, ": ", o.inputs.size(),
-                                               " pictures need a folder, whose name ends with /"));
+                                               " images need a folder, whose name ends with /"));
         const std::string extension = lower_extension(o.output);
         if (extension != ".glb" && extension != ".gltf")
             throw Error(ErrorCode::kUsage,
@@ -219,7 +219,7 @@ std::vector<Job> plan_jobs(const Options& o) {
     return jobs;
 }
 
-// The library knows no file; its refusals get the picture's name here.
+// The library knows no file; its refusals get the image's name here.
 BuildResult build_named(const std::string& input, const Image& image, const BuildParams& params,
                         const Progress& progress, Mask mask) {
     try {
@@ -296,7 +296,7 @@ Report build_one(const Job& job, const Options& o, const Context& context, const
                             : cut                  ? "cut"
                                                    : "ignored"},
                   {"pixels", result.report.pixels}};
-    report.update(levels.front());  // the finest level's figures are the picture's
+    report.update(levels.front());  // the finest level's figures are the image's
     report.update({{"levels", levels},
                    {"bytes", written.facts.total_bytes},
                    {"bytes_per_pixel", bytes / static_cast<double>(image.pixel_count())},
@@ -310,7 +310,7 @@ Report build_one(const Job& job, const Options& o, const Context& context, const
     return report;
 }
 
-// The share of all pictures that is done, from the shares of each, which come from several threads.
+// The share of all images that is done, from the shares of each, which come from several threads.
 class JointProgress {
   public:
     JointProgress(std::size_t count, const Progress& progress)
@@ -344,7 +344,7 @@ Report run(const Options& o, Context& context) {
                 progress.show(i, fraction, stage);
             });
         } catch (...) {
-            // One bad picture does not keep the others from being built.
+            // One bad image does not keep the others from being built.
             failures[i] = current_failure();
             if (failures[i]->code == ErrorCode::kInternal)
                 failures[i]->message = cat(jobs[i].input, ": ", failures[i]->message);
@@ -395,6 +395,6 @@ void print(const Report& report, std::ostream& out) {
 
 int main(int argc, char** argv) {
     return tool_main<Options>("imgmesh-build",
-                              "Turn pictures into containers: a small triangle mesh and a pixel map.", argc,
+                              "Turn images into containers: a small triangle mesh and a pixel map.", argc,
                               argv, add_options, run, print);
 }

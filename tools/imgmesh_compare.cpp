@@ -1,4 +1,4 @@
-// imgmesh-compare: two pictures or containers against each other, or the quality of a container.
+// imgmesh-compare: two images or containers against each other, or the quality of a container.
 #include <algorithm>
 #include <filesystem>
 #include <limits>
@@ -54,16 +54,16 @@ void add_file(CLI::App& app, const std::string& name, std::string& path, const s
 
 void add_options(CLI::App& app, Options& o) {
     add_inputs(app, "INPUT", o.inputs,
-               "One container (.glb, .gltf), or two files to compare: pictures or containers");
+               "One container (.glb, .gltf), or two files to compare: images or containers");
     add_choice(app, "--mode", o.mode, mode_choices(), "How a container is drawn (default map)");
     add_count(app, "--level", o.level, {0, std::numeric_limits<int>::max()},
               "Level of a container's pyramid, 0 the finest (default 0)");
     add_choice(app, "--color-space", o.color_space, color_space_choices(),
-               "Of the pictures' numbers, whatever their files say");
+               "Of the images' numbers, whatever their files say");
     add_number(app, "--tolerance", o.tolerance, {0},
                "Exit with 7 where the RMS in L*u*v* is above this (default none: exit with 0)");
     add_file(app, "--error-image", o.error_image,
-             "Picture to write of the errors in L*u*v*: black none, then blue, red, orange, white");
+             "Image to write of the errors in L*u*v*: black none, then blue, red, orange, white");
     add_number(app, "--error-range", o.error_range, {0, kNoLimit, true},
                cat("Error that the error image shows white (default ", kErrorRange, ")"));
     add_file(app, "--plot", o.plot, "Histograms to write (.svg, .png)");
@@ -90,10 +90,10 @@ void check_options(const Options& o) {
     const bool pictures = !std::all_of(o.inputs.begin(), o.inputs.end(), is_container);
     if ((o.mode || o.level) && !containers)
         refuse(cat(o.mode ? "--mode" : "--level", ": expected a container (.glb, .gltf) among the files"));
-    if (o.color_space && !pictures) refuse("--color-space: expected a picture among the files");
+    if (o.color_space && !pictures) refuse("--color-space: expected an image among the files");
     if (o.error_range && o.error_image.empty()) refuse("--error-range: expected --error-image as well");
     if (!o.error_image.empty() && !can_write_image(o.error_image))
-        refuse(cat("--error-image ", o.error_image, ": expected the name of a picture, as in .png"));
+        refuse(cat("--error-image ", o.error_image, ": expected the name of an image, as in .png"));
     const std::string plot = lower_extension(o.plot);
     if (!o.plot.empty() && plot != ".svg" && plot != ".png")
         refuse(cat("--plot ", o.plot, ": expected a name in .svg or .png"));
@@ -113,7 +113,7 @@ Input load_picture(const std::string& path, const Options& o) {
     Input input{{path}, read_image(path, o.color_space), {}, {}};
     if (!has_color(input.image))
         throw Error(ErrorCode::kUnsupported,
-                    cat(path, ": the picture has no colour: neither channels R, G, B nor Y"));
+                    cat(path, ": the image has no colour: neither channels R, G, B nor Y"));
     input.report = {{"input", path},
                     {"kind", "picture"},
                     {"width", input.image.width},
@@ -263,6 +263,6 @@ Report run(const Options& o, Context& context) {
 
 int main(int argc, char** argv) {
     return tool_main<Options>(
-        "imgmesh-compare", "Compare pictures and containers; tell the quality of a container's mesh and map.",
+        "imgmesh-compare", "Compare images and containers; tell the quality of a container's mesh and map.",
         argc, argv, add_options, run, print_comparison);
 }

@@ -54,7 +54,7 @@ void add_options(CLI::App& app, Options& o) {
                  "Write the meshes alone: a plain glTF asset that imgmesh cannot read");
     add_texture_options(
         app, o.texture,
-        "Put a picture on the meshes, for engines and viewers: that of --image, or else the reconstruction "
+        "Put an image on the meshes, for engines and viewers: that of --image, or else the reconstruction "
         "(default: the input's texture, if it has one)",
         true);
     add_value(
@@ -68,7 +68,7 @@ void add_options(CLI::App& app, Options& o) {
                "Of an .svg's triangles (default flat)");
     add_value(
         app, "--image", "NAME", [&o](const std::string& text) { o.image = text; },
-        "The picture that --texture puts on the meshes, or that a sprite's .json names (default the output's "
+        "The image that --texture puts on the meshes, or that a sprite's .json names (default the output's "
         "name in .png)");
     add_container_limits(app, o.limits);
 }
@@ -137,13 +137,13 @@ Texture chosen_texture(const Options& o, const MeshImage& m, Texture kept) {
     if (o.image.empty()) {
         if (split_names(source.channel_names).color.empty())
             throw Error(ErrorCode::kUnsupported,
-                        cat("--texture: ", o.input, " has no colour; --image names a picture that has"));
+                        cat("--texture: ", o.input, " has no colour; --image names an image that has"));
         image = draw(m, 0, {});
     } else {
         image = read_image(o.image);
         if (image.width != source.width || image.height != source.height)
             throw Error(ErrorCode::kBadFile,
-                        cat(o.image, ": has ", image.width, "x", image.height, " pixels, the picture of ",
+                        cat(o.image, ": has ", image.width, "x", image.height, " pixels, the image of ",
                             o.input, " has ", source.width, "x", source.height));
     }
     Mask mask;

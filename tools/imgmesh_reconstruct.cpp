@@ -1,4 +1,4 @@
-// imgmesh-reconstruct: a container in, a picture out.
+// imgmesh-reconstruct: a container in, an image out.
 #include <cmath>
 #include <filesystem>
 #include <optional>
@@ -44,7 +44,7 @@ Choices<SampleType> depth_choices() {
 
 void add_options(CLI::App& app, Options& o) {
     add_input(app, "CONTAINER", o.input, "Container to read (.glb, .gltf)");
-    add_output(app, o.output, "Picture to write (.png, .exr, .tif, .jpg, ...; .svg of wire and flat)");
+    add_output(app, o.output, "Image to write (.png, .exr, .tif, .jpg, ...; .svg of wire and flat)");
     add_choice(app, "--mode", o.draw.mode, mode_choices(), "What to draw (default map, the reconstruction)");
     add_count(app, "--level", o.level, {0}, "Level of the pyramid, 0 the finest (default 0)");
     add_number(app, "--scale", o.draw.scale, {0, kNoLimit, true},
@@ -69,16 +69,16 @@ void check_options(const Options& o, bool svg) {
     if (svg && (o.depth || o.draw.scale != 1))
         throw Error(ErrorCode::kUsage, cat(o.output, ": an SVG has neither --depth nor --scale"));
     if (!svg && !can_write_image(o.output))
-        throw Error(ErrorCode::kUsage, cat("-o ", o.output, ": expected the name of a picture, as in .png"));
+        throw Error(ErrorCode::kUsage, cat("-o ", o.output, ": expected the name of an image, as in .png"));
 }
 
-// Throws Error(kUsage) where a scaled picture would be larger than any that can be read.
+// Throws Error(kUsage) where a scaled image would be larger than any that can be read.
 void check_size(const SourceInfo& source, double scale) {
     const ImageLimits limits;
     const double width = source.width * scale, height = source.height * scale;
     if (std::max(width, height) > limits.max_side || width * height > static_cast<double>(limits.max_pixels))
         throw Error(ErrorCode::kUsage,
-                    cat("--scale ", scale, ": the picture would have ", width, " x ", height,
+                    cat("--scale ", scale, ": the image would have ", width, " x ", height,
                         " pixels, more than ", limits.max_side, " a side or ", limits.max_pixels, " in all"));
 }
 
@@ -157,6 +157,6 @@ void print(const Report& report, std::ostream& out) {
 }  // namespace
 
 int main(int argc, char** argv) {
-    return tool_main<Options>("imgmesh-reconstruct", "Draw the picture of a container.", argc, argv,
+    return tool_main<Options>("imgmesh-reconstruct", "Draw the image of a container.", argc, argv,
                               add_options, run, print);
 }

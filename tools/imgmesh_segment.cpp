@@ -54,8 +54,8 @@ void add_options(CLI::App& app, Options& o) {
     add_choice(app, "--distance", o.distance, distance_choices(),
                "Between regions: by contours, or the paper's mean colours (default contour)");
     add_count(app, "--level", o.level, {0}, "Level of the pyramid, 0 the finest (default 0)");
-    add_file("--image", o.image, "The picture itself, to measure and draw on instead of the reconstruction");
-    add_file("--outlines", o.outlines, "Draw the regions' borders over the picture");
+    add_file("--image", o.image, "The image itself, to measure and draw on instead of the reconstruction");
+    add_file("--outlines", o.outlines, "Draw the regions' borders over the image");
     add_file("--flat", o.flat, "Draw each region in its mean colour");
     add_file("--ucm", o.ucm, "Write the ultrametric contour map (.exr)");
     add_file("--report", o.report, "Write each region's colour, pixels, box and neighbours (.json)");
@@ -95,7 +95,7 @@ void check_options(const Options& o) {
     for (const auto& [option, path] : {std::pair("--outlines", &o.outlines), std::pair("--flat", &o.flat)})
         if (!path->empty() && !can_write_image(*path))
             throw Error(ErrorCode::kUsage,
-                        cat(option, " ", *path, ": expected the name of a picture, as in .png"));
+                        cat(option, " ", *path, ": expected the name of an image, as in .png"));
     check_separate(outputs_of(o));
 }
 
@@ -200,6 +200,6 @@ void print(const Report& report, std::ostream& out) {
 }  // namespace
 
 int main(int argc, char** argv) {
-    return tool_main<Options>("imgmesh-segment", "Cut the picture of a container into regions.", argc, argv,
+    return tool_main<Options>("imgmesh-segment", "Cut the image of a container into regions.", argc, argv,
                               add_options, run, print);
 }

@@ -1,4 +1,4 @@
-// imgmesh-warp: a container, its picture and edits in; the edited picture, maps of the edit, or the edited
+// imgmesh-warp: a container, its image and edits in; the edited image, maps of the edit, or the edited
 // container out.
 #include <algorithm>
 #include <cmath>
@@ -82,9 +82,9 @@ void add_options(CLI::App& app, Options& o) {
         };
     };
     add_input(app, "CONTAINER", o.input, "Container to read (.glb, .gltf)");
-    add_value(app, "--image", "FILE", take(o.image), "The picture that the container was made from");
+    add_value(app, "--image", "FILE", take(o.image), "The image that the container was made from");
     add_value(app, "-o,--output", "FILE", take(o.output),
-              "Edited picture to write (.png, .exr, .tif, ...), or edited container (.glb, .gltf)");
+              "Edited image to write (.png, .exr, .tif, ...), or edited container (.glb, .gltf)");
     add_value(app, "--displacement", "FILE", take(o.displacement),
               "Maps of the edit to write (.exr): an STMap, and the displacement of every pixel");
     add_value(app, "--edits", "FILE", take(o.edits),
@@ -101,14 +101,14 @@ void add_options(CLI::App& app, Options& o) {
         ->needs(app.get_option(kHandle));
     add_value(
         app, kSize, "WxH", [&o](const std::string& text) { o.size = parse_size(kSize, text); },
-        "Size of the picture and of the STMap (default the picture's)");
+        "Size of the image and of the STMap (default the image's)");
     add_value(
         app, kRetarget, "WxH",
         [&o](const std::string& text) {
             o.size = parse_size(kRetarget, text);
             o.retarget = true;
         },
-        "As --size, but detail keeps its proportions and the rest of the picture gives way")
+        "As --size, but detail keeps its proportions and the rest of the image gives way")
         ->excludes(app.get_option(kSize));
 }
 
@@ -123,17 +123,16 @@ void check_options(const Options& o) {
         throw Error(ErrorCode::kUsage, "nothing to write: expected --output, --displacement or both");
     const bool container = is_container(o.output);
     if (!o.output.empty() && !container && !can_write_image(o.output))
-        throw Error(
-            ErrorCode::kUsage,
-            cat("-o ", o.output, ": expected the name of a picture or container, as in .png or .glb"));
+        throw Error(ErrorCode::kUsage,
+                    cat("-o ", o.output, ": expected the name of an image or container, as in .png or .glb"));
     if (!o.output.empty() && !container && o.image.empty())
-        throw Error(ErrorCode::kUsage, "--image is missing: the picture to draw with");
+        throw Error(ErrorCode::kUsage, "--image is missing: the image to draw with");
     if (!o.displacement.empty() && lower_extension(o.displacement) != ".exr")
         throw Error(ErrorCode::kUsage,
                     cat("--displacement ", o.displacement, ": expected the name of an .exr"));
     if (o.size.width > 0 && container && (o.retarget || o.displacement.empty()))
         throw Error(ErrorCode::kUsage,
-                    cat(o.retarget ? kRetarget : kSize, ": a container keeps its picture's size"));
+                    cat(o.retarget ? kRetarget : kSize, ": a container keeps its image's size"));
 }
 
 WarpEdits all_edits(const Options& o) {
@@ -199,7 +198,7 @@ Report run(const Options& o, Context& context) {
         image = read_image(o.image);
         if (image->width != source.width || image->height != source.height)
             throw Error(ErrorCode::kBadFile,
-                        cat(o.image, ": has ", image->width, "x", image->height, " pixels, the picture of ",
+                        cat(o.image, ": has ", image->width, "x", image->height, " pixels, the image of ",
                             o.input, " has ", source.width, "x", source.height));
     }
 
@@ -260,6 +259,6 @@ void print(const Report& report, std::ostream& out) {
 }  // namespace
 
 int main(int argc, char** argv) {
-    return tool_main<Options>("imgmesh-warp", "Edit a picture by moving vertices of its meshes.", argc, argv,
+    return tool_main<Options>("imgmesh-warp", "Edit an image by moving vertices of its meshes.", argc, argv,
                               add_options, run, print);
 }

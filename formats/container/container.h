@@ -12,7 +12,7 @@
 
 namespace imgmesh {
 
-/// A picture that viewers put on the meshes, instead of the vertices' colours.
+/// An image that viewers put on the meshes, instead of the vertices' colours.
 struct Texture {
     std::vector<std::uint8_t> picture;  ///< a PNG or JPEG file in sRGB; empty for no texture
     /// Where in it the vertices of each level are: from (0, 0), the corner of the top-left pixel, to (1, 1)

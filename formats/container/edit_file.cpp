@@ -16,7 +16,7 @@ namespace {
 
 using nlohmann::json;
 
-// Far outside any picture, and far from where numbers lose their fractions.
+// Far outside any image, and far from where numbers lose their fractions.
 constexpr double kFarthest = 1e6;
 constexpr double kSmallestScale = 1e-3, kLargestScale = 1e3;
 

@@ -28,7 +28,7 @@ std::string number(float value) {
     return {text, end};
 }
 
-// Pixels from the top-left corner of the picture, x and y, along one axis.
+// Pixels from the top-left corner of the image, x and y, along one axis.
 float from_corner(float x, int side) {
     if (side == 1) return x + 0.5f;  // a strip from -0.5 to 0.5
     if (x <= 0) return 0;

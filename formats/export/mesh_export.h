@@ -15,10 +15,10 @@ std::string ply_from_mesh(const BaseMesh& mesh);
 /// coordinates with v up, faces.
 std::string obj_from_mesh(const BaseMesh& mesh, const SourceInfo& source);
 
-/// The JSON of TexturePacker with polygon outlines, as Pixi reads it: one frame, the whole picture `image`,
-/// with `vertices` and `verticesUV` in pixels from the picture's top-left corner and `triangles`. A vertex on
-/// a side of the picture lies on the outermost pixels' outer side, so that the sprite is as large as the
-/// picture.
+/// The JSON of TexturePacker with polygon outlines, as Pixi reads it: one frame, the whole image `image`,
+/// with `vertices` and `verticesUV` in pixels from the image's top-left corner and `triangles`. A vertex on
+/// a side of the image lies on the outermost pixels' outer side, so that the sprite is as large as the
+/// image.
 std::string sprite_json_from_mesh(const BaseMesh& mesh, const SourceInfo& source, const std::string& image,
                                   const std::string& generator);
 

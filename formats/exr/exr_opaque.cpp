@@ -82,7 +82,7 @@ void make_attributes_opaque(const std::string& path, std::span<std::uint8_t> byt
     if ((version & 0xFF) != 2)
         throw Error(ErrorCode::kBadFile, cat(path, ": EXR version ", version & 0xFF, ", expected 2"));
     if (version & kDeep)
-        throw Error(ErrorCode::kUnsupported, cat(path, ": deep EXR pictures are not supported"));
+        throw Error(ErrorCode::kUnsupported, cat(path, ": deep EXR images are not supported"));
     // An empty name ends a header, and an empty header those of a file with many parts.
     do {
         while (!in.ends()) {

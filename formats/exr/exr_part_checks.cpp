@@ -138,7 +138,7 @@ void finish_part(LayerPart& part, bool stored_as_half, std::uint64_t faces, bool
         if (c.face == kNone) {
             if (!has_mask)
                 mask.hit([&] {
-                    return std::pair(cat("no face at ", where(i), ", but the picture has no mask"),
+                    return std::pair(cat("no face at ", where(i), ", but the image has no mask"),
                                      place(i, kFace));
                 });
             else if (c.u != 0 || c.v != 0)

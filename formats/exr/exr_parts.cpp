@@ -14,7 +14,7 @@
 namespace imgmesh {
 namespace {
 
-// All parts of a file have one display window; a part's picture is its data window.
+// All parts of a file have one display window; a part's image is its data window.
 Imf::Header header_of(const NamedImage& part, const Image& shown) {
     const auto window = [](const Image& image) {
         return Imath::Box2i({0, 0}, {image.width - 1, image.height - 1});

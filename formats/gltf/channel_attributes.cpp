@@ -1,4 +1,4 @@
-// What the channels of a picture are called in glTF.
+// What the channels of an image are called in glTF.
 #include <algorithm>
 
 #include "formats/gltf/gltf_asset.h"

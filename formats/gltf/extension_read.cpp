@@ -36,11 +36,10 @@ SourceInfo read_image_member(const json& image, const ContainerLimits& limits) {
     const std::uint64_t width = unsigned_member(image, "width", "ext.member");
     const std::uint64_t height = unsigned_member(image, "height", "ext.member");
     if (width < 1 || height < 1 || width > kMaxCoordinate || height > kMaxCoordinate)
-        refuse("limits.pixels",
-               cat("a picture of ", width, "x", height, ", sides are 1 to ", kMaxCoordinate));
+        refuse("limits.pixels", cat("an image of ", width, "x", height, ", sides are 1 to ", kMaxCoordinate));
     if (width * height > static_cast<std::uint64_t>(limits.max_pixels))
         refuse("limits.pixels",
-               cat("a picture of ", width, "x", height, ", at most ", limits.max_pixels, " pixels"));
+               cat("an image of ", width, "x", height, ", at most ", limits.max_pixels, " pixels"));
     source.width = static_cast<int>(width);
     source.height = static_cast<int>(height);
 

@@ -59,19 +59,19 @@ struct Asset {
     ByteRange layers;         ///< the EXR in the buffer, where `layers_name` is empty
     std::string layers_name;  ///< or its file beside
 
-    ByteRange texture;         ///< the picture on the meshes, in the buffer
+    ByteRange texture;         ///< the image on the meshes, in the buffer
     std::string texture_type;  ///< its mimeType; empty for no texture
 
     std::vector<LevelPlace> places;  ///< of the levels, as read
     // What a validator may go on with; always true for a reader. A writer leaves IMGMESH_pixel_map out where
     // has_layers is false.
-    bool has_size = true;    ///< of the picture
+    bool has_size = true;    ///< of the image
     bool has_levels = true;  ///< it is known how many there are
     bool has_layers = true;  ///< it is known where the EXR is
     bool has_buffer = true;  ///< likewise
 };
 
-/// What the meshes of such a picture have beside positions, and the names of its channels' attributes in
+/// What the meshes of such an image have beside positions, and the names of its channels' attributes in
 /// their order.
 StoredLayout layout_of(const SourceInfo& source);
 std::vector<std::string> channel_attributes(const SourceInfo& source);

@@ -1,5 +1,5 @@
 // tinygltf reads the glTF 2.0 part, of a document reduced to what a container needs: it follows no URI,
-// decodes no picture and does not recurse deeply then. What it does not check is checked here: indices,
+// decodes no image and does not recurse deeply then. What it does not check is checked here: indices,
 // ranges, integers above 32 bits (which it truncates). Our extension is read from the JSON itself.
 #include <tiny_gltf.h>
 

@@ -17,7 +17,7 @@ using nlohmann::json;
 
 constexpr const char* kPng = "image/png";
 constexpr const char* kJpeg = "image/jpeg";
-// OpenGL's numbers. At the sides the picture's own pixels go on: the other side's do not mix in.
+// OpenGL's numbers. At the sides the image's own pixels go on: the other side's do not mix in.
 constexpr int kClampToEdge = 33071, kLinear = 9729, kLinearMipmapLinear = 9987;
 
 // An object of the document and where it stands.

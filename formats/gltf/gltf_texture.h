@@ -1,4 +1,4 @@
-// The picture on the meshes, in the glTF document: material, texture, image; see docs/format.md.
+// The image on the meshes, in the glTF document: material, texture, image; see docs/format.md.
 #pragma once
 
 #include <cstdint>
@@ -15,11 +15,11 @@ struct Asset;
 /// "image/png" or "image/jpeg", by the first bytes; empty for anything else.
 std::string picture_type(std::span<const std::uint8_t> bytes);
 
-/// Makes material 0 show the picture in bufferView `view`. `cut_out`: where its alpha is below 1/2, nothing
+/// Makes material 0 show the image in bufferView `view`. `cut_out`: where its alpha is below 1/2, nothing
 /// is drawn.
 void add_texture(nlohmann::json& document, int view, const std::string& type, bool cut_out);
 
-/// Where a texture's picture is.
+/// Where a texture's image is.
 struct TextureView {
     std::uint64_t view = 0;
     std::string type;  ///< "image/png" or "image/jpeg"

@@ -21,7 +21,7 @@ using nlohmann::json;
 using tinygltf::Value;
 
 constexpr std::uint64_t kMaxBufferBytes = 0x7FFFFFFF;
-// Distance between levels in units of the picture's longer side, so that a viewer that draws all of them does
+// Distance between levels in units of the image's longer side, so that a viewer that draws all of them does
 // not draw two at one depth.
 constexpr double kLevelDistance = 0.01;
 
@@ -104,7 +104,7 @@ tinygltf::Mesh level_mesh(tinygltf::Model& model, const AssetLevel& level, const
     return mesh;
 }
 
-// Centres the picture at the origin, its longer side one unit.
+// Centres the image at the origin, its longer side one unit.
 tinygltf::Node level_node(const SourceInfo& source, std::size_t k) {
     const double scale = 1.0 / std::max(source.width, source.height);
     tinygltf::Node node;

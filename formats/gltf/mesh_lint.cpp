@@ -80,7 +80,7 @@ void lint_faces(const StoredMesh& mesh, const SourceInfo& source, Findings& find
     const auto extent = [](int side) { return double(side == 1 ? 1 : side - 1); };
     const double whole = extent(source.width) * extent(source.height);  // exact, as the sum is
     if (!source.has_mask && area2 != 2 * whole)
-        findings.add("mesh.area", cat("the faces have an area of ", area2 / 2, ", the picture ", whole));
+        findings.add("mesh.area", cat("the faces have an area of ", area2 / 2, ", the image ", whole));
 }
 
 }  // namespace

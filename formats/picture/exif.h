@@ -1,4 +1,4 @@
-// EXIF metadata, as far as it says how a picture stands.
+// EXIF metadata, as far as it says how an image stands.
 #pragma once
 
 #include <cstdint>

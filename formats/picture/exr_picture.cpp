@@ -1,4 +1,4 @@
-// EXR pictures through OpenEXR itself: OpenImageIO's reader can abort on a corrupt file.
+// EXR images through OpenEXR itself: OpenImageIO's reader can abort on a corrupt file.
 #include <OpenEXR/ImfChannelList.h>
 #include <OpenEXR/ImfChromaticities.h>
 #include <OpenEXR/ImfFrameBuffer.h>
@@ -105,7 +105,7 @@ void check_primaries(const std::string& path, const Imf::Header& header) {
 
 void check_part(const std::string& path, const Imf::Header& header, const ImageLimits& limits) {
     if (header.hasType() && Imf::isDeepData(header.type()))
-        throw Error(ErrorCode::kUnsupported, cat(path, ": deep EXR pictures are not supported"));
+        throw Error(ErrorCode::kUnsupported, cat(path, ": deep EXR images are not supported"));
     const auto channels = static_cast<std::int64_t>(channel_order(header.channels()).size());
     const Imath::Box2i &shown = header.displayWindow(), &stored = header.dataWindow();
     for (const Imath::Box2i* window : {&shown, &stored})

@@ -207,7 +207,7 @@ std::vector<std::uint8_t> icc_from_color_space(ColorSpace space) {
     put(out, 0, 4);
     put(out, 0x04200000, 4);  // version 4.2
     for (const auto name : {tag_name("mntr"), tag_name("RGB "), tag_name("XYZ ")}) put(out, name, 4);
-    // A fixed date, so that the same picture gives the same file.
+    // A fixed date, so that the same image gives the same file.
     for (const std::uint32_t part : {2000u, 1u, 1u, 0u, 0u, 0u}) put(out, part, 2);
     put(out, tag_name("acsp"), 4);
     out.resize(68);  // platform, flags, device, attributes, intent: all zero

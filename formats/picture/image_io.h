@@ -1,4 +1,4 @@
-// Pictures from and to files: PNG, EXR and WebP through their own libraries, the rest through OpenImageIO,
+// Images from and to files: PNG, EXR and WebP through their own libraries, the rest through OpenImageIO,
 // which is loaded when it is first needed (oiio_module.h). Target imgmesh_pictures.
 #pragma once
 
@@ -18,17 +18,17 @@ struct ImageLimits {
     int max_channels = 64;
 };
 
-/// Reads the first picture (frame, layer, part) of a PNG, JPEG, TIFF, EXR, WebP, GIF, BMP, PNM, TGA, Radiance
+/// Reads the first image (frame, layer, part) of a PNG, JPEG, TIFF, EXR, WebP, GIF, BMP, PNM, TGA, Radiance
 /// HDR, JPEG 2000 or HEIF file at full resolution, all channels. The content decides, not the name.
 ///
 /// 8 and 16 bit integers are scaled to [0, 1], half and float kept; 1-bit, palette, CMYK and YCbCr become
 /// grey or RGB(A); associated alpha is divided out; EXIF orientation is applied (width and height as a viewer
 /// shows them). Channel names are R G B A Y where that is what they are. The colour space is `color_space`,
 /// else what the file says (an ICC profile by its primaries and curve, else the format's own means), else
-/// sRGB for integers and linear for floats. An EXR's picture is its display window; pixels outside the data
+/// sRGB for integers and linear for floats. An EXR's image is its display window; pixels outside the data
 /// window are 0.
 ///
-/// Throws Error: kIo where the file cannot be read; kBadFile for content that is no picture, broken or
+/// Throws Error: kIo where the file cannot be read; kBadFile for content that is no image, broken or
 /// truncated, over the limits, or with samples that are not finite; kUnsupported for what imgmesh has no use
 /// for (deep and subsampled EXR, camera raw, CIELAB, signed integers, EXR primaries other than Rec.709's
 /// unless `color_space` is given). Never aborts, whatever the bytes.

@@ -1,4 +1,4 @@
-// read_image: the file's bytes, a look at them, one of the decoders, and what all pictures have in common.
+// read_image: the file's bytes, a look at them, one of the decoders, and what all images have in common.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -11,7 +11,7 @@
 namespace imgmesh {
 namespace {
 
-// Above any picture within the default limits, and far below what a machine has.
+// Above any image within the default limits, and far below what a machine has.
 constexpr std::uint64_t kMaxFileBytes = std::uint64_t{8} << 30;
 
 // Where a displayed pixel is stored, as bits (EXIF 2.3, tag Orientation): the axes are exchanged first, then

@@ -1,4 +1,4 @@
-// Words in pictures. Target imgmesh_pictures.
+// Words in images. Target imgmesh_pictures.
 #pragma once
 
 #include <string>
@@ -15,11 +15,11 @@ struct TextLabel {
     int y = 0;
     int size = 12;  ///< height of the font [pixels]
     TextAlign align = TextAlign::kLeft;
-    Vec3f color = Vec3f::Zero();  ///< as encoded in the picture
+    Vec3f color = Vec3f::Zero();  ///< as encoded in the image
     std::string text;
 };
 
-/// Draws the label over an RGB picture, in DejaVu Sans; what lies outside is cut off. Throws
+/// Draws the label over an RGB image, in DejaVu Sans; what lies outside is cut off. Throws
 /// Error(kUnsupported) where that font is not installed.
 void draw_text(Image& image, const TextLabel& label);
 

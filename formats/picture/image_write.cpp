@@ -63,7 +63,7 @@ bool holds(const Format& format, SampleType type) {
 Error unknown_format(const std::string& path) {
     std::string list;
     for (const Format& f : formats()) list += cat(list.empty() ? "" : ", ", f.extension);
-    return {ErrorCode::kUsage, cat(path, ": cannot write this kind of picture, expected one of ", list)};
+    return {ErrorCode::kUsage, cat(path, ": cannot write this kind of image, expected one of ", list)};
 }
 
 const char* type_name(SampleType type) {
@@ -89,7 +89,7 @@ SampleType choose_type(const std::string& path, const Format& format, const Imag
                        std::optional<SampleType> asked) {
     if (asked && !holds(format, *asked))
         throw Error(ErrorCode::kUsage,
-                    cat(path, ": ", format.extension, " pictures hold no ", type_name(*asked), " samples"));
+                    cat(path, ": ", format.extension, " images hold no ", type_name(*asked), " samples"));
     const SampleType wanted = asked.value_or(image.sample_type);
     if (holds(format, wanted)) return wanted;
     // 16-bit codes need a float's precision.
@@ -99,9 +99,9 @@ SampleType choose_type(const std::string& path, const Format& format, const Imag
 
 ColorSpace choose_space(const Format& format, SampleType type, const Image& image) {
     if (!is_integer(type)) return ColorSpace::kLinear;  // what readers take floats for
-    // Linear light from a float picture would lose its shadows in integers.
+    // Linear light from a float image would lose its shadows in integers.
     const bool light = image.color_space == ColorSpace::kLinear && !is_integer(image.sample_type);
-    // An RGB profile does not fit a grey picture.
+    // An RGB profile does not fit a grey image.
     const bool profile = format.icc && image.channel("R") >= 0;
     return light || !profile ? ColorSpace::kSrgb : image.color_space;
 }
@@ -153,7 +153,7 @@ Image without_alpha(const std::string& path, const Format& format, Image image) 
             *to++ = image.data[i];
         else if (!(image.data[i] >= kOpaque))
             throw Error(ErrorCode::kUsage, cat(path, ": ", format.extension,
-                                               " pictures hold no transparency, and this one has some; write "
+                                               " images hold no transparency, and this one has some; write "
                                                ".png, .webp, .tif or .exr"));
     }
     out.channel_names.clear();
@@ -165,8 +165,8 @@ Image without_alpha(const std::string& path, const Format& format, Image image) 
 void check_shape(const std::string& path, const Format& format, const Image& image) {
     if (image.width > format.max_side || image.height > format.max_side)
         throw Error(ErrorCode::kUsage,
-                    cat(path, ": the picture is ", image.width, "x", image.height, ", ", format.extension,
-                        " pictures have at most ", format.max_side, " pixels a side"));
+                    cat(path, ": the image is ", image.width, "x", image.height, ", ", format.extension,
+                        " images have at most ", format.max_side, " pixels a side"));
     if (format.any_channels) return;
     const auto& names = image.channel_names;
     using Names = std::vector<std::string>;
@@ -176,7 +176,7 @@ void check_shape(const std::string& path, const Format& format, const Image& ima
     std::string list;
     for (const std::string& name : names) list += (list.empty() ? "" : " ") + name;
     throw Error(ErrorCode::kUsage,
-                cat(path, ": ", format.extension, " pictures hold grey or colour, not channels ", list,
+                cat(path, ": ", format.extension, " images hold grey or colour, not channels ", list,
                     "; write .exr or .tif"));
 }
 

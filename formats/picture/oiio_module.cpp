@@ -66,7 +66,7 @@ SampleType sample_type(const std::string& path, OIIO::TypeDesc type) {
 void check_spec(const std::string& path, const OIIO::ImageSpec& spec, const ImageLimits& limits,
                 decltype(&check_size) check) {
     if (spec.deep || spec.depth > 1)
-        throw Error(ErrorCode::kUnsupported, cat(path, ": deep and volume pictures are not supported"));
+        throw Error(ErrorCode::kUnsupported, cat(path, ": deep and volume images are not supported"));
     check(path, spec.width, spec.height, spec.nchannels, limits);
     // One tile is held at a time.
     if (spec.tile_width > 0) check(path, spec.tile_width, spec.tile_height, spec.nchannels, limits);
@@ -129,7 +129,7 @@ bool read_samples(OIIO::ImageInput& input, SampleType type, std::vector<float>& 
 }
 
 void use_one_thread() {
-    // OpenImageIO's own pool would ignore the caller's limit; pictures of a batch run in parallel anyway.
+    // OpenImageIO's own pool would ignore the caller's limit; images of a batch run in parallel anyway.
     static const bool kDone = OIIO::attribute("threads", 1);
     (void)kDone;
 }
@@ -156,7 +156,7 @@ OiioPicture decode(const std::string& path, std::span<const std::uint8_t> bytes,
     use_one_thread();
     const std::string format = reader_name(claim.format);
     const auto broken = [&](const std::string& reason) {
-        return Error(ErrorCode::kBadFile, cat(path, ": cannot read the picture: ", one_line(reason)));
+        return Error(ErrorCode::kBadFile, cat(path, ": cannot read the image: ", one_line(reason)));
     };
     if (claim.width != 0 || claim.height != 0)
         check(path, claim.width, claim.height, std::max<std::int64_t>(claim.channels, 1), limits);
@@ -245,7 +245,7 @@ OIIO::ImageBufAlgo::TextAlignX oiio_align(TextAlign align) {
 
 void text(Image& image, const TextLabel& label) {
     const OIIO::ImageSpec spec(image.width, image.height, image.channels, OIIO::TypeFloat);
-    OIIO::ImageBuf buffer(spec, image.data.data());  // draws into the picture itself
+    OIIO::ImageBuf buffer(spec, image.data.data());  // draws into the image itself
     if (!OIIO::ImageBufAlgo::render_text(buffer, label.x, label.y, label.text, label.size, "DejaVuSans",
                                          {label.color.data(), 3}, oiio_align(label.align),
                                          OIIO::ImageBufAlgo::TextAlignY::Baseline))

@@ -14,7 +14,7 @@
 
 namespace imgmesh {
 
-/// A picture as its file says it.
+/// An image as its file says it.
 struct OiioPicture {
     int width = 0, height = 0, channels = 0;
     std::vector<std::string> channel_names;
@@ -27,7 +27,7 @@ struct OiioPicture {
     std::string color_name;  ///< empty for none
 };
 
-/// A picture as a file is to hold it.
+/// An image as a file is to hold it.
 struct OiioTask {
     const char* writer;  ///< OpenImageIO's name
     std::string extension;

@@ -34,7 +34,7 @@ DecodedPicture decode_webp(const std::string& path, std::span<const std::uint8_t
 DecodedPicture decode_exr(const std::string& path, std::span<std::uint8_t> bytes, const ImageLimits& limits,
                           bool any_primaries);
 
-/// The bytes of a file. The picture is as it is to be stored: `image` linear with associated alpha for EXR
+/// The bytes of a file. The image is as it is to be stored: `image` linear with associated alpha for EXR
 /// and `type` kHalf or kFloat; sRGB, 8 bit and lossless, at most 16383 pixels a side, for WebP; one to four
 /// channels, in RGB of any colour space, for PNG and `type` kUint8 or kUint16.
 std::vector<std::uint8_t> encode_exr(const Image& image, SampleType type);

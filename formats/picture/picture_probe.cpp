@@ -69,7 +69,7 @@ void check_png(const std::string& path, Bytes b) {
     }
 }
 
-// The frame header; a progressive file makes libjpeg take memory for the whole picture when it is opened.
+// The frame header; a progressive file makes libjpeg take memory for the whole image when it is opened.
 void claim_jpeg(Bytes b, PictureClaim& claim) {
     for (std::size_t at = 2; at + 9 < b.size();) {
         if (b[at] != 0xFF || b[at + 1] == 0 || b[at + 1] == 0xFF) {
@@ -119,7 +119,7 @@ void claim_jpeg2000(Bytes b, PictureClaim& claim) {
     }
 }
 
-// A file holds several sizes (tiles, thumbnails); the picture's is the largest.
+// A file holds several sizes (tiles, thumbnails); the image's is the largest.
 void claim_heif(Bytes b, PictureClaim& claim) {
     for (auto at = find(b, 0, "ispe"); at; at = find(b, *at + 4, "ispe")) {
         claim.width = std::max<std::int64_t>(claim.width, big_endian(b, *at + 8, 4));
@@ -151,7 +151,7 @@ constexpr Signature kSignatures[] = {{PictureFormat::kPng, 0, "\x89PNG\r\n\x1a\n
                                      {PictureFormat::kHeif, 4, "ftypmif1"sv},
                                      {PictureFormat::kHeif, 4, "ftypavif"sv}};
 
-// Camera raw files wear TIFF's signature, and their first TIFF picture is a thumbnail.
+// Camera raw files wear TIFF's signature, and their first TIFF image is a thumbnail.
 constexpr std::string_view kRawExtensions[] = {".3fr", ".arw", ".cr2", ".dcr", ".dng", ".erf",
                                                ".iiq", ".kdc", ".mef", ".mos", ".nef", ".nrw",
                                                ".pef", ".rw2", ".sr2", ".srw"};
@@ -159,7 +159,7 @@ constexpr std::string_view kRawExtensions[] = {".3fr", ".arw", ".cr2", ".dcr", "
 PictureFormat recognise(const std::string& path, Bytes b) {
     std::string extension = std::filesystem::path(path).extension().string();
     for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    if (b.empty()) throw broken(path, "is empty, expected a picture");
+    if (b.empty()) throw broken(path, "is empty, expected an image");
     for (const Signature& s : kSignatures) {
         if (!has(b, s.offset, s.bytes)) continue;
         if (s.format == PictureFormat::kTiff && std::ranges::count(kRawExtensions, extension))
@@ -171,7 +171,7 @@ PictureFormat recognise(const std::string& path, Bytes b) {
     if (letter_p && ((b[1] >= '1' && b[1] <= '6') || b[1] == 'F' || b[1] == 'f')) return PictureFormat::kPnm;
     if (extension == ".tga" || extension == ".tpic") return PictureFormat::kTga;
     throw broken(path,
-                 "not a picture that imgmesh reads (PNG, JPEG, TIFF, EXR, WebP, GIF, BMP, PNM, TGA, HDR, "
+                 "not an image that imgmesh reads (PNG, JPEG, TIFF, EXR, WebP, GIF, BMP, PNM, TGA, HDR, "
                  "JPEG 2000, HEIF)");
 }
 
@@ -219,20 +219,20 @@ PictureClaim probe_picture(const std::string& path, Bytes b) {
 void check_size(const std::string& path, std::int64_t width, std::int64_t height, std::int64_t channels,
                 const ImageLimits& limits) {
     if (width < 1 || height < 1 || channels < 1)
-        throw broken(path, cat("the picture is ", width, "x", height, " with ", channels, " channels"));
+        throw broken(path, cat("the image is ", width, "x", height, " with ", channels, " channels"));
     if (width > limits.max_side || height > limits.max_side)
-        throw broken(path, cat("the picture is ", width, "x", height, ", at most ", limits.max_side,
+        throw broken(path, cat("the image is ", width, "x", height, ", at most ", limits.max_side,
                                " pixels a side are read"));
     if (width * height > limits.max_pixels)
-        throw broken(path, cat("the picture is ", width, "x", height, ", at most ", limits.max_pixels,
+        throw broken(path, cat("the image is ", width, "x", height, ", at most ", limits.max_pixels,
                                " pixels are read"));
     if (channels > limits.max_channels)
         throw broken(
-            path, cat("the picture has ", channels, " channels, at most ", limits.max_channels, " are read"));
-    // RGBA at the largest size: more channels only in smaller pictures, or 64 would take 64 GB.
+            path, cat("the image has ", channels, " channels, at most ", limits.max_channels, " are read"));
+    // RGBA at the largest size: more channels only in smaller images, or 64 would take 64 GB.
     if (width * height * channels > 4 * limits.max_pixels)
-        throw broken(path, cat("the picture is ", width, "x", height, " with ", channels,
-                               " channels, at most ", 4 * limits.max_pixels, " samples are read"));
+        throw broken(path, cat("the image is ", width, "x", height, " with ", channels, " channels, at most ",
+                               4 * limits.max_pixels, " samples are read"));
 }
 
 }  // namespace imgmesh

@@ -1,4 +1,4 @@
-// What a picture file says of itself, read from its bytes before any library takes memory for it.
+// What an image file says of itself, read from its bytes before any library takes memory for it.
 #pragma once
 
 #include <cstdint>
@@ -21,7 +21,7 @@ struct PictureClaim {
 };
 
 /// Recognises the format by the content, not by the name (TGA alone, which has no signature, by its
-/// extension), and checks a PNG's chunks to their end. Throws Error: kBadFile for no picture, a broken PNG or
+/// extension), and checks a PNG's chunks to their end. Throws Error: kBadFile for no image, a broken PNG or
 /// a BMP whose compression is not for its depth, kUnsupported for camera raw files and other compressions of
 /// BMP.
 PictureClaim probe_picture(const std::string& path, std::span<const std::uint8_t> bytes);

@@ -1,4 +1,4 @@
-// The colour space of a picture from what its file says.
+// The colour space of an image from what its file says.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +17,7 @@ struct StatedColor {
 };
 
 /// The profile's colour space, else the gamma's, else that of the name; nothing where none of them is one of
-/// ours. The samples of a picture whose gamma is none of ours are brought to 2.2, alpha aside.
+/// ours. The samples of an image whose gamma is none of ours are brought to 2.2, alpha aside.
 std::optional<ColorSpace> stated_color_space(const StatedColor& stated, Image& image);
 
 }  // namespace imgmesh

@@ -1,4 +1,4 @@
-// The file that Texture::picture is. Target imgmesh_pictures.
+// The file that Texture::image is. Target imgmesh_pictures.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@ namespace imgmesh {
 enum class TextureType { kPng, kJpeg };
 
 /// texture_image(image, mask) as a file of 8-bit sRGB. The same image gives the same bytes.
-/// Throws Error(kUnsupported) where the picture has no colour, and for a masked image as JPEG; Error(kUsage)
+/// Throws Error(kUnsupported) where the image has no colour, and for a masked image as JPEG; Error(kUsage)
 /// where it is too large for the format.
 std::vector<std::uint8_t> encode_texture(const Image& image, const Mask& mask, TextureType type);
 

@@ -45,12 +45,12 @@ DecodedPicture decode_webp(const std::string& path, Bytes bytes, const ImageLimi
     const bool found = WebPDemuxGetFrame(demuxer.get(), 1, &frame);
     const std::unique_ptr<WebPIterator, decltype(&WebPDemuxReleaseIterator)> release(
         &frame, WebPDemuxReleaseIterator);
-    if (!found || !frame.complete) throw broken("its first picture is missing");
+    if (!found || !frame.complete) throw broken("its first image is missing");
     const std::size_t size =
         std::size_t{4} * static_cast<std::size_t>(frame.width) * static_cast<std::size_t>(frame.height);
     std::vector<std::uint8_t> pixels(size);
     if (!WebPDecodeRGBAInto(frame.fragment.bytes, frame.fragment.size, pixels.data(), size, 4 * frame.width))
-        throw broken("its first picture is truncated or broken");
+        throw broken("its first image is truncated or broken");
 
     // An animation's first frame may cover a part of the canvas; the rest is transparent.
     DecodedPicture out;

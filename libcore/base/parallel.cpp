@@ -53,8 +53,8 @@ void parallel_blocks(int begin, int end, int grain, const std::function<void(int
 void parallel_blocks(int begin, int end, int grain, const std::function<void(int, int)>& body) {
     if (begin >= end) return;
     const int blocks = (end - begin + grain - 1) / grain;
-    // A thread that waits for these blocks must not begin a block of a loop around them: with a picture a
-    // block, it would hold several pictures at a time, one on top of the other.
+    // A thread that waits for these blocks must not begin a block of a loop around them: with an image a
+    // block, it would hold several images at a time, one on top of the other.
     tbb::this_task_arena::isolate([&] {
         tbb::parallel_for(0, blocks, [&](int b) {
             const int first = begin + b * grain;

@@ -179,7 +179,7 @@ class DecodeTable {
     std::array<float, 256> value_;
 };
 
-// Where a picture's colour is; grey counts as R = G = B.
+// Where an image's colour is; grey counts as R = G = B.
 struct ColorChannels {
     int r, g, b;
 
@@ -212,7 +212,7 @@ Gamut gamut_of(const Image& image, const Mask& mask) {
 FeatureImage luv_image(const Image& image, Range range) {
     const ColorChannels channels(image);
     if (!channels.any())
-        throw Error(ErrorCode::kUnsupported, "the picture has no colour: neither channels R, G, B nor Y");
+        throw Error(ErrorCode::kUnsupported, "the image has no colour: neither channels R, G, B nor Y");
     const DecodeTable decode(image.color_space);
     const bool tabulated = image.sample_type == SampleType::kUint8 && has_srgb_primaries(image.color_space);
     FeatureImage out{image.width, image.height, 3, parallel_vector<float>(image.pixel_count() * 3)};

@@ -56,14 +56,14 @@ inline constexpr float kMaxHdr = 1 << 20;
 /// fine enough for any eye, and coarse enough for quantized_color() to come back to the same bits.
 Vec3f quantized_hdr(const Vec3f& luv);
 
-/// kHdr for a picture of floats with linear light above 1 in some pixel of the mask, else kDisplay.
+/// kHdr for an image of floats with linear light above 1 in some pixel of the mask, else kDisplay.
 Gamut gamut_of(const Image& image, const Mask& mask = {});
 
 /// What luv_image does with linear light: nothing, or clip it to [0, 1] or to [0, kMaxHdr].
 enum class Range { kAny, kClipped, kHdr };
 
 /// Colour of every pixel as L*u*v*. One channel (grey) counts as R = G = B; alpha is ignored.
-/// Throws Error(kUnsupported) where the picture has neither R, G, B nor Y.
+/// Throws Error(kUnsupported) where the image has neither R, G, B nor Y.
 FeatureImage luv_image(const Image& image, Range range = Range::kAny);
 
 }  // namespace imgmesh

@@ -64,14 +64,14 @@ FeatureSpace feature_space(const Image& image, const std::vector<ChannelChoice>&
     check_channels(choices);
     for (const ChannelChoice& choice : choices)
         if (image.channel(choice.name) < 0)
-            throw Error(ErrorCode::kBadFile, cat("the picture has no channel ", choice.name, ", it has ",
+            throw Error(ErrorCode::kBadFile, cat("the image has no channel ", choice.name, ", it has ",
                                                  listed(image.channel_names)));
     const SplitNames split = split_names(choices.empty() ? image.channel_names : names_of(choices));
     FeatureSpace space;
     space.color = !split.color.empty();
     if (choices.empty() && !space.color)
         throw Error(ErrorCode::kUnsupported,
-                    cat("the picture has no colour, neither channels R, G, B nor Y, but ",
+                    cat("the image has no colour, neither channels R, G, B nor Y, but ",
                         listed(image.channel_names), "; channels can be chosen"));
     if (space.color) {
         space.gamut = gamut_of(image, mask);

@@ -10,7 +10,7 @@
 
 namespace imgmesh {
 
-/// The features of a picture in their order: L*, u*, v* of its colour, then any other channels, each times
+/// The features of an image in their order: L*, u*, v* of its colour, then any other channels, each times
 /// its weight.
 struct FeatureSpace {
     bool color = true;                   ///< the first three features are L*, u*, v*
@@ -34,7 +34,7 @@ struct SplitNames {
 };
 SplitNames split_names(const std::vector<std::string>& names);
 
-/// A channel of a picture as a feature.
+/// A channel of an image as a feature.
 struct ChannelChoice {
     std::string name;
     double weight = 1;  ///< of its values as they are, beside L*u*v* with L* from 0 to 100; > 0
@@ -44,17 +44,17 @@ struct ChannelChoice {
 /// different weights of R, G and B and more than kMaxFeatures features.
 void check_channels(const std::vector<ChannelChoice>& choices);
 
-/// The space of the chosen channels, of the picture's colour for none. What is outside `mask` does not count.
-/// Throws as check_channels() does, Error(kBadFile) for a channel that the picture does not have,
-/// kUnsupported for a picture without colour where none is chosen.
+/// The space of the chosen channels, of the image's colour for none. What is outside `mask` does not count.
+/// Throws as check_channels() does, Error(kBadFile) for a channel that the image does not have,
+/// kUnsupported for an image without colour where none is chosen.
 FeatureSpace feature_space(const Image& image, const std::vector<ChannelChoice>& choices,
                            const Mask& mask = {});
 
-/// The largest value of a auxiliary feature: the determinants of quadrics of a whole picture have room then
+/// The largest value of a auxiliary feature: the determinants of quadrics of a whole image have room then
 /// in floats.
 inline constexpr float kLargestFeature = 1e5f;
 
-/// The picture in `space`, which is of that picture: L*u*v* and the values of the auxiliary channels, each
+/// The image in `space`, which is of that image: L*u*v* and the values of the auxiliary channels, each
 /// times its weight; the latter 0 outside `mask`. Light is clipped to the gamut's range. Throws
 /// Error(kUnsupported) for a feature inside above kLargestFeature or not finite.
 FeatureImage extract_features(const Image& image, const FeatureSpace& space, const Mask& mask = {});

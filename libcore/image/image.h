@@ -1,5 +1,5 @@
-// Pictures as values. Said once, for all of imgmesh: pixel (0, 0) is the *centre* of the top-left pixel, x
-// grows to the right and y grows *down*; a picture of W x H pixels spans [0, W-1] x [0, H-1].
+// Images as values. Said once, for all of imgmesh: pixel (0, 0) is the *centre* of the top-left pixel, x
+// grows to the right and y grows *down*; an image of W x H pixels spans [0, W-1] x [0, H-1].
 #pragma once
 
 #include <cstdint>
@@ -20,20 +20,20 @@ struct PixelRect {
     int height() const { return bottom - top; }
 };
 
-/// How samples were stored in the file that a picture came from, so that results can be stored alike.
+/// How samples were stored in the file that an image came from, so that results can be stored alike.
 enum class SampleType { kUint8, kUint16, kHalf, kFloat };
 
-/// What the numbers of a colour picture mean: primaries and transfer curve.
+/// What the numbers of a colour image mean: primaries and transfer curve.
 enum class ColorSpace {
-    kSrgb,      ///< "sRGB": IEC 61966-2-1, the default for integer pictures
-    kLinear,    ///< "linear": sRGB/Rec.709 primaries, linear light; the default for half and float pictures
+    kSrgb,      ///< "sRGB": IEC 61966-2-1, the default for integer images
+    kLinear,    ///< "linear": sRGB/Rec.709 primaries, linear light; the default for half and float images
     kRec709,    ///< "Rec709": Rec.709 primaries and its camera transfer curve
     kGamma22,   ///< "Gamma2.2": sRGB primaries, pure power 2.2
     kAdobeRgb,  ///< "AdobeRGB": Adobe RGB (1998), power 563/256
     kDisplayP3  ///< "DisplayP3": P3 primaries, D65, sRGB curve
 };
 
-/// A picture: `channels` interleaved floats a pixel, rows from top to bottom. Integer samples are scaled to
+/// An image: `channels` interleaved floats a pixel, rows from top to bottom. Integer samples are scaled to
 /// [0, 1]; values are as encoded in `color_space`, not linearised. Alpha is not premultiplied.
 struct Image {
     int width = 0;
@@ -67,11 +67,11 @@ struct Image {
     int channel(const std::string& name) const;
 };
 
-/// An all-zero picture of that shape. channels 1, 2, 3, 4 are named Y / Y A / R G B / R G B A; others C0, C1,
+/// An all-zero image of that shape. channels 1, 2, 3, 4 are named Y / Y A / R G B / R G B A; others C0, C1,
 /// ...
 Image make_image(int width, int height, int channels);
 
-/// A picture in feature space: per pixel `channels` floats, for colour L*, u*, v* (L* in 0..100). This is
+/// An image in feature space: per pixel `channels` floats, for colour L*, u*, v* (L* in 0..100). This is
 /// what errors are measured in.
 struct FeatureImage {
     int width = 0;

@@ -1,4 +1,4 @@
-// The base mesh: the small triangle mesh that stands for a picture.
+// The base mesh: the small triangle mesh that stands for an image.
 #pragma once
 
 #include <cmath>

@@ -20,11 +20,11 @@ namespace imgmesh {
 struct GridMesh {
     FeatureImage feature;  ///< at the vertices: `data` goes on with those of `copies`; sides >= 2 but for
                            ///< masks
-    float origin_x = 0;    ///< position of vertex (0, 0) [pixels]: 0, or -0.5 where the picture's
+    float origin_x = 0;    ///< position of vertex (0, 0) [pixels]: 0, or -0.5 where the image's
     float origin_y = 0;    ///< side is one pixel, which then counts as a strip one pixel wide
     std::vector<std::uint8_t> diagonal;  ///< (W-1) x (H-1): 1 joins top left to bottom right, 0 the other two
 
-    Mask mask;               ///< empty() for the whole picture
+    Mask mask;               ///< empty() for the whole image
     std::vector<Id> copies;  ///< pixels of the vertices W * H, W * H + 1, ..., ascending
 
     bool falling_diagonal(int x, int y) const {
@@ -38,7 +38,7 @@ struct GridMesh {
 
 /// Splits each cell along the diagonal whose ends differ less in feature space (paper sec. 3.1); ties fall
 /// from top left to bottom right. A side of one pixel is doubled at -0.5 and +0.5, without a mask. Takes any
-/// size from 1 x 1. mask: empty(), or of the picture's size with a pixel inside.
+/// size from 1 x 1. mask: empty(), or of the image's size with a pixel inside.
 GridMesh grid_mesh(FeatureImage feature, Mask mask = {});
 
 /// A copy smoothed by `passes` of the separable [1 2 1] / 4 filter, borders repeated. Gradients are taken
@@ -46,16 +46,16 @@ GridMesh grid_mesh(FeatureImage feature, Mask mask = {});
 /// (docs/paper-map.md).
 FeatureImage smoothed(FeatureImage image, int passes);
 
-/// Part of a picture of features.
+/// Part of an image of features.
 struct FeaturePatch {
     FeatureImage image;
-    int left = 0, top = 0;  ///< of it in the picture
+    int left = 0, top = 0;  ///< of it in the image
 
-    /// In the picture's coordinates.
+    /// In the image's coordinates.
     const float* pixel(int x, int y) const { return image.pixel(x - left, y - top); }
 };
 
-/// smoothed() of the pixels in `rect` and, inside the picture, of those beside it, from the grid's features
+/// smoothed() of the pixels in `rect` and, inside the image, of those beside it, from the grid's features
 /// around them. With a mask the filter's weights outside count as none, so that colours outside do not bleed
 /// in.
 FeaturePatch smoothed_patch(const GridMesh& grid, int passes, const PixelRect& rect);

@@ -1,4 +1,4 @@
-// A picture as a pyramid of base meshes, each with its pixel map: what a container holds.
+// An image as a pyramid of base meshes, each with its pixel map: what a container holds.
 #pragma once
 
 #include <string>
@@ -23,12 +23,12 @@ struct Level {
     double error = 0;  ///< largest quadric error accepted by the collapse so far [feature units^2 px^2]
 };
 
-/// The picture that a MeshImage was made from.
+/// The image that a MeshImage was made from.
 struct SourceInfo {
     int width = 0;
     int height = 0;
     ColorSpace color_space =
-        ColorSpace::kSrgb;  ///< of the picture; meshes are in feature space (L*u*v*) all the same
+        ColorSpace::kSrgb;  ///< of the image; meshes are in feature space (L*u*v*) all the same
     SampleType sample_type = SampleType::kUint8;
     /// What meshes are made of, by the file's names: split_names() says which are the features' L*u*v*, the
     /// others are features as they are, in this order.

@@ -9,7 +9,7 @@
 namespace imgmesh {
 
 /// Sample positions are multiples of this step [pixels]: together with kPositionStep it makes every
-/// predicate of the rasteriser exact in double for pictures of up to 65536 pixels a side.
+/// predicate of the rasteriser exact in double for images of up to 65536 pixels a side.
 inline constexpr double kSampleStep = 1.0 / 16384.0;
 
 /// Points (x[i], y[j]) at which a mesh is sampled, in source pixels, never falling.
@@ -19,7 +19,7 @@ struct SampleGrid {
     double scale = 1;  ///< samples per pixel; x[i] is near (i + 0.5) / scale - 0.5
 };
 
-/// The centres of the pixels of a width x height picture drawn `scale` times as large: sample i stands at
+/// The centres of the pixels of a width x height image drawn `scale` times as large: sample i stands at
 /// (i + 0.5) / scale - 0.5, moved into the mesh's domain [0, width-1] (a side of one pixel: [-0.5, 0.5]).
 /// round(scale * side) samples a side, at least one. scale > 0; at 1 the samples are the pixel centres.
 SampleGrid sample_grid(int width, int height, double scale);

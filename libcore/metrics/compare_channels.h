@@ -1,4 +1,4 @@
-// The channels beside the colour of two pictures against each other.
+// The channels beside the colour of two images against each other.
 #pragma once
 
 #include <string>

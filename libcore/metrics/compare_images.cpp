@@ -16,7 +16,7 @@ namespace {
 
 constexpr int kGrainRows = 16;
 
-// The colours of a picture, whatever its channels are.
+// The colours of an image, whatever its channels are.
 class Colors {
   public:
     Colors(const Image& image, ColorSpace common)
@@ -26,7 +26,7 @@ class Colors {
           alpha_(image.channel("A")) {
         if (std::min({rgb_[0], rgb_[1], rgb_[2]}) < 0) rgb_.fill(image.channel("Y"));
         if (rgb_[0] < 0)
-            throw Error(ErrorCode::kUnsupported, "the picture has no colour: neither channels R, G, B nor Y");
+            throw Error(ErrorCode::kUnsupported, "the image has no colour: neither channels R, G, B nor Y");
     }
 
     bool transparent(int x, int y) const { return alpha_ >= 0 && image_.pixel(x, y)[alpha_] <= 0; }
@@ -35,7 +35,7 @@ class Colors {
         return {p[rgb_[0]], p[rgb_[1]], p[rgb_[2]]};
     }
     Vec3f linear(const Vec3f& encoded) const { return linear_from_encoded(image_.color_space, encoded); }
-    /// In the space that both pictures are compared in.
+    /// In the space that both images are compared in.
     Vec3f common(const Vec3f& encoded, const Vec3f& linear) const {
         return image_.color_space == common_ ? encoded : encoded_from_linear(common_, linear);
     }
@@ -56,7 +56,7 @@ struct RowSums {
     double rgb = 0, luv = 0, max_rgb = 0, max_luv = 0;
 };
 
-// Row y of both pictures: its sums, and its part of the errors and the lumas, which hold NaN so far.
+// Row y of both images: its sums, and its part of the errors and the lumas, which hold NaN so far.
 void compare_row(const Colors& a, const Colors& b, int width, int y, RowSums& sums, ImageDifference& result,
                  std::vector<float>& luma_a, std::vector<float>& luma_b) {
     std::size_t i = static_cast<std::size_t>(y) * static_cast<std::size_t>(width);
@@ -91,10 +91,10 @@ bool has_color(const Image& image) {
 
 ImageDifference compare_images(const Image& a, const Image& b) {
     if (a.width != b.width || a.height != b.height)
-        throw Error(ErrorCode::kUsage, cat("pictures differ in size: ", a.width, "x", a.height, " and ",
-                                           b.width, "x", b.height));
+        throw Error(ErrorCode::kUsage,
+                    cat("images differ in size: ", a.width, "x", a.height, " and ", b.width, "x", b.height));
     ImageDifference result;
-    // Differences of linear light say little about what one sees, and would not compare with other pictures'.
+    // Differences of linear light say little about what one sees, and would not compare with other images'.
     if (a.color_space == b.color_space && a.color_space != ColorSpace::kLinear)
         result.color_space = a.color_space;
     const Colors colors_a(a, result.color_space), colors_b(b, result.color_space);

@@ -1,4 +1,4 @@
-// Two pictures against each other, pixel by pixel.
+// Two images against each other, pixel by pixel.
 #pragma once
 
 #include <cstdint>
@@ -14,9 +14,9 @@ inline constexpr Bins kLuvErrorBins{0, 20, 20};
 inline constexpr Bins kCiede2000Bins{0, 10, 20};
 
 struct ImageDifference {
-    std::int64_t pixels = 0;       ///< compared: not wholly transparent (alpha 0) in either picture
+    std::int64_t pixels = 0;       ///< compared: not wholly transparent (alpha 0) in either image
     std::int64_t in_one_only = 0;  ///< pixels that are wholly transparent in one of the two
-    /// Of the RGB figures and SSIM: that of both pictures where they share one that is not linear, else sRGB.
+    /// Of the RGB figures and SSIM: that of both images where they share one that is not linear, else sRGB.
     ColorSpace color_space = ColorSpace::kSrgb;
 
     double rms_luv = 0;  ///< root mean square Euclidean distance in L*u*v* per pixel
@@ -32,10 +32,10 @@ struct ImageDifference {
 
 /// Grey counts as R = G = B; alpha only tells which pixels are compared. Symmetric in `a` and `b`; the
 /// figures are 0 where no pixel is compared. Same result for any number of threads. Throws Error(kUsage)
-/// where sizes differ, Error(kUnsupported) for a picture without colour.
+/// where sizes differ, Error(kUnsupported) for an image without colour.
 ImageDifference compare_images(const Image& a, const Image& b);
 
-/// Whether the picture has R, G and B, or Y.
+/// Whether the image has R, G and B, or Y.
 bool has_color(const Image& image);
 
 }  // namespace imgmesh

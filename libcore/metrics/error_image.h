@@ -1,4 +1,4 @@
-// Errors as a picture.
+// Errors as an image.
 #pragma once
 
 #include <span>
@@ -11,7 +11,7 @@ namespace imgmesh {
 /// white, with L* = 100 share, so that equal steps of error are equal steps of lightness.
 Vec3f error_color(double share);
 
-/// One value a pixel (width * height, rows from top to bottom) as an 8-bit sRGB picture: 0 is black, `range`
+/// One value a pixel (width * height, rows from top to bottom) as an 8-bit sRGB image: 0 is black, `range`
 /// and more is white, NaN (no value) is a dull green, which the scale does not have. range > 0.
 Image error_image(std::span<const float> error, int width, int height, double range);
 

@@ -1,4 +1,4 @@
-// Figures of merit: how good a mesh and a map are. Pictures against each other: compare_images.h.
+// Figures of merit: how good a mesh and a map are. Images against each other: compare_images.h.
 #pragma once
 
 #include <cstdint>
@@ -47,7 +47,7 @@ struct MapQuality {
     double max_displacement = 0;
 };
 
-/// Any map, valid or not. has_mask: pixels with face kNone are outside the picture, not unmapped.
+/// Any map, valid or not. has_mask: pixels with face kNone are outside the image, not unmapped.
 MapQuality map_quality(const BaseMesh& mesh, const PixelMap& map, bool has_mask = false);
 
 /// Where each pixel lands: positions of map.coords in `mesh`, width * height; NaN where the face is kNone or

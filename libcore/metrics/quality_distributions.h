@@ -28,7 +28,7 @@ MeshDistributions mesh_distributions(const BaseMesh& mesh);
 
 /// Over the pixels with a face of the mesh.
 struct MapDistributions {
-    Distribution jump;          ///< distance between the images of two 4-neighbours [px]; 1 in the picture
+    Distribution jump;          ///< distance between the images of two 4-neighbours [px]; 1 in the image
     Distribution displacement;  ///< distance between a pixel and its image [px]
     /// Pixels of a face's patch / area of the face [1/px^2], over the faces of positive area: how much the
     /// map stretches each face. 0 for a face without pixels; about 1 where the map is the identity.

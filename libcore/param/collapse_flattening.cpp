@@ -21,7 +21,7 @@ Vec2d position(const Vec2d& center, std::span<const Vec2d> ring, const FanPoint&
     return point.weight[0] * center + point.weight[1] * ring[k] + point.weight[2] * ring[next];
 }
 
-// Where a point is in the picture, y up as layouts have it.
+// Where a point is in the image, y up as layouts have it.
 Vec2d plane(const float* point) {
     return {double(point[0]), -double(point[1])};
 }

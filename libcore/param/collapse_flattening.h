@@ -24,7 +24,7 @@ struct StarPoint {
 /// Where m lies on one of the ends, its star keeps its triangles, and step 2 of the other star does
 /// everything.
 ///
-/// Where m is not inside the shared region, as in one collapse of twenty of a busy picture, and always where
+/// Where m is not inside the shared region, as in one collapse of twenty of a busy image, and always where
 /// only one end is on a border, no layout around m has the shared region. Instead of step 1 one end then
 /// moves to m: its star is laid out around m and cut anew from a fan of the end into a fan of m. Step 2 of
 /// the other star follows.

@@ -1,4 +1,4 @@
-// The vertex colours that reproduce a picture best.
+// The vertex colours that reproduce an image best.
 #pragma once
 
 #include "libcore/image/feature_space.h"
@@ -8,7 +8,7 @@
 
 namespace imgmesh {
 
-/// One way to draw the picture from the mesh, and how much its error counts.
+/// One way to draw the image from the mesh, and how much its error counts.
 struct FitTerm {
     const PixelMap* map;
     double weight;

@@ -17,7 +17,7 @@ struct FitParams {
     std::optional<WeightPrecision> bary;  ///< none: half where the map stays a bijection so, else float
     int rounds = 4;                       ///< of relaxation, colours refitted after each
     int sweeps = 4;                       ///< of relaxation a round
-    FeatureSpace space;                   ///< of the picture
+    FeatureSpace space;                   ///< of the image
     bool keep_colors = false;             ///< the mesh's features stay as they are, but for rounding
     double gouraud_share =
         0.1;  ///< how much the drawing without the map counts in the fit of colours, 0 to 1
@@ -27,9 +27,9 @@ struct FitParams {
 /// (unless params.keep_colors), colours rounded to what a container holds. The map is a bijection of the
 /// pixel grid onto the mesh.
 ///
-/// mesh     covers the picture's rectangle, or every pixel inside the mask; positions on kPositionStep
-/// mask     empty(), or of the picture's size: pixels outside get no face
-/// feature  the picture, params.space.features() channels
+/// mesh     covers the image's rectangle, or every pixel inside the mask; positions on kPositionStep
+/// mask     empty(), or of the image's size: pixels outside get no face
+/// feature  the image, params.space.features() channels
 /// Throws Error(kUnsupported) where params.bary is too coarse for the mesh's faces.
 PixelMap fit_map(BaseMesh& mesh, const FeatureImage& feature, const FitParams& params,
                  const Progress& progress = {}, const Mask& mask = {});

@@ -19,7 +19,7 @@ enum Freedom : std::uint8_t {
     kFree = 4      ///< inside the boundary, with triangles all around: its straight neighbours are inside too
 };
 
-/// Where each pixel of a W x H picture lies on the base mesh, while it is being moved.
+/// Where each pixel of a W x H image lies on the base mesh, while it is being moved.
 struct PixelEmbedding {
     int width = 0;
     int height = 0;
@@ -56,11 +56,11 @@ inline constexpr float kLeastMovingArea = 0.05f;
 /// `sweeps` of Gauss-Newton steps on sum |c(P) - c|^2 + mu |P - t|^2, c(P) the base mesh's colour at P, c the
 /// pixel's, t the pixel displaced like the mean of its four neighbours. Steps are at most half a pixel and
 /// are halved until all four triangles (both diagonals) of each 2x2 cell around the pixel keep
-/// kLeastMovingArea, so the map stays a bijection. Pixels of the picture's sides slide along them, corners
+/// kLeastMovingArea, so the map stays a bijection. Pixels of the image's sides slide along them, corners
 /// rest; of a masked image they do as `pixels.freedom` says, its triangles are those that have no pixel
 /// outside, and a pixel that would leave the mesh waits.
 ///
-/// feature    the picture, size of `pixels`; both sides at least 2
+/// feature    the image, size of `pixels`; both sides at least 2
 /// further    auxiliary_fields() where it has more than three features
 /// smoothness mu [feature^2 / px^2], > 0
 /// Pixels of one parity of (x, y) move at once and do not see each other: same result for any number of

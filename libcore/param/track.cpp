@@ -149,7 +149,7 @@ void PixelTracker::put_at(Id vertex, Id pixel) {
     put(pixel, face, weight);
 }
 
-// The face and the weights of moved_ by where each pixel is in the picture.
+// The face and the weights of moved_ by where each pixel is in the image.
 void PixelTracker::find_in_plane(const Star& star) {
     const auto place = [&](Id v) {
         const float* p = points_.data() + std::ptrdiff_t{v} * dimensions_;

@@ -15,7 +15,7 @@ class CollapseFlattening;
 
 /// The dense mesh that tracking starts from.
 struct TrackStart {
-    int width = 0, height = 0;    ///< of the picture
+    int width = 0, height = 0;    ///< of the image
     int channels = 0;             ///< features a vertex
     std::vector<Vec2f> position;  ///< of the vertices [pixels]
     std::vector<float> feature;   ///< of the vertices, size vertices * channels
@@ -28,7 +28,7 @@ struct TrackStart {
 
 enum class TrackSpace {
     kConformal,  ///< pixels move with the flattened rings (the paper)
-    kPlane       ///< every pixel stays at its own place in the picture; no collapse is forbidden
+    kPlane       ///< every pixel stays at its own place in the image; no collapse is forbidden
 };
 
 struct TrackParams {

@@ -61,8 +61,8 @@ std::int64_t largest_patch(const Level& level) {
 Mask checked(Mask mask, const Image& image) {
     if (mask.empty()) return mask;
     if (mask.width != image.width || mask.height != image.height)
-        throw Error(ErrorCode::kBadFile, cat("the mask is ", mask.width, "x", mask.height,
-                                             ", the picture is ", image.width, "x", image.height));
+        throw Error(ErrorCode::kBadFile, cat("the mask is ", mask.width, "x", mask.height, ", the image is ",
+                                             image.width, "x", image.height));
     const std::int64_t inside = mask.count();
     if (inside == 0) throw Error(ErrorCode::kUnsupported, "no pixel is inside the mask");
     if (inside == static_cast<std::int64_t>(image.pixel_count())) return {};
@@ -252,10 +252,10 @@ void build_to_rms(const Pipeline& pipeline, SimplifyParams& limits, MeshImage& m
 BuildResult build_mesh_image(const Image& image, const BuildParams& asked, const Progress& progress,
                              Mask mask) {
     check_params(asked);
-    if (image.width < 1 || image.height < 1) throw Error(ErrorCode::kUsage, "the picture is empty");
+    if (image.width < 1 || image.height < 1) throw Error(ErrorCode::kUsage, "the image is empty");
     for (const float sample : image.data)
         if (!std::isfinite(sample))
-            throw Error(ErrorCode::kUnsupported, "the picture has samples that are not finite");
+            throw Error(ErrorCode::kUnsupported, "the image has samples that are not finite");
     mask = checked(std::move(mask), image);
     Stopwatch watch;
     // What lies outside of the colours that a container holds could only mislead the fit: L*u*v* of negative

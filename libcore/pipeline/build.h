@@ -1,4 +1,4 @@
-// The whole pipeline on one screen: a picture in, a pyramid of base meshes with pixel maps out. Read this
+// The whole pipeline on one screen: an image in, a pyramid of base meshes with pixel maps out. Read this
 // first.
 #pragma once
 
@@ -56,7 +56,7 @@ inline constexpr int kUsualRefine = 2;
 inline constexpr double kUsualMapColorWeight = 1.0 / 20;  ///< of the relaxed map
 
 struct BuildParams {
-    std::vector<ChannelChoice> channels;  ///< the feature space; none: the picture's colour
+    std::vector<ChannelChoice> channels;  ///< the feature space; none: the image's colour
     StopParams stop;                      ///< of the finest level
     PyramidParams levels;
     Metric metric = Metric::kFlattened;
@@ -119,9 +119,9 @@ struct BuildResult {
     BuildReport report;
 };
 
-/// picture -> features -> dense mesh -> collapse -> base mesh -> refinement -> pixel map -> least-squares
+/// image -> features -> dense mesh -> collapse -> base mesh -> refinement -> pixel map -> least-squares
 /// features.
-/// Linear light below 0 is clipped to 0, and above 1 to 1 unless the picture is one of floats (gamut_of). A
+/// Linear light below 0 is clipped to 0, and above 1 to 1 unless the image is one of floats (gamut_of). A
 /// side of one pixel counts as a strip one pixel wide (docs/format.md). Alpha is ignored but for what `mask`
 /// has taken from it, and where it is chosen as a channel. Same result for any number of threads.
 ///
@@ -129,7 +129,7 @@ struct BuildResult {
 /// with
 ///        all pixels inside counts as none. Percents and shares are of the pixels inside.
 /// Throws Error(kUsage) for a parameter out of range, Error(kBadFile) for a mask of another size,
-/// Error(kUnsupported) for a mask without a pixel inside, and for a picture without colour channels or with
+/// Error(kUnsupported) for a mask without a pixel inside, and for an image without colour channels or with
 /// values that are not finite; and as feature_space() and extract_features() do.
 BuildResult build_mesh_image(const Image& image, const BuildParams& params, const Progress& progress = {},
                              Mask mask = {});

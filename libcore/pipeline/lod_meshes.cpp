@@ -8,7 +8,7 @@ namespace imgmesh {
 namespace {
 
 // Rungs are 1.5 % apart, up to a third more than what is asked for: what a prediction may be off. Of meshes
-// that are not small beside the picture they would take too much memory.
+// that are not small beside the image they would take too much memory.
 constexpr double kStep = 0.015, kReach = 1.35, kSmall = 1.0 / 16;
 
 std::int64_t count_of(const SimplifyResult& level) {

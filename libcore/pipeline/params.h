@@ -11,7 +11,7 @@ namespace imgmesh {
 /// Throws Error(kUsage) for the first parameter that is out of its range.
 void check_params(const BuildParams& params);
 
-/// The collapse's targets, finest level first, for a picture of that many pixels.
+/// The collapse's targets, finest level first, for an image of that many pixels.
 std::vector<SimplifyTarget> collapse_targets(const BuildParams& params, double pixels);
 
 /// The collapse's parameters, but for max_face_area.

@@ -6,7 +6,7 @@
 
 namespace imgmesh {
 
-/// `params.rounds` of refine() on a mesh and a picture in L*u*v*. For Objective::kRgb both are taken to sRGB,
+/// `params.rounds` of refine() on a mesh and an image in L*u*v*. For Objective::kRgb both are taken to sRGB,
 /// encoded, and the mesh back: the error is that of colours interpolated linearly in encoded sRGB. The mesh's
 /// colours end as what the objective wants.
 RefineReport refine_level(BaseMesh& mesh, const FeatureImage& feature, const Mask& mask, Objective objective,

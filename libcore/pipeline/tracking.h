@@ -11,10 +11,10 @@
 namespace imgmesh {
 
 /// For one run of simplify. Visits alone must not change the mesh: pixels then stay where they are in
-/// the picture, which forbids no collapse, and are counted wherever a collapse changes the face they lie in.
+/// the image, which forbids no collapse, and are counted wherever a collapse changes the face they lie in.
 class Tracking {
   public:
-    /// grid  the dense mesh of a picture of width x height pixels
+    /// grid  the dense mesh of an image of width x height pixels
     Tracking(const GridMesh& grid, int width, int height, const BuildParams& params);
     Tracking(const Tracking&) = delete;  // hooks() point here
     Tracking& operator=(const Tracking&) = delete;

@@ -66,7 +66,7 @@ void darken_borders(const PixelMap& map, int y, float* planes) {
     }
 }
 
-// Lines over a lightened picture. The edge nearest to a point is one of its own face's, and its distance
+// Lines over a lightened image. The edge nearest to a point is one of its own face's, and its distance
 // follows from the opposite corner's weight: weight * height over that edge.
 class WireRow {
   public:
@@ -82,13 +82,13 @@ class WireRow {
             heights_.push_back(Vec3d(area2 / sides[0], area2 / sides[1], area2 / sides[2]).cast<float>() *
                                float(scale));
         }
-        // Lines that would cover more than a third of the picture fade.
+        // Lines that would cover more than a third of the image fade.
         const double covered = length * scale * width_ / std::max(area * scale * scale, 1.0);
         opacity_ = static_cast<float>(std::min(0.9, 0.3 / covered));
     }
 
     void draw(const PixelMap& map, int y, float* planes) const {
-        constexpr float kLighter = 0.35f;  // share of white in the picture below
+        constexpr float kLighter = 0.35f;  // share of white in the image below
         const Vec3f white(100, 0, 0), line(15, -3, -15);
         const std::span<const PixelCoord> row = map.row(y);
         for (std::size_t x = 0; x < row.size(); ++x) {
@@ -142,11 +142,11 @@ double checked_scale(const SourceInfo& source, const DrawParams& params) {
     if (params.scale == 1) return 1;
     if (!may_scale(params.mode))
         throw Error(ErrorCode::kUsage,
-                    cat("scale is ", params.scale, ": this drawing has the picture's own size"));
+                    cat("scale is ", params.scale, ": this drawing has the image's own size"));
     if (!(params.scale > 0 && params.scale * source.width * params.scale * source.height <= kMaxPixels))
         throw Error(ErrorCode::kUsage,
                     cat("scale is ", params.scale, ", expected above 0 and at most ", kMaxPixels,
-                        " pixels of a ", source.width, "x", source.height, " picture"));
+                        " pixels of a ", source.width, "x", source.height, " image"));
     return params.scale;
 }
 

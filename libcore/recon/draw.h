@@ -1,4 +1,4 @@
-// Pictures of a level: its reconstruction, and drawings that show the mesh.
+// Images of a level: its reconstruction, and drawings that show the mesh.
 #pragma once
 
 #include <string>
@@ -19,7 +19,7 @@ enum class DrawMode {
 
 struct DrawParams {
     DrawMode mode = DrawMode::kMap;
-    double scale = 1;  ///< of the output against the picture; other than 1 only for gouraud, wire and flat
+    double scale = 1;  ///< of the output against the image; other than 1 only for gouraud, wire and flat
 };
 
 /// Draws level `level_index`. The result has the source's sample type and colour space (linear where light
@@ -35,7 +35,7 @@ Image draw(const MeshImage& mesh_image, int level_index, const DrawParams& param
 double checked_scale(const SourceInfo& source, const DrawParams& params);
 
 /// The wire drawing (the edges alone, on nothing) or the flat drawing as an SVG document in sRGB. One unit is
-/// a source pixel; the picture's sides lie half a pixel outside the outermost pixel centres, as in draw().
+/// a source pixel; the image's sides lie half a pixel outside the outermost pixel centres, as in draw().
 /// Throws as draw() does, Error(kUsage) for another mode.
 std::string draw_svg(const MeshImage& mesh_image, int level_index, DrawMode mode);
 

@@ -16,7 +16,7 @@ void append_point(std::string& out, char command, const Vec2d& p);
 /// A colour in L*u*v* as "#rrggbb" in sRGB.
 void append_hex(std::string& out, const Vec3f& luv);
 
-/// The vertices of `mesh`; those on the picture's sides move out by half a pixel, to where the outermost
+/// The vertices of `mesh`; those on the image's sides move out by half a pixel, to where the outermost
 /// pixels end.
 std::vector<Vec2d> outward(const BaseMesh& mesh, const SourceInfo& source);
 

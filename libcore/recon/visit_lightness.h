@@ -1,4 +1,4 @@
-// The visit map as a grey picture (paper fig. 2).
+// The visit map as a grey image (paper fig. 2).
 #pragma once
 
 #include <vector>

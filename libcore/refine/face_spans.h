@@ -36,7 +36,7 @@ struct SpanEdge {
 ///
 /// A pixel whose centre lies on an edge belongs to the face that its centre would be in if it lay a trifle
 /// to the right and, far less, down; in the last column to the left, in the last row up. So each pixel of a
-/// mesh that covers the whole width x height picture is in exactly one face.
+/// mesh that covers the whole width x height image is in exactly one face.
 template <class Row>
 IMGMESH_INLINE void for_each_span(const Vec2f& a, const Vec2f& b, const Vec2f& c, int width, int height,
                                   Row&& row) {

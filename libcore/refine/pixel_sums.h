@@ -1,4 +1,4 @@
-// Sums over the pixels of a face: how far its drawing is from a picture, and where less error lies.
+// Sums over the pixels of a face: how far its drawing is from an image, and where less error lies.
 #pragma once
 
 #include <array>
@@ -10,9 +10,9 @@
 
 namespace imgmesh {
 
-/// A picture of three channels as planes, each padded so that eight floats can be read at any pixel.
+/// An image of three channels as planes, each padded so that eight floats can be read at any pixel.
 struct ImagePlanes {
-    /// Pixels outside `mask`, which is empty() or of the picture's size, count nowhere.
+    /// Pixels outside `mask`, which is empty() or of the image's size, count nowhere.
     explicit ImagePlanes(const FeatureImage& picture, const Mask& mask = {});
     int width, height;
     std::vector<float> inside;  ///< 1 inside the mask and 0 outside, padded too; empty without a mask
@@ -25,7 +25,7 @@ struct Corner {
     Vec3f color;
 };
 
-/// With e = drawing - picture and w the first corner's weight, summed over the pixels of a face.
+/// With e = drawing - image and w the first corner's weight, summed over the pixels of a face.
 struct CornerSums {
     double ee = 0;             ///< |e|^2: the squared error
     double ww = 0;             ///< w^2

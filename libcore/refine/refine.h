@@ -1,4 +1,4 @@
-// Refinement: the base mesh's vertices, edges and colours adjusted to the picture's own pixels.
+// Refinement: the base mesh's vertices, edges and colours adjusted to the image's own pixels.
 #pragma once
 
 #include <cstdint>
@@ -41,8 +41,8 @@ struct RefineReport {
 /// mesh     any boundary, three channels, positions on kPositionStep; corners and boundaries other than
 /// straight
 ///          sides of the bounding box stay, vertices of such sides slide
-/// picture  what to draw, in the space of mesh.feature; pixels outside the mesh do not count,
-///          nor do those outside `mask`, which is empty() or of the picture's size
+/// image  what to draw, in the space of mesh.feature; pixels outside the mesh do not count,
+///          nor do those outside `mask`, which is empty() or of the image's size
 ///
 /// Source: docs/decisions/0012-refinement.md. Same result for any number of threads.
 RefineReport refine(BaseMesh& mesh, const FeatureImage& picture, const RefineParams& params,

@@ -7,7 +7,7 @@
 
 namespace imgmesh {
 
-/// A picture cut into cells: sets of pixels, each 4-connected and inside one patch. A patch is one cell
+/// An image cut into cells: sets of pixels, each 4-connected and inside one patch. A patch is one cell
 /// unless the map tears it into several, so that regions, which are joined cells, are always connected.
 struct Cells {
     int width = 0;

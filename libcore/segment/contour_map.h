@@ -1,4 +1,4 @@
-// The ultrametric contour map: one picture that holds the segmentations at all thresholds.
+// The ultrametric contour map: one image that holds the segmentations at all thresholds.
 #pragma once
 
 #include <vector>
@@ -7,7 +7,7 @@
 
 namespace imgmesh {
 
-/// Heights of contours on a grid of twice the picture's resolution, as Arbelaez et al. (TPAMI 2011) store it:
+/// Heights of contours on a grid of twice the image's resolution, as Arbelaez et al. (TPAMI 2011) store it:
 /// (2W+1) x (2H+1) values, pixel (x, y) at (2x+1, 2y+1), what is between two 4-neighbours halfway between
 /// them.
 ///

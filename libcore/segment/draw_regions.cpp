@@ -11,7 +11,7 @@ namespace {
 
 constexpr int kGrainRows = 16;
 
-// A strong yellow: rare in pictures, lighter than nearly all of them, and seen beside any other hue.
+// A strong yellow: rare in images, lighter than nearly all of them, and seen beside any other hue.
 constexpr float kLine[3] = {93, 10, 98};
 
 Image encode(const LabelImage& labels, const SourceInfo& source,

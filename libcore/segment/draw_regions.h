@@ -1,4 +1,4 @@
-// Pictures of a segmentation.
+// Images of a segmentation.
 #pragma once
 
 #include "libcore/image/image.h"

@@ -1,4 +1,4 @@
-// A picture cut into regions, and what is to be said about each of them.
+// An image cut into regions, and what is to be said about each of them.
 #pragma once
 
 #include <array>
@@ -32,7 +32,7 @@ struct RegionFacts {
     std::vector<std::pair<Id, std::int64_t>> neighbors;  ///< region, pairs of pixels across; by region
 };
 
-/// Of every region. picture: L*u*v*, of the labels' size.
+/// Of every region. image: L*u*v*, of the labels' size.
 std::vector<RegionFacts> region_facts(const LabelImage& labels, const FeatureImage& picture);
 
 }  // namespace imgmesh

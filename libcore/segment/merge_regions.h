@@ -16,7 +16,7 @@ struct Merge {
     float height = 0;  ///< threshold above which the two are one: the largest distance merged so far
 };
 
-/// All merges of a picture's cells, in order; heights never fall. Cells are connected where the picture is,
+/// All merges of an image's cells, in order; heights never fall. Cells are connected where the image is,
 /// so a mask of k islands leaves k regions in the end.
 struct Hierarchy {
     std::size_t cells = 0;

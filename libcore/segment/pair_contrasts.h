@@ -1,4 +1,4 @@
-// How much the picture changes between neighbouring pixels, seen at several sizes: the evidence for a
+// How much the image changes between neighbouring pixels, seen at several sizes: the evidence for a
 // contour.
 #pragma once
 

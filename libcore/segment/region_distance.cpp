@@ -8,7 +8,7 @@
 namespace imgmesh {
 namespace {
 
-// Chosen on ten pictures, and within noise of the best there and on ten others; each may change by a third
+// Chosen on ten images, and within noise of the best there and on ten others; each may change by a third
 // without harm (docs/decisions/0009-segmentation.md has the figures).
 constexpr double kBorderShare = 0.7;    // of the contrast along the border, against what the regions are
 constexpr double kSizeExponent = 0.2;   // small regions are details of what surrounds them

@@ -15,7 +15,7 @@ RegionDistance paper_distance();
 ///     m = 0.7 (mean contrast of the border) + 0.3 (1 - exp(-population distance of the regions))
 ///
 /// with h = a b / (a + b) of the regions' pixels a and b, s the lesser of them, and l the border's length.
-/// `pixels` is the number of pixels in all. Two plain halves of a square picture are as far apart as their
+/// `pixels` is the number of pixels in all. Two plain halves of a square image are as far apart as their
 /// colours are; small regions and long borders count less. Figures: docs/decisions/0009-segmentation.md.
 RegionDistance contour_distance(double pixels);
 

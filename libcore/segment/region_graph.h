@@ -48,7 +48,7 @@ struct PairContrasts {
     std::vector<float> down;
 };
 
-/// Sums of every cell and border. picture: L*u*v*, of the cells' size.
+/// Sums of every cell and border. image: L*u*v*, of the cells' size.
 RegionGraph region_graph(const Cells& cells, const PixelMap& map, const FeatureImage& picture,
                          const PairContrasts& contrasts);
 

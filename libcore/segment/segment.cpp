@@ -23,11 +23,11 @@ void check(const Level& level, const FeatureImage& picture, const SegmentParams&
         fail(cat("compactness is ", params.compactness, ", expected at least 0"));
     if (params.min_size < 1) fail(cat("the least size is ", params.min_size, ", expected at least 1"));
     if (picture.width != level.map.width || picture.height != level.map.height)
-        fail(cat("the picture has ", picture.width, "x", picture.height, " pixels, the container ",
+        fail(cat("the image has ", picture.width, "x", picture.height, " pixels, the container ",
                  level.map.width, "x", level.map.height));
     if (picture.channels != 3)
         throw Error(ErrorCode::kUnsupported,
-                    cat("the picture has ", picture.channels, " channels, expected L*, u*, v*"));
+                    cat("the image has ", picture.channels, " channels, expected L*, u*, v*"));
 }
 
 std::size_t merges_to_count(const Hierarchy& hierarchy, std::int64_t count, const std::string& what) {

@@ -1,4 +1,4 @@
-// Segmentation from end to end: a level of a container and a picture in, labelled regions out.
+// Segmentation from end to end: a level of a container and an image in, labelled regions out.
 #pragma once
 
 #include <cstdint>
@@ -32,16 +32,16 @@ struct Segmentation {
     LabelImage labels;  ///< after so many merges
 };
 
-/// The picture of a level as seen through its map: L*u*v*, zero outside the mask. Throws Error(kUnsupported)
+/// The image of a level as seen through its map: L*u*v*, zero outside the mask. Throws Error(kUnsupported)
 /// for a mesh without colour.
 FeatureImage reconstruct_luv(const Level& level);
 
-/// Patches, cut where they are not connected, merge until `params` say stop. picture: L*u*v*, of the map's
+/// Patches, cut where they are not connected, merge until `params` say stop. image: L*u*v*, of the map's
 /// size. Same result for any number of threads.
 ///
-/// Throws Error(kUsage) for a parameter out of range, a picture of another size, more regions than there are
+/// Throws Error(kUsage) for a parameter out of range, an image of another size, more regions than there are
 /// connected parts of patches (of that least size), or fewer than the mask has islands; Error(kUnsupported)
-/// for a picture without colour or a mask without a pixel.
+/// for an image without colour or a mask without a pixel.
 Segmentation segment(const Level& level, const FeatureImage& picture, const SegmentParams& params,
                      const Progress& progress = {});
 

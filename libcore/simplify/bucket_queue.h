@@ -20,7 +20,7 @@ struct QueuedEdge {
 
 /// Files edges by cost >= 0, in buckets 1/8 of an octave wide, and hands out the one filed first of the
 /// lowest bucket. (An exact order changes the result's error by less than 0.5 %: docs/paper-map.md. First in,
-/// first out, so that edges of one cost collapse evenly over the picture.)
+/// first out, so that edges of one cost collapse evenly over the image.)
 class BucketQueue {
   public:
     static constexpr int bucket_of(float cost) {

@@ -19,7 +19,7 @@ inline constexpr float kBoundaryBand = 1.0f;
 /// - the mesh only grows (a progressive hull), so that it always covers every pixel inside;
 /// - the part of the dense boundary that the new edges stand for stays within kBoundaryBand of them;
 /// - what is added touches no other edge of a boundary, so that parts of the mesh never overlap;
-/// - nothing leaves the picture.
+/// - nothing leaves the image.
 /// All of it is decided exactly, on the kPositionStep grid. Vertices on a boundary are named i and j as in
 /// merge_rings(); `rings` is the mesh before the merge.
 class MaskBoundary {

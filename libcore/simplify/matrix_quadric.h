@@ -13,7 +13,7 @@
 namespace imgmesh {
 
 /// Q(v) = w'Aw + 2 b'w + c, w = v - origin, for v = (x, y, features). The origin stays near the vertex: about
-/// the picture's corner, w'Aw and c would be large and nearly cancel. 8 (N^2 + 2 N) bytes and a few, N = 2 +
+/// the image's corner, w'Aw and c would be large and nearly cancel. 8 (N^2 + 2 N) bytes and a few, N = 2 +
 /// C.
 template <int C>
 struct MatrixQuadric {

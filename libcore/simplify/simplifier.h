@@ -53,7 +53,7 @@ class Simplifier {
                 continue;
             }
             if (done() || (part.vertices == 0 && part.postponed == kNever)) break;
-            // Where nothing has changed, windows below the cheapest edge would stay empty: a flat picture's
+            // Where nothing has changed, windows below the cheapest edge would stay empty: a flat image's
             // first window is far below what the rest costs.
             do threshold_ *= kWindow;
             while (part.vertices == 0 && threshold_ <= part.postponed);
@@ -189,7 +189,7 @@ class Simplifier {
         next_rebuild_ = vertices_ / 2;
     }
 
-    // The costs of edges of some vertices all over the picture; of those that may collapse, in ascending
+    // The costs of edges of some vertices all over the image; of those that may collapse, in ascending
     // order.
     std::vector<float> sampled_costs() const {
         EdgeCollapser<Q> engine(const_cast<QuadricMesh<Q>&>(mesh_), rules_);

@@ -69,7 +69,7 @@ struct SimplifyHooks {
 };
 
 /// Collapses edges until a limit is reached or no edge may go. Every collapse keeps the mesh a triangulation
-/// of the picture's rectangle: no face flips or degenerates, corners stay, sides stay straight. Vertices sit
+/// of the image's rectangle: no face flips or degenerates, corners stay, sides stay straight. Vertices sit
 /// at their quadric's minimiser wherever that is legal, else at the edge's midpoint or an end, whichever
 /// costs least.
 ///

@@ -1,4 +1,4 @@
-// The dense mesh of one small tile of the picture, which the collapse begins with.
+// The dense mesh of one small tile of the image, which the collapse begins with.
 #pragma once
 
 #include <algorithm>

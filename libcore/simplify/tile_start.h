@@ -1,4 +1,4 @@
-// The first part of the collapse, which takes most vertices away: small tiles of the picture by themselves.
+// The first part of the collapse, which takes most vertices away: small tiles of the image by themselves.
 // The dense mesh, of which they are parts, never exists as a whole.
 #pragma once
 
@@ -110,7 +110,7 @@ inline void join(const StartTiles& tiles, const std::vector<Id>& first, const st
     });
 }
 
-// Tiles all over the picture.
+// Tiles all over the image.
 inline std::vector<int> some_tiles(const StartTiles& tiles) {
     const int count = std::clamp(tiles.count() / 32, 1, 16);
     std::vector<int> some;

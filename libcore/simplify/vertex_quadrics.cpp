@@ -181,7 +181,7 @@ IMGMESH_INLINE void eight_quadrics(const GridMesh& grid, const FeaturePatch& gra
     }
 }
 
-// Pixels [x, right) of row y as long as there are eight of them inside the picture; returns where it stopped.
+// Pixels [x, right) of row y as long as there are eight of them inside the image; returns where it stopped.
 IMGMESH_INLINE int row_of_eights(const GridMesh& grid, const FeaturePatch& gradients, float lambda, int x,
                                  int y, int right, Quadric<3>* out) {
     for (; x + 8 <= right && x + 8 < grid.feature.width; x += 8, out += 8)

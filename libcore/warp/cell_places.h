@@ -1,4 +1,4 @@
-// Where the pixels of a warped picture come to lie in the output, as whole numbers. Internal to warp/.
+// Where the pixels of a warped image come to lie in the output, as whole numbers. Internal to warp/.
 #pragma once
 
 #include <cstdint>
@@ -10,17 +10,17 @@ namespace imgmesh {
 
 enum class Cover : std::uint8_t;
 
-/// A row of places, from the rim left of the picture to the rim right of it: width + 2.
+/// A row of places, from the rim left of the image to the rim right of it: width + 2.
 struct PlaceRow {
     std::vector<std::int32_t> x, y;
 };
 
-/// The places of all pixels, and of a rim one pixel wide around the picture that moves as the pixels beside
+/// The places of all pixels, and of a rim one pixel wide around the image that moves as the pixels beside
 /// it do; rows and columns count from -1 there. `field` must live as long.
 class CellPlaces {
   public:
     /// Places are multiples of 1/4096 output pixel: 16-bit samples of the steepest edge change by 16 codes in
-    /// one. They are kept within 2^17 pixels of the origin, beyond any picture, so that products of their
+    /// one. They are kept within 2^17 pixels of the origin, beyond any image, so that products of their
     /// differences fit 64 bits.
     static constexpr int kBits = 12;
     static constexpr int kOne = 1 << kBits;

@@ -1,8 +1,8 @@
-// Which point of a warped picture each output pixel shows: the cells between four pixels drawn at their new
+// Which point of a warped image each output pixel shows: the cells between four pixels drawn at their new
 // places, two triangles each. Internal to warp/: a template over what becomes of the points.
 //
 // Places are whole multiples of 1/4096 output pixel, so which triangle covers an output pixel's centre is
-// decided exactly: every centre inside the warped picture by one triangle, where nothing folds, and never by
+// decided exactly: every centre inside the warped image by one triangle, where nothing folds, and never by
 // none. A centre on an edge belongs to the triangle that has the point a hair to the right of it (then
 // below).
 #pragma once
@@ -17,7 +17,7 @@ namespace imgmesh {
 
 /// A point of the source inside a cell.
 struct CellPoint {
-    int x, y;      ///< the cell's top left pixel; -1 on the rim that surrounds the picture
+    int x, y;      ///< the cell's top left pixel; -1 on the rim that surrounds the image
     float fx, fy;  ///< the point is (x + fx, y + fy); in [0, 1]
     /// How the point changes per output pixel to the right (dx) and down (dy) [source pixels].
     Vec2f dx, dy;

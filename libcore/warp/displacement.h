@@ -11,11 +11,11 @@ namespace imgmesh {
 
 enum class PixelRole : std::uint8_t {
     kOutside,  ///< not drawn
-    kGhost,    ///< beside the picture's boundary: moves along with it, so that it has a soft edge
+    kGhost,    ///< beside the image's boundary: moves along with it, so that it has a soft edge
     kInside    ///< drawn
 };
 
-/// The forward displacement of every pixel of a W x H picture.
+/// The forward displacement of every pixel of a W x H image.
 struct DisplacementField {
     int width = 0;
     int height = 0;
@@ -37,7 +37,7 @@ struct DisplacementField {
 DisplacementField displacement_field(const MeshImage& mesh_image, const std::vector<VertexMoves>& moves);
 
 /// Gives pixels outside a way to go, ring by ring from the inside outwards: each the mean of its (up to
-/// eight) neighbours that have one. One ring are ghosts; a pixel outside that the picture's own alpha `alpha`
+/// eight) neighbours that have one. One ring are ghosts; a pixel outside that the image's own alpha `alpha`
 /// (size W * H, or empty) makes neither clear nor opaque belongs to a soft boundary, becomes kInside, and the
 /// ring goes around it. The alpha of pixels becomes 0 where they stay outside. No effect without a mask.
 void extend_outside(DisplacementField& field, std::vector<float>& alpha);

@@ -23,7 +23,7 @@ inline bool is_plain(const CellPoint& p) {
 // Places are rounded, so a share this close to the whole is the whole.
 inline constexpr float kWhole = 1 - 1.0f / 1024;
 
-// The share of an output pixel around the point that lies inside the picture's sides: 1 inside of sides that
+// The share of an output pixel around the point that lies inside the image's sides: 1 inside of sides that
 // do not move across themselves; exact for sides along the output's axes. `scale` is output pixels per source
 // pixel: what the rim, which moves as the pixels beside it do, measures across, however the cells inside of
 // it are distorted.
@@ -85,7 +85,7 @@ void for_points(const DisplacementField& field, const CellPoint& p, const Visit&
     const Vec2f high(static_cast<float>(field.width), static_cast<float>(field.height));
     for (int j = 0; j < m; ++j)
         for (int i = 0; i < n; ++i) {
-            // From the cell, so that coordinates keep their precision in large pictures.
+            // From the cell, so that coordinates keep their precision in large images.
             const Vec2f at = Vec2f(p.fx, p.fy) +
                              ((static_cast<float>(i) + 0.5f) / static_cast<float>(n) - 0.5f) * p.dx +
                              ((static_cast<float>(j) + 0.5f) / static_cast<float>(m) - 0.5f) * p.dy;

@@ -123,7 +123,7 @@ class Axis {
     Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor_;
 };
 
-// Where positions in a picture's side lie in the drawing's.
+// Where positions in an image's side lie in the drawing's.
 double drawn(double at, int side, int size) {
     return (at + 0.5) * size / side - 0.5;
 }

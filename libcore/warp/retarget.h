@@ -1,4 +1,4 @@
-// Another shape for a picture, at the expense of where there is little to see.
+// Another shape for an image, at the expense of where there is little to see.
 #pragma once
 
 #include "libcore/mesh/base_mesh.h"
@@ -7,7 +7,7 @@
 
 namespace imgmesh {
 
-/// Moves of the vertices of a mesh over a whole width x height picture, for a drawing of `size`, so that
+/// Moves of the vertices of a mesh over a whole width x height image, for a drawing of `size`, so that
 /// small faces, which the collapse leaves where there is detail, keep their shape, and large ones take the
 /// change of proportions. Sides stay sides; no face turns over.
 ///
@@ -23,7 +23,7 @@ VertexMoves retarget_moves(const BaseMesh& mesh, int width, int height, const Ou
 /// Error(kUnsupported) for a masked image, which has no sides.
 DisplacementField retarget_field(const MeshImage& mesh_image, const OutputSize& size);
 
-/// The sum of two fields of one picture.
+/// The sum of two fields of one image.
 void add_field(DisplacementField& sum, const DisplacementField& field);
 
 }  // namespace imgmesh

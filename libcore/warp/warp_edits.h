@@ -45,7 +45,7 @@ struct WarpEdit {
     std::string where;                  ///< how messages call it, e.g. "edits.json: /edits/0"
 };
 
-/// All edits count from the unedited picture and add up, whatever their levels and their order.
+/// All edits count from the unedited image and add up, whatever their levels and their order.
 using WarpEdits = std::vector<WarpEdit>;
 
 }  // namespace imgmesh

@@ -23,7 +23,7 @@ OutputSize checked_size(const DisplacementField& field, OutputSize size) {
     return size;
 }
 
-// Draws into rows of pixels of kChannels (0: as many as the picture has).
+// Draws into rows of pixels of kChannels (0: as many as the image has).
 template <int kChannels>
 class ImageSink {
   public:
@@ -182,7 +182,7 @@ void draw(const Image& image, const DisplacementField& field, const std::vector<
     raster_cells(CellPlaces(field, out.width, out.height), out.width, out.height, sink);
 }
 
-// The picture as it is; what its own alpha leaves opaque outside the mask becomes clear.
+// The image as it is; what its own alpha leaves opaque outside the mask becomes clear.
 Image cut_out(const Image& image, const DisplacementField& field) {
     Image out = image;
     if (!field.has_mask) return out;
@@ -213,7 +213,7 @@ std::vector<float> alpha_of(const Image& image) {
 
 Image warp_image(const Image& image, const DisplacementField& given, const OutputSize& wanted) {
     if (image.width != given.width || image.height != given.height)
-        throw Error(ErrorCode::kBadFile, cat("the picture has ", image.width, "x", image.height,
+        throw Error(ErrorCode::kBadFile, cat("the image has ", image.width, "x", image.height,
                                              " pixels, the pixel map ", given.width, "x", given.height));
     const OutputSize size = checked_size(given, wanted);
     DisplacementField extended;

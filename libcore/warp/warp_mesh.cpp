@@ -33,7 +33,7 @@ std::size_t nearest_pixel(const PixelMap& map, const Vec2f& p) {
 
 // Adds what moving the vertices of `level` does at the places `at`: linear over each of its faces, in the
 // face that covers the pixel nearest to the place. (Through the pixel map it would be what pixels do, which
-// follow edges of the picture closely and so change too fast for vertices: fine faces would turn over where
+// follow edges of the image closely and so change too fast for vertices: fine faces would turn over where
 // coarse ones are merely stretched.)
 void add_moves(const Level& level, const VertexMoves& moves, const std::vector<Vec2f>& at,
                std::vector<Vec2f>& sum) {

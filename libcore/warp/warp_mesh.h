@@ -1,4 +1,4 @@
-// The warped picture as meshes.
+// The warped image as meshes.
 #pragma once
 
 #include "libcore/mesh/mesh_image.h"
@@ -7,7 +7,7 @@
 namespace imgmesh {
 
 /// `mesh_image` with its vertices moved, rounded to kPositionStep; the pixel maps stay as they are, so the
-/// picture that they stand for is still the unwarped one, while the meshes are the warped one's.
+/// image that they stand for is still the unwarped one, while the meshes are the warped one's.
 ///
 /// A vertex moves as its level's edits have it, plus as the meshes of the other levels move at its place,
 /// where their vertices move. `parameters` get "warp": true.

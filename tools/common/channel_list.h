@@ -1,4 +1,4 @@
-// --channels: which channels of a picture are its features.
+// --channels: which channels of an image are its features.
 #pragma once
 
 #include <vector>
@@ -8,7 +8,7 @@
 
 namespace imgmesh {
 
-/// A list of NAME or NAME:WEIGHT. What is wrong without any picture (check_channels) is Error(kUsage) at
+/// A list of NAME or NAME:WEIGHT. What is wrong without any image (check_channels) is Error(kUsage) at
 /// once.
 CLI::Option* add_channels(CLI::App& app, std::vector<ChannelChoice>& channels);
 

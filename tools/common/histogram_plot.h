@@ -1,4 +1,4 @@
-// Histograms as a drawing of boxes and words, which becomes an SVG or a picture.
+// Histograms as a drawing of boxes and words, which becomes an SVG or an image.
 #pragma once
 
 #include <cstddef>
@@ -42,7 +42,7 @@ Plot histogram_plot(const std::vector<std::string>& names, const std::vector<His
 /// The drawing as an SVG document.
 std::string plot_svg(const Plot& plot);
 
-/// The boxes of the drawing, `scale` times as large, as an RGB picture in sRGB; and the labels for it.
+/// The boxes of the drawing, `scale` times as large, as an RGB image in sRGB; and the labels for it.
 Image plot_boxes(const Plot& plot, int scale);
 std::vector<TextLabel> plot_labels(const Plot& plot, int scale);
 

@@ -19,7 +19,7 @@ void add_container_limits(CLI::App& app, ContainerLimits& limits) {
     };
     const std::int64_t any = std::numeric_limits<std::int64_t>::max();
     add("--max-bytes", limits.max_bytes, any, "Refuse a container of more bytes, all files together");
-    add("--max-pixels", limits.max_pixels, any, "Refuse a larger picture");
+    add("--max-pixels", limits.max_pixels, any, "Refuse a larger image");
     add("--max-faces", limits.max_faces, any, "Refuse a mesh of more faces");
     add("--max-levels", limits.max_levels, 1000, "Refuse more levels");
     // The parser's result is destroyed level by level on the stack.
