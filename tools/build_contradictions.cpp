@@ -28,7 +28,7 @@ std::string typed_rounds(const CLI::App& app, std::int64_t rounds) {
 }
 
 [[noreturn]] void refuse(const std::string& one, const std::string& other, const std::string& why) {
-    throw Error(ErrorCode::kUsage, cat(one, " and ", other, ": ", why));
+    throw Error(ErrorKind::kBadArgument, cat(one, " and ", other, ": ", why));
 }
 
 }  // namespace
@@ -59,7 +59,7 @@ void check_contradictions(const CLI::App& app, const BuildParams& p) {
         refuse(colors, typed(app, {"--objective", "--preset"}), "that objective fits colours of its own");
     const double lambda = p.geometry_weight / p.color_weight;
     if (!(lambda >= 1e-9 && lambda <= 1e9))
-        throw Error(ErrorCode::kUsage,
+        throw Error(ErrorKind::kBadArgument,
                     cat(typed(app, {"--geometry-weight", "--color-weight"}),
                         ": geometry weight / color weight is ", lambda, ", expected 1e-9 to 1e9"));
     try {
@@ -67,7 +67,7 @@ void check_contradictions(const CLI::App& app, const BuildParams& p) {
         levels.levels = p.levels;
         check_params(levels);
     } catch (const Error& e) {
-        throw Error(e.code(),
+        throw Error(e.kind(),
                     cat(typed(app, {"--level-faces", "--level-errors", "--levels"}), ": ", e.what()));
     }
     check_params(p);

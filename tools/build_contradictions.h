@@ -7,8 +7,8 @@
 
 namespace imgmesh {
 
-/// Throws Error(kUsage), in one line with the options as given and the reason, where `params`, which come
-/// from the parsed options of `app`, exclude each other or are outside their range together.
+/// Throws Error(kBadArgument), in one line with the options as given and the reason, where `params`, which
+/// come from the parsed options of `app`, exclude each other or are outside their range together.
 void check_contradictions(const CLI::App& app, const BuildParams& params);
 
 }  // namespace imgmesh

@@ -175,7 +175,7 @@ void add_options(CLI::App& app, Options& o) {
     add_value(
         app, "--mask", "FILE",
         [&o](const std::string& text) {
-            if (text.empty()) throw Error(ErrorCode::kUsage, "--mask '': expected a file name");
+            if (text.empty()) throw Error(ErrorKind::kBadArgument, "--mask '': expected a file name");
             o.mask = text;
         },
         "Image of the images' size: only pixels that its alpha, or else its light, shows are meshed, "
@@ -185,18 +185,18 @@ void add_options(CLI::App& app, Options& o) {
         cat("Alpha, or light of a mask, from which on a pixel is meshed (default ", o.alpha_threshold, ")"));
 }
 
-// Which container each image goes to. Throws Error(kUsage) for what can be seen to be wrong before any
-// work.
+// Which container each image goes to. Throws Error(kBadArgument) for what can be seen to be wrong before
+// any work.
 std::vector<Job> plan_jobs(const Options& o) {
     std::vector<Job> jobs;
     const bool folder = o.output.ends_with('/') || fs::is_directory(o.output);
     if (!folder) {
         if (o.inputs.size() > 1)
-            throw Error(ErrorCode::kUsage, cat("-o ", o.output, ": ", o.inputs.size(),
-                                               " images need a folder, whose name ends with /"));
+            throw Error(ErrorKind::kBadArgument, cat("-o ", o.output, ": ", o.inputs.size(),
+                                                     " images need a folder, whose name ends with /"));
         const std::string extension = lower_extension(o.output);
         if (extension != ".glb" && extension != ".gltf")
-            throw Error(ErrorCode::kUsage,
+            throw Error(ErrorKind::kBadArgument,
                         cat("-o ", o.output, ": expected a name in .glb or .gltf, or a folder"));
         jobs.push_back({o.inputs.front(), o.output});
     } else {
@@ -205,7 +205,7 @@ std::vector<Job> plan_jobs(const Options& o) {
             const std::string output = fs::path(o.output) / (fs::path(input).stem().string() + ".glb");
             const auto [entry, is_new] = input_of.emplace(output, input);
             if (!is_new)
-                throw Error(ErrorCode::kUsage,
+                throw Error(ErrorKind::kBadArgument,
                             cat(entry->second, " and ", input, " would both become ", output));
             jobs.push_back({input, output});
         }
@@ -225,7 +225,7 @@ BuildResult build_named(const std::string& input, const Image& image, const Buil
     try {
         return build_mesh_image(image, params, progress, std::move(mask));
     } catch (const Error& e) {
-        throw Error(e.code(), cat(input, ": ", e.what()));
+        throw Error(e.kind(), cat(input, ": ", e.what()));
     }
 }
 
@@ -236,7 +236,7 @@ Mask read_mask(const Options& o) {
     try {
         return image_mask(picture, static_cast<float>(o.alpha_threshold));
     } catch (const Error& e) {
-        throw Error(e.code(), cat(o.mask, ": ", e.what()));
+        throw Error(e.kind(), cat(o.mask, ": ", e.what()));
     }
 }
 
@@ -254,7 +254,7 @@ Report build_one(const Job& job, const Options& o, const Context& context, const
         try {
             container.texture.picture = encode_texture(image, mask, o.texture.type);
         } catch (const Error& e) {
-            throw Error(e.code(), cat(job.input, ": ", e.what()));
+            throw Error(e.kind(), cat(job.input, ": ", e.what()));
         }
     }
     BuildResult result = build_named(job.input, image, o.params, progress, std::move(mask));
@@ -346,7 +346,7 @@ Report run(const Options& o, Context& context) {
         } catch (...) {
             // One bad image does not keep the others from being built.
             failures[i] = current_failure();
-            if (failures[i]->code == ErrorCode::kInternal)
+            if (failures[i]->code == ExitCode::kInternal)
                 failures[i]->message = cat(jobs[i].input, ": ", failures[i]->message);
             images[i] = {{"input", jobs[i].input},
                          {"failure", {{"code", failures[i]->code}, {"message", failures[i]->message}}}};

@@ -46,7 +46,7 @@ void add_file(CLI::App& app, const std::string& name, std::string& path, const s
     add_value(
         app, name, "FILE",
         [&path, name](const std::string& text) {
-            if (text.empty()) throw Error(ErrorCode::kUsage, cat(name, " '': expected a file name"));
+            if (text.empty()) throw Error(ErrorKind::kBadArgument, cat(name, " '': expected a file name"));
             path = text;
         },
         help);
@@ -74,9 +74,9 @@ bool is_container(const std::string& path) {
     return extension == ".glb" || extension == ".gltf";
 }
 
-// Throws Error(kUsage) for what can be seen to be wrong before any file is read.
+// Throws Error(kBadArgument) for what can be seen to be wrong before any file is read.
 void check_options(const Options& o) {
-    const auto refuse = [](const std::string& text) { throw Error(ErrorCode::kUsage, text); };
+    const auto refuse = [](const std::string& text) { throw Error(ErrorKind::kBadArgument, text); };
     const bool pair = o.inputs.size() == 2;
     if (o.inputs.size() > 2) refuse(cat(o.inputs[2], ": expected one container or two files"));
     if (!pair && !is_container(o.inputs[0]))
@@ -112,7 +112,7 @@ struct Input {
 Input load_picture(const std::string& path, const Options& o) {
     Input input{{path}, read_image(path, o.color_space), {}, {}};
     if (!has_color(input.image))
-        throw Error(ErrorCode::kUnsupported,
+        throw Error(ErrorKind::kUnsupported,
                     cat(path, ": the image has no colour: neither channels R, G, B nor Y"));
     input.report = {{"input", path},
                     {"kind", "picture"},
@@ -127,7 +127,7 @@ Input load_container(const std::string& path, const Options& o) {
     const MeshImage& m = container.mesh_image;
     const auto index = static_cast<std::size_t>(o.level.value_or(0));
     if (index >= m.levels.size())
-        throw Error(ErrorCode::kUsage,
+        throw Error(ErrorKind::kBadArgument,
                     cat("--level ", index, ": ", path, " has levels 0 to ", m.levels.size() - 1));
     const Level& level = m.levels[index];
     Input input;
@@ -141,7 +141,7 @@ Input load_container(const std::string& path, const Options& o) {
     if (o.inputs.size() == 2) {
         const DrawMode mode = o.mode.value_or(DrawMode::kMap);
         if (split_names(m.source.channel_names).color.empty())
-            throw Error(ErrorCode::kUnsupported, cat(path, ": the container has no colour"));
+            throw Error(ErrorKind::kUnsupported, cat(path, ": the container has no colour"));
         input.image = draw_channels(m, static_cast<int>(index), {mode});
         input.report["mode"] = name_of(mode_choices(), mode);
     }
@@ -155,11 +155,11 @@ Input load_container(const std::string& path, const Options& o) {
 ImageDifference compare_inputs(const Input& a, const Input& b, const Options& o) {
     const auto size = [](const Image& image) { return cat(image.width, " x ", image.height); };
     if (size(a.image) != size(b.image))
-        throw Error(ErrorCode::kBadFile, cat(o.inputs[0], " has ", size(a.image), " pixels, ", o.inputs[1],
+        throw Error(ErrorKind::kBadFile, cat(o.inputs[0], " has ", size(a.image), " pixels, ", o.inputs[1],
                                              " has ", size(b.image), "; expected the same size"));
     ImageDifference difference = compare_images(a.image, b.image);
     if (difference.pixels == 0)
-        throw Error(ErrorCode::kBadFile,
+        throw Error(ErrorKind::kBadFile,
                     cat(o.inputs[0], " and ", o.inputs[1], ": no pixel is visible in both"));
     return difference;
 }
@@ -187,7 +187,7 @@ Image draw_plot(const Plot& plot, const std::string& path) {
     try {
         for (const TextLabel& label : plot_labels(plot, kPngScale)) draw_text(image, label);
     } catch (const Error& e) {
-        throw Error(e.code(), cat(path, ": ", e.what(), "; .svg needs no font"));
+        throw Error(e.kind(), cat(path, ": ", e.what(), "; .svg needs no font"));
     }
     return image;
 }
@@ -231,7 +231,7 @@ Report run(const Options& o, Context& context) {
         report["within_tolerance"] = within;
         if (!within)
             context.failures.push_back(
-                {ErrorCode::kDifferent,
+                {ExitCode::kDifferent,
                  cat(o.inputs[0], " and ", o.inputs[1], " differ: RMS ", format_number(difference->rms_luv),
                      " in L*u*v*, more than --tolerance ", *o.tolerance)});
     }

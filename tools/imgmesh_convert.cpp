@@ -78,38 +78,39 @@ bool is_container(const Options& o) {
     return extension == ".glb" || extension == ".gltf";
 }
 
-// Throws Error(kUsage) for what can be seen to be wrong before the container is read.
+// Throws Error(kBadArgument) for what can be seen to be wrong before the container is read.
 void check_options(const Options& o) {
     const std::string extension = lower_extension(o.output);
     const auto only_for = [&](bool given, const char* option, bool fits, const char* what) {
-        if (given && !fits) throw Error(ErrorCode::kUsage, cat(option, ": -o ", o.output, " is no ", what));
+        if (given && !fits)
+            throw Error(ErrorKind::kBadArgument, cat(option, ": -o ", o.output, " is no ", what));
     };
     const bool container = is_container(o);
     bool known = container;
     for (const char* name : {".svg", ".ply", ".obj", ".json", ".png"}) known = known || extension == name;
     if (!known)
         throw Error(
-            ErrorCode::kUsage,
+            ErrorKind::kBadArgument,
             cat("-o ", o.output, ": expected a name in .glb, .gltf, .svg, .ply, .obj, .json or .png"));
     only_for(o.draco.has_value(), "--draco", container, "container");
     only_for(!o.levels.empty(), "--levels", container, "container");
     only_for(o.no_layers, "--no-layers", container, "container");
     only_for(o.texture.wanted.has_value(), "--texture", container, "container");
     if (container && o.level)
-        throw Error(ErrorCode::kUsage, cat("--level: ", o.output, " keeps all levels; see --levels"));
+        throw Error(ErrorKind::kBadArgument, cat("--level: ", o.output, " keeps all levels; see --levels"));
     only_for(o.shading.has_value(), "--shading", extension == ".svg", "SVG");
     if (container && !o.image.empty() && !o.texture.wanted.value_or(false))
-        throw Error(ErrorCode::kUsage, "--image: of use to a container only with --texture");
+        throw Error(ErrorKind::kBadArgument, "--image: of use to a container only with --texture");
     only_for(!o.image.empty(), "--image", container || extension == ".json", "container or sprite's JSON");
     for (std::size_t i = 1; i < o.levels.size(); ++i)
         if (o.levels[i] <= o.levels[i - 1])
-            throw Error(ErrorCode::kUsage, cat("--levels: ", o.levels[i], " after ", o.levels[i - 1],
-                                               ", expected the finest first and each once"));
+            throw Error(ErrorKind::kBadArgument, cat("--levels: ", o.levels[i], " after ", o.levels[i - 1],
+                                                     ", expected the finest first and each once"));
 }
 
 void check_level(const std::string& option, int level, const std::string& input, const MeshImage& m) {
     if (level >= static_cast<int>(m.levels.size()))
-        throw Error(ErrorCode::kUsage,
+        throw Error(ErrorKind::kBadArgument,
                     cat(option, " ", level, ": ", input, " has levels 0 to ", m.levels.size() - 1));
 }
 
@@ -136,13 +137,13 @@ Texture chosen_texture(const Options& o, const MeshImage& m, Texture kept) {
     Image image;
     if (o.image.empty()) {
         if (split_names(source.channel_names).color.empty())
-            throw Error(ErrorCode::kUnsupported,
+            throw Error(ErrorKind::kUnsupported,
                         cat("--texture: ", o.input, " has no colour; --image names an image that has"));
         image = draw(m, 0, {});
     } else {
         image = read_image(o.image);
         if (image.width != source.width || image.height != source.height)
-            throw Error(ErrorCode::kBadFile,
+            throw Error(ErrorKind::kBadFile,
                         cat(o.image, ": has ", image.width, "x", image.height, " pixels, the image of ",
                             o.input, " has ", source.width, "x", source.height));
     }
@@ -154,14 +155,14 @@ Texture chosen_texture(const Options& o, const MeshImage& m, Texture kept) {
     try {
         return {encode_texture(image, mask, o.texture.type), texture_coords(m)};
     } catch (const Error& e) {
-        throw Error(e.code(), cat(o.image.empty() ? o.input : o.image, ": ", e.what()));
+        throw Error(e.kind(), cat(o.image.empty() ? o.input : o.image, ": ", e.what()));
     }
 }
 
 // Face ids as colours; no face is transparent.
 Image id_image(const Level& level, bool has_mask) {
     if (level.mesh.faces.size() > (1u << 24))
-        throw Error(ErrorCode::kUnsupported,
+        throw Error(ErrorKind::kUnsupported,
                     cat("24 bits hold no ids of ", level.mesh.faces.size(), " faces"));
     Image image = make_image(level.map.width, level.map.height, has_mask ? 4 : 3);
     for (std::size_t i = 0; i < level.map.coords.size(); ++i) {
@@ -182,7 +183,7 @@ void export_level(const Options& o, const MeshImage& m, int index, Context& cont
         return;
     }
     if ((extension == ".ply" || extension == ".obj") && split_names(m.source.channel_names).color.empty())
-        throw Error(ErrorCode::kUnsupported, cat(o.input, ": the container has no colour to export"));
+        throw Error(ErrorKind::kUnsupported, cat(o.input, ": the container has no colour to export"));
     std::string text;
     if (extension == ".svg")
         text = o.shading == Shading::kGradient ? draw_svg_gradient(m, index)

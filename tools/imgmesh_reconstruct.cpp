@@ -53,31 +53,32 @@ void add_options(CLI::App& app, Options& o) {
     add_container_limits(app, o.limits);
 }
 
-// Throws Error(kUsage) for what can be seen to be wrong before the container is read.
+// Throws Error(kBadArgument) for what can be seen to be wrong before the container is read.
 void check_options(const Options& o, bool svg) {
     const bool plane = o.draw.mode == DrawMode::kMap || o.draw.mode == DrawMode::kPatches ||
                        o.draw.mode == DrawMode::kVisits;
     const std::string mode = name_of(mode_choices(), o.draw.mode);
     if (plane && o.draw.scale != 1)
-        throw Error(ErrorCode::kUsage, cat("--scale ", o.draw.scale, ": mode ", mode,
-                                           " draws one pixel for one; expected gouraud, wire or flat"));
+        throw Error(ErrorKind::kBadArgument, cat("--scale ", o.draw.scale, ": mode ", mode,
+                                                 " draws one pixel for one; expected gouraud, wire or flat"));
     if (o.draw.mode == DrawMode::kVisits && o.level != 0)
-        throw Error(ErrorCode::kUsage, cat("--level ", o.level, ": mode visits is of level 0 alone"));
+        throw Error(ErrorKind::kBadArgument, cat("--level ", o.level, ": mode visits is of level 0 alone"));
     if (svg && o.draw.mode != DrawMode::kWire && o.draw.mode != DrawMode::kFlat)
-        throw Error(ErrorCode::kUsage,
+        throw Error(ErrorKind::kBadArgument,
                     cat(o.output, ": mode ", mode, " cannot be drawn as SVG; expected wire or flat"));
     if (svg && (o.depth || o.draw.scale != 1))
-        throw Error(ErrorCode::kUsage, cat(o.output, ": an SVG has neither --depth nor --scale"));
+        throw Error(ErrorKind::kBadArgument, cat(o.output, ": an SVG has neither --depth nor --scale"));
     if (!svg && !can_write_image(o.output))
-        throw Error(ErrorCode::kUsage, cat("-o ", o.output, ": expected the name of an image, as in .png"));
+        throw Error(ErrorKind::kBadArgument,
+                    cat("-o ", o.output, ": expected the name of an image, as in .png"));
 }
 
-// Throws Error(kUsage) where a scaled image would be larger than any that can be read.
+// Throws Error(kBadArgument) where a scaled image would be larger than any that can be read.
 void check_size(const SourceInfo& source, double scale) {
     const ImageLimits limits;
     const double width = source.width * scale, height = source.height * scale;
     if (std::max(width, height) > limits.max_side || width * height > static_cast<double>(limits.max_pixels))
-        throw Error(ErrorCode::kUsage,
+        throw Error(ErrorKind::kBadArgument,
                     cat("--scale ", scale, ": the image would have ", width, " x ", height,
                         " pixels, more than ", limits.max_side, " a side or ", limits.max_pixels, " in all"));
 }
@@ -91,7 +92,7 @@ bool writes_channels(const Options& o, const SourceInfo& source) {
     if (names.color.empty() && !holds) {
         std::string list;
         for (const std::string& name : names.auxiliary) list += (list.empty() ? "" : ", ") + name;
-        throw Error(ErrorCode::kUnsupported, cat(o.input, ": has no colour, its channels are ", list,
+        throw Error(ErrorKind::kUnsupported, cat(o.input, ": has no colour, its channels are ", list,
                                                  "; they can be written as .exr in mode map or gouraud"));
     }
     return holds && !names.auxiliary.empty();
@@ -108,10 +109,10 @@ Report run(const Options& o, Context& context) {
     const MeshImage& mesh_image = container.mesh_image;
     const SourceInfo& source = mesh_image.source;
     if (o.level >= static_cast<int>(mesh_image.levels.size()))
-        throw Error(ErrorCode::kUsage, cat("--level ", o.level, ": ", o.input, " has levels 0 to ",
-                                           mesh_image.levels.size() - 1));
+        throw Error(ErrorKind::kBadArgument, cat("--level ", o.level, ": ", o.input, " has levels 0 to ",
+                                                 mesh_image.levels.size() - 1));
     if (o.draw.mode == DrawMode::kVisits && mesh_image.visits.empty())
-        throw Error(ErrorCode::kUnsupported,
+        throw Error(ErrorKind::kUnsupported,
                     cat(o.input, ": there is no visit map; imgmesh-build --visits stores one"));
     const bool all_channels = writes_channels(o, source);
     int width = source.width, height = source.height;

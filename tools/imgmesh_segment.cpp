@@ -71,30 +71,31 @@ std::vector<std::string> outputs_of(const Options& o) {
 
 void expect_extension(const std::string& option, const std::string& path, const std::string& extension) {
     if (!path.empty() && lower_extension(path) != extension)
-        throw Error(ErrorCode::kUsage,
+        throw Error(ErrorKind::kBadArgument,
                     cat(option, " ", path, ": expected a name that ends with ", extension));
 }
 
-// Throws Error(kUsage) for what can be seen to be wrong before the container is read.
+// Throws Error(kBadArgument) for what can be seen to be wrong before the container is read.
 void check_options(const Options& o) {
     if (o.threshold && o.params.segments)
-        throw Error(ErrorCode::kUsage, "--threshold and --segments: expected one of them");
+        throw Error(ErrorKind::kBadArgument, "--threshold and --segments: expected one of them");
     if (o.params.superpixels && (o.threshold || o.params.segments || o.distance))
-        throw Error(ErrorCode::kUsage, cat("--superpixels and ",
-                                           o.threshold         ? "--threshold"
-                                           : o.params.segments ? "--segments"
-                                                               : "--distance",
-                                           ": expected one of them"));
+        throw Error(ErrorKind::kBadArgument, cat("--superpixels and ",
+                                                 o.threshold         ? "--threshold"
+                                                 : o.params.segments ? "--segments"
+                                                                     : "--distance",
+                                                 ": expected one of them"));
     if (o.compactness && !o.params.superpixels)
-        throw Error(ErrorCode::kUsage, "--compactness: means something with --superpixels only");
+        throw Error(ErrorKind::kBadArgument, "--compactness: means something with --superpixels only");
     if (!can_write_labels(o.output))
-        throw Error(ErrorCode::kUsage, cat("-o ", o.output, ": expected a name that ends with .exr or .png"));
+        throw Error(ErrorKind::kBadArgument,
+                    cat("-o ", o.output, ": expected a name that ends with .exr or .png"));
     expect_extension("--ucm", o.ucm, ".exr");
     expect_extension("--report", o.report, ".json");
     expect_extension("--mesh", o.mesh, ".glb");
     for (const auto& [option, path] : {std::pair("--outlines", &o.outlines), std::pair("--flat", &o.flat)})
         if (!path->empty() && !can_write_image(*path))
-            throw Error(ErrorCode::kUsage,
+            throw Error(ErrorKind::kBadArgument,
                         cat(option, " ", *path, ": expected the name of an image, as in .png"));
     check_separate(outputs_of(o));
 }
@@ -103,7 +104,7 @@ FeatureImage picture_of(const Options& o, const Level& level) {
     if (o.image.empty()) return reconstruct_luv(level);
     const Image image = read_image(o.image);
     if (image.width != level.map.width || image.height != level.map.height)
-        throw Error(ErrorCode::kBadFile,
+        throw Error(ErrorKind::kBadFile,
                     cat("--image ", o.image, ": is ", image.width, "x", image.height, ", ", o.input,
                         " was made of ", level.map.width, "x", level.map.height));
     return luv_image(image, Range::kClipped);
@@ -115,8 +116,8 @@ Segmentation segment_named(const Options& o, const Level& level, const FeatureIm
     try {
         return segment(level, picture, params, progress);
     } catch (const Error& e) {
-        if (e.code() != ErrorCode::kUsage) throw;
-        throw Error(e.code(), cat(o.params.superpixels ? "--superpixels: "
+        if (e.kind() != ErrorKind::kBadArgument) throw;
+        throw Error(e.kind(), cat(o.params.superpixels ? "--superpixels: "
                                   : o.params.segments  ? "--segments: "
                                                        : "",
                                   e.what()));
@@ -134,10 +135,10 @@ Report run(const Options& o, Context& context) {
     check_distinct(inputs, outputs_of(o));
     const MeshImage& mesh_image = container.mesh_image;
     if (split_names(mesh_image.source.channel_names).color.empty())
-        throw Error(ErrorCode::kUnsupported, cat(o.input, ": the container has no colour"));
+        throw Error(ErrorKind::kUnsupported, cat(o.input, ": the container has no colour"));
     if (o.level >= static_cast<int>(mesh_image.levels.size()))
-        throw Error(ErrorCode::kUsage, cat("--level ", o.level, ": ", o.input, " has levels 0 to ",
-                                           mesh_image.levels.size() - 1));
+        throw Error(ErrorKind::kBadArgument, cat("--level ", o.level, ": ", o.input, " has levels 0 to ",
+                                                 mesh_image.levels.size() - 1));
     const Level& level = mesh_image.levels[static_cast<std::size_t>(o.level)];
 
     SegmentParams params = o.params;

@@ -42,7 +42,7 @@ const std::string kHandle = "--handle", kSize = "--size", kRetarget = "--retarge
 // X,Y:DX,DY
 WarpHandle parse_handle(const std::string& text) {
     const auto fail = [&] {
-        throw Error(ErrorCode::kUsage, cat(kHandle, " '", text, "': expected X,Y:DX,DY"));
+        throw Error(ErrorKind::kBadArgument, cat(kHandle, " '", text, "': expected X,Y:DX,DY"));
     };
     const NumberRange range{-1e6, 1e6};
     const auto pair = [&](const std::string& part) {
@@ -64,20 +64,21 @@ WarpHandle parse_handle(const std::string& text) {
 OutputSize parse_size(const std::string& name, const std::string& text) {
     const std::size_t cross = text.find('x');
     if (cross == std::string::npos)
-        throw Error(ErrorCode::kUsage, cat(name, " '", text, "': expected WIDTHxHEIGHT, as in 640x480"));
+        throw Error(ErrorKind::kBadArgument,
+                    cat(name, " '", text, "': expected WIDTHxHEIGHT, as in 640x480"));
     const CountRange range{1, ImageLimits().max_side};
     const OutputSize size{static_cast<int>(parse_count(name, text.substr(0, cross), range)),
                           static_cast<int>(parse_count(name, text.substr(cross + 1), range))};
     if (std::int64_t{size.width} * size.height > ImageLimits().max_pixels)
-        throw Error(ErrorCode::kUsage, cat(name, " '", text, "': expected at most ", ImageLimits().max_pixels,
-                                           " pixels in all"));
+        throw Error(ErrorKind::kBadArgument, cat(name, " '", text, "': expected at most ",
+                                                 ImageLimits().max_pixels, " pixels in all"));
     return size;
 }
 
 void add_options(CLI::App& app, Options& o) {
     const auto take = [](std::string& target) {
         return [&target](const std::string& text) {
-            if (text.empty()) throw Error(ErrorCode::kUsage, "an empty file name");
+            if (text.empty()) throw Error(ErrorKind::kBadArgument, "an empty file name");
             target = text;
         };
     };
@@ -117,21 +118,21 @@ bool is_container(const std::string& path) {
     return extension == ".glb" || extension == ".gltf";
 }
 
-// Throws Error(kUsage) for what can be seen to be wrong before anything is read.
+// Throws Error(kBadArgument) for what can be seen to be wrong before anything is read.
 void check_options(const Options& o) {
     if (o.output.empty() && o.displacement.empty())
-        throw Error(ErrorCode::kUsage, "nothing to write: expected --output, --displacement or both");
+        throw Error(ErrorKind::kBadArgument, "nothing to write: expected --output, --displacement or both");
     const bool container = is_container(o.output);
     if (!o.output.empty() && !container && !can_write_image(o.output))
-        throw Error(ErrorCode::kUsage,
+        throw Error(ErrorKind::kBadArgument,
                     cat("-o ", o.output, ": expected the name of an image or container, as in .png or .glb"));
     if (!o.output.empty() && !container && o.image.empty())
-        throw Error(ErrorCode::kUsage, "--image is missing: the image to draw with");
+        throw Error(ErrorKind::kBadArgument, "--image is missing: the image to draw with");
     if (!o.displacement.empty() && lower_extension(o.displacement) != ".exr")
-        throw Error(ErrorCode::kUsage,
+        throw Error(ErrorKind::kBadArgument,
                     cat("--displacement ", o.displacement, ": expected the name of an .exr"));
     if (o.size.width > 0 && container && (o.retarget || o.displacement.empty()))
-        throw Error(ErrorCode::kUsage,
+        throw Error(ErrorKind::kBadArgument,
                     cat(o.retarget ? kRetarget : kSize, ": a container keeps its image's size"));
 }
 
@@ -150,7 +151,7 @@ WarpEdits all_edits(const Options& o) {
 std::vector<VertexMoves> solve(const MeshImage& mesh_image, const WarpEdits& edits, const Options& o) {
     const auto levels = static_cast<int>(mesh_image.levels.size());
     if (o.handle && o.handle_edit.level >= levels)
-        throw Error(ErrorCode::kUsage,
+        throw Error(ErrorKind::kBadArgument,
                     cat("--level ", o.handle_edit.level, ": ", o.input, " has levels 0 to ", levels - 1));
     return solve_edits(mesh_image, edits);
 }
@@ -197,7 +198,7 @@ Report run(const Options& o, Context& context) {
     if (!o.image.empty()) {
         image = read_image(o.image);
         if (image->width != source.width || image->height != source.height)
-            throw Error(ErrorCode::kBadFile,
+            throw Error(ErrorKind::kBadFile,
                         cat(o.image, ": has ", image->width, "x", image->height, " pixels, the image of ",
                             o.input, " has ", source.width, "x", source.height));
     }

@@ -38,13 +38,13 @@ struct ContainerOptions {
 /// gives the same mesh and map back, up to the order of vertices and faces and the rotation of corners, which
 /// Draco chooses, and vertices without a face. The .gltf gets its name after what it refers to, and the files
 /// of a container that it replaces go last: at any moment the old container stands there or the new one.
-/// Throws Error: kUsage for another extension; kIo where a file cannot be written.
+/// Throws Error: kBadArgument for another extension; kIo where a file cannot be written.
 void write_container(const std::string& path, const MeshImage& mesh_image,
                      const ContainerOptions& options = {});
 
 /// The names that write_container prefers for the files of `path`, itself first: a .gltf has a .bin and a
-/// .exr beside it, which get names with a hash where other files have these. Throws Error(kUsage) for another
-/// extension.
+/// .exr beside it, which get names with a hash where other files have these. Throws Error(kBadArgument) for
+/// another extension.
 std::vector<std::string> container_files(const std::string& path);
 
 /// Facts of the file that a MeshImage does not hold.

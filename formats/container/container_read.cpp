@@ -34,7 +34,7 @@ class FileReader {
             names_.push_back(path);
             return bytes;
         } catch (const Error& error) {
-            if (error.code() != ErrorCode::kBadFile) throw;
+            if (error.kind() != ErrorKind::kBadFile) throw;
             refuse("limits.bytes", error.what());
         }
     }
@@ -203,7 +203,7 @@ Container read_container(const std::string& path, const ContainerLimits& limits)
         // Names from the file are quoted as they are; the message stays one line.
         std::replace_if(
             text.begin(), text.end(), [](unsigned char c) { return c < 32 || c == 127; }, ' ');
-        throw Error(finding.error_code(), cat(path, ": [", finding.code(), "] ", text));
+        throw Error(finding.error_kind(), cat(path, ": [", finding.code(), "] ", text));
     }
 }
 

@@ -38,7 +38,7 @@ void check_writable(const MeshImage& image, const Texture& texture) {
             fits = texture.coords[k].size() == image.levels[k].mesh.vertex_count();
     }
     if (!fits)
-        throw Error(ErrorCode::kInternal, "cannot store the mesh image: its parts do not fit each other");
+        throw Error(ErrorKind::kInternal, "cannot store the mesh image: its parts do not fit each other");
 }
 
 // Appends values as they lie in memory, at a multiple of four.
@@ -94,7 +94,7 @@ Spelling spelling_of(const std::string& path) {
     for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
     if (extension == ".glb") return Spelling::kGlb;
     if (extension == ".gltf") return Spelling::kGltf;
-    throw Error(ErrorCode::kUsage, cat(path, ": a container's name ends with .glb or .gltf"));
+    throw Error(ErrorKind::kBadArgument, cat(path, ": a container's name ends with .glb or .gltf"));
 }
 
 // The layers are most of the file: they are written from where they are.

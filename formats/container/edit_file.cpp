@@ -27,7 +27,7 @@ class Node {
 
     const std::string& place() const { return place_; }
     [[noreturn]] void refuse(const std::string& text) const {
-        throw Error(ErrorCode::kBadFile, cat(place_, ": ", text));
+        throw Error(ErrorKind::kBadFile, cat(place_, ": ", text));
     }
 
     bool has(const char* name) const { return value_.contains(name); }
@@ -185,7 +185,7 @@ json parse(std::string_view text, const std::string& name, const EditLimits& lim
     } catch (const FindingError& error) {
         refusal = cat(error.code() == "json.syntax" ? "no JSON: " : "", error.what());
     }
-    if (!refusal.empty()) throw Error(ErrorCode::kBadFile, cat(name, ": ", refusal));
+    if (!refusal.empty()) throw Error(ErrorKind::kBadFile, cat(name, ": ", refusal));
     return document;
 }
 
@@ -195,7 +195,7 @@ WarpEdits edits_from_json(std::string_view text, const std::string& name, const 
     const json document = parse(text, name, limits);
     const Node root(document, name + ": ");
     const auto refuse = [&](const std::string& what) {
-        throw Error(ErrorCode::kBadFile, cat(name, ": ", what));
+        throw Error(ErrorKind::kBadFile, cat(name, ": ", what));
     };
     if (!document.is_object()) refuse(cat("expected an object, found ", document.type_name()));
     for (const auto& [member, ignored] : document.items())

@@ -38,7 +38,7 @@ void write_layer(const std::string& path, const std::string& channel, Imf::Pixel
         file.setFrameBuffer(buffer);
         file.writePixels(height);
     } catch (const std::exception& e) {
-        throw Error(ErrorCode::kIo, cat(path, ": cannot write the EXR: ", one_line(e.what())));
+        throw Error(ErrorKind::kIo, cat(path, ": cannot write the EXR: ", one_line(e.what())));
     }
     target.commit();
 }
@@ -52,7 +52,7 @@ bool can_write_labels(const std::string& path) {
 void write_labels(const std::string& path, int width, int height, std::span<const Id> labels,
                   bool overwrite) {
     if (!can_write_labels(path))
-        throw Error(ErrorCode::kUsage, cat(path, ": labels are written as .exr or .png"));
+        throw Error(ErrorKind::kBadArgument, cat(path, ": labels are written as .exr or .png"));
     if (extension_of(path) == ".exr") {
         write_layer(path, "id", Imf::UINT, width, height, labels, overwrite);
         return;
@@ -61,7 +61,7 @@ void write_labels(const std::string& path, int width, int height, std::span<cons
     image.sample_type = SampleType::kUint16;
     for (std::size_t i = 0; i < labels.size(); ++i) {
         if (labels[i] != kNone && labels[i] >= kPngNone)
-            throw Error(ErrorCode::kUsage,
+            throw Error(ErrorKind::kBadArgument,
                         cat(path, ": a 16-bit PNG holds labels up to ", kPngNone - 1, ", there is label ",
                             *std::ranges::max_element(labels, {}, [](Id l) { return l == kNone ? 0 : l; }),
                             "; expected .exr"));

@@ -13,7 +13,7 @@ namespace imgmesh {
 namespace {
 
 Vec3f srgb_of(const BaseMesh& mesh, Id v) {
-    if (mesh.channels < 3) throw Error(ErrorCode::kUnsupported, "the mesh has no colour to export");
+    if (mesh.channels < 3) throw Error(ErrorKind::kUnsupported, "the mesh has no colour to export");
     const float* f = mesh.feature_of(v);
     const Vec3f linear = linear_from_luv(Vec3f(f[0], f[1], f[2]));
     return encoded_from_linear(ColorSpace::kSrgb, linear.cwiseMax(0.0f).cwiseMin(1.0f))

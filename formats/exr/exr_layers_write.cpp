@@ -24,7 +24,7 @@ constexpr int kGroupBlocks = 128;  // packed at a time, before they are written 
 
 void check(exr_result_t result) {
     if (result != EXR_ERR_SUCCESS)
-        throw Error(ErrorCode::kInternal,
+        throw Error(ErrorKind::kInternal,
                     cat("OpenEXR cannot encode the layers: ", exr_get_default_error_message(result)));
 }
 
@@ -147,7 +147,7 @@ void check_writable(const LayerPart& part) {
         for (int y = first; y < last; ++y)
             for (const PixelCoord& c : part.map.row(y))
                 if (!in_simplex(c) || !on_grid(c, step) || (c.face == kNone && (c.u != 0 || c.v != 0)))
-                    throw Error(ErrorCode::kInternal,
+                    throw Error(ErrorKind::kInternal,
                                 cat("cannot store the weights (", c.u, ",", c.v, ") of face ", c.face,
                                     ": outside the simplex or no multiples of ", step));
     });

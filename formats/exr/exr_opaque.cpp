@@ -26,7 +26,7 @@ class Walker {
 
     std::span<std::uint8_t> take(std::size_t count) {
         if (count > bytes_.size() - at_)
-            throw Error(ErrorCode::kBadFile, cat(path_, ": the EXR ends in its header"));
+            throw Error(ErrorKind::kBadFile, cat(path_, ": the EXR ends in its header"));
         at_ += count;
         return bytes_.subspan(at_ - count, count);
     }
@@ -80,9 +80,9 @@ void make_attributes_opaque(const std::string& path, std::span<std::uint8_t> byt
     in.number();  // the signature
     const std::uint32_t version = in.number();
     if ((version & 0xFF) != 2)
-        throw Error(ErrorCode::kBadFile, cat(path, ": EXR version ", version & 0xFF, ", expected 2"));
+        throw Error(ErrorKind::kBadFile, cat(path, ": EXR version ", version & 0xFF, ", expected 2"));
     if (version & kDeep)
-        throw Error(ErrorCode::kUnsupported, cat(path, ": deep EXR images are not supported"));
+        throw Error(ErrorKind::kUnsupported, cat(path, ": deep EXR images are not supported"));
     // An empty name ends a header, and an empty header those of a file with many parts.
     do {
         while (!in.ends()) {

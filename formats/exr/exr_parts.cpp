@@ -51,7 +51,7 @@ void write_exr_parts(const std::string& path, const std::vector<NamedImage>& par
                                       static_cast<int>(headers.size()), false, /*numThreads=*/0);
         for (std::size_t i = 0; i < parts.size(); ++i) write_part(file, static_cast<int>(i), parts[i].image);
     } catch (const std::exception& e) {
-        throw Error(ErrorCode::kIo, cat(path, ": cannot write: ", one_line(e.what())));
+        throw Error(ErrorKind::kIo, cat(path, ": cannot write: ", one_line(e.what())));
     }
     target.commit();
 }

@@ -20,7 +20,7 @@ namespace imgmesh {
 namespace {
 
 [[noreturn]] void fail(const std::string& path, const char* what, int error) {
-    throw Error(ErrorCode::kIo, cat(path, ": ", what, ": ", std::generic_category().message(error)));
+    throw Error(ErrorKind::kIo, cat(path, ": ", what, ": ", std::generic_category().message(error)));
 }
 
 // A file descriptor that closes itself.
@@ -90,14 +90,14 @@ std::string resolve_target(const std::string& path, bool overwrite) {
     if (!overwrite) fail(path, "not overwritten", EEXIST);
     if (!S_ISLNK(info.st_mode)) {
         if (!S_ISREG(info.st_mode))
-            throw Error(ErrorCode::kIo, cat(path, ": cannot write: it is not a regular file"));
+            throw Error(ErrorKind::kIo, cat(path, ": cannot write: it is not a regular file"));
         return path;
     }
     std::error_code error;
     const std::filesystem::path target = std::filesystem::canonical(path, error);
-    if (error) throw Error(ErrorCode::kIo, cat(path, ": cannot follow the link: ", error.message()));
+    if (error) throw Error(ErrorKind::kIo, cat(path, ": cannot follow the link: ", error.message()));
     if (!std::filesystem::is_regular_file(target, error))
-        throw Error(ErrorCode::kIo, cat(path, ": cannot write: it is not a regular file"));
+        throw Error(ErrorKind::kIo, cat(path, ": cannot write: it is not a regular file"));
     return target.string();
 }
 
@@ -221,7 +221,7 @@ void remove_temporaries_on_signals() {
 
 std::vector<std::uint8_t> read_file(const std::string& path, std::uint64_t max_bytes) {
     const auto too_long = [&] {
-        return Error(ErrorCode::kBadFile, cat(path, ": longer than the limit of ", max_bytes, " bytes"));
+        return Error(ErrorKind::kBadFile, cat(path, ": longer than the limit of ", max_bytes, " bytes"));
     };
     const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
     struct stat info = {};

@@ -16,7 +16,7 @@ std::string sha256_hex(std::initializer_list<std::span<const std::uint8_t>> piec
     for (const auto piece : pieces)
         done = done && EVP_DigestUpdate(context.get(), piece.data(), piece.size());
     if (!done || !EVP_DigestFinal_ex(context.get(), digest.data(), nullptr))
-        throw Error(ErrorCode::kInternal, "libcrypto has no SHA-256");
+        throw Error(ErrorKind::kInternal, "libcrypto has no SHA-256");
     std::string hex;
     for (const unsigned byte : digest) {
         hex += "0123456789abcdef"[byte >> 4];

@@ -21,15 +21,15 @@ enum class Severity { kError, kWarning, kInfo };
 struct Finding {
     std::string_view code;
     std::string_view meaning;
-    ErrorCode error = ErrorCode::kBadFile;
+    ErrorKind error = ErrorKind::kBadFile;
     Severity severity = Severity::kError;
 };
 
 constexpr Finding warning(std::string_view code, std::string_view meaning) {
-    return {code, meaning, ErrorCode::kBadFile, Severity::kWarning};
+    return {code, meaning, ErrorKind::kBadFile, Severity::kWarning};
 }
 constexpr Finding info(std::string_view code, std::string_view meaning) {
-    return {code, meaning, ErrorCode::kOk, Severity::kInfo};
+    return {code, meaning, ErrorKind::kBadFile, Severity::kInfo};
 }
 
 /// All of them, from the outside of a file inwards: the errors, then what a validator tells besides.
@@ -44,8 +44,8 @@ inline constexpr Finding kFindings[] = {
     {"glb.chunk", "a chunk is missing or runs over the end"},
     {"json.syntax", "not JSON, or not UTF-8"},
     {"json.depth", "nested deeper than the limit"},
-    {"gltf.version", "not glTF 2.x", ErrorCode::kUnsupported},
-    {"gltf.required", "requires an extension that imgmesh does not know", ErrorCode::kUnsupported},
+    {"gltf.version", "not glTF 2.x", ErrorKind::kUnsupported},
+    {"gltf.required", "requires an extension that imgmesh does not know", ErrorKind::kUnsupported},
     {"gltf.structure", "a member is missing or has another type than it must"},
     {"gltf.primitive", "a level's mesh is not one primitive of triangles"},
     {"gltf.attribute", "a level's mesh lacks POSITION, COLOR_0 (or _COLOR) or the attribute of a channel"},
@@ -55,7 +55,7 @@ inline constexpr Finding kFindings[] = {
     {"gltf.buffer", "not exactly one buffer, or one shorter than it says"},
     {"uri.name", "a URI is not the bare name of a file beside"},
     {"ext.missing", "no extension IMGMESH_pixel_map"},
-    {"ext.version", "a version of IMGMESH_pixel_map that this reader does not know", ErrorCode::kUnsupported},
+    {"ext.version", "a version of IMGMESH_pixel_map that this reader does not know", ErrorKind::kUnsupported},
     {"ext.member", "a member of IMGMESH_pixel_map is missing or not what it must be"},
     {"ext.value", "a colorSpace, sampleType or mimeType of IMGMESH_pixel_map is unknown"},
     {"ext.channels", "the channels are not 1 to 16 features, each with a name of its own"},
@@ -79,7 +79,7 @@ inline constexpr Finding kFindings[] = {
     {"layers.magic", "not an EXR file of version 2"},
     {"layers.header", "the EXR's header is broken"},
     {"layers.attribute", "an attribute of the EXR is too long or of a type that a container does not need"},
-    {"layers.version", "an imgmesh:version that this reader does not know", ErrorCode::kUnsupported},
+    {"layers.version", "an imgmesh:version that this reader does not know", ErrorKind::kUnsupported},
     {"layers.type", "a part is deep or of an unknown type"},
     {"layers.tiles", "tiles of several levels, or larger than 1024 x 1024"},
     {"layers.parts", "the parts are not the levels"},
@@ -149,7 +149,7 @@ class FindingError : public std::runtime_error {
         : std::runtime_error(text), code_(code), place_(std::move(place)) {}
     FindingCode finding() const { return code_; }
     std::string_view code() const { return kFindings[code_.index].code; }
-    ErrorCode error_code() const { return kFindings[code_.index].error; }
+    ErrorKind error_kind() const { return kFindings[code_.index].error; }
     const Place& place() const { return place_; }
 
   private:

@@ -266,7 +266,7 @@ DracoMesh encode_draco_mesh(const StoredMesh& mesh, DracoMode mode) {
     draco::EncoderBuffer buffer;
     const draco::Status status = encoder.EncodeToBuffer(&buffer);
     if (!status.ok())
-        throw Error(ErrorCode::kInternal, cat("Draco cannot encode the mesh: ", status.error_msg_string()));
+        throw Error(ErrorKind::kInternal, cat("Draco cannot encode the mesh: ", status.error_msg_string()));
     DracoMesh result{{buffer.data(), buffer.data() + buffer.size()}, {}};
     Findings findings = Findings::strict();
     result.decoded = decode(result.bytes, ids, mode == DracoMode::kEdgebreaker, findings);

@@ -31,7 +31,7 @@ int hex_value(char c) {
 
 std::string uri_from_name(const std::string& name) {
     if (!is_bare_name(name))
-        throw Error(ErrorCode::kUsage, cat(name, ": a container's files cannot have this name"));
+        throw Error(ErrorKind::kBadArgument, cat(name, ": a container's files cannot have this name"));
     std::string uri;
     for (const char c : name) {
         if (is_unreserved(c)) {

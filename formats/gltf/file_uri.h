@@ -5,8 +5,8 @@
 
 namespace imgmesh {
 
-/// Percent-encodes a file name: everything but A-Z a-z 0-9 - . _ ~. Throws Error(kUsage) for a name that
-/// name_from_uri would refuse.
+/// Percent-encodes a file name: everything but A-Z a-z 0-9 - . _ ~. Throws Error(kBadArgument) for a name
+/// that name_from_uri would refuse.
 std::string uri_from_name(const std::string& name);
 
 /// The file name behind a URI. Throws FindingError("uri.name") for anything but a bare name: an empty one, a

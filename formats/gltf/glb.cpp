@@ -33,7 +33,7 @@ std::vector<std::uint8_t> glb_head(std::string_view json, std::uint64_t binary_b
     const std::size_t json_bytes = padded(json.size());
     const std::uint64_t total = kHeaderBytes + 2 * kChunkHeaderBytes + json_bytes + binary_bytes;
     if (total > std::numeric_limits<std::uint32_t>::max())
-        throw Error(ErrorCode::kUnsupported,
+        throw Error(ErrorKind::kUnsupported,
                     cat("a .glb holds at most 4 GiB, this one would need ", total, " bytes; write a .gltf"));
     std::vector<std::uint8_t> bytes;
     const auto put = [&](std::uint64_t value) {

@@ -154,7 +154,7 @@ json root_extension(const Asset& asset, int layers_view) {
     for (const auto& [name, value] : asset.parameters) {
         const auto* number = std::get_if<double>(&value);
         if (name == kGenerator || (number && !std::isfinite(*number)))
-            throw Error(ErrorCode::kInternal, cat("cannot store the build parameter ", name));
+            throw Error(ErrorKind::kInternal, cat("cannot store the build parameter ", name));
         json& member = build[name];
         std::visit([&](const auto& v) { member = v; }, value);
     }
@@ -185,7 +185,7 @@ std::string level_name(std::size_t k) {
 std::string json_from_asset(const Asset& asset) {
     if (asset.buffer_length > kMaxBufferBytes)
         throw Error(
-            ErrorCode::kUnsupported,
+            ErrorKind::kUnsupported,
             cat("the asset's buffer would have ", asset.buffer_length, " bytes, at most ", kMaxBufferBytes,
                 asset.layers_name.empty() ? "; a .gltf keeps the pixel map apart" : ""));
     tinygltf::Model model = gltf_model(asset);
@@ -203,7 +203,7 @@ std::string json_from_asset(const Asset& asset) {
     if (asset.has_layers) document["extensions"][kPixelMap] = root_extension(asset, layers_view);
     for (std::size_t k = 0; k < asset.levels.size() && asset.has_layers; ++k) {
         const AssetLevel& level = asset.levels[k];
-        if (!std::isfinite(level.error)) throw Error(ErrorCode::kInternal, "a level's error is not finite");
+        if (!std::isfinite(level.error)) throw Error(ErrorKind::kInternal, "a level's error is not finite");
         document["nodes"][k]["extensions"][kPixelMap] = {{"part", level_name(k)},
                                                          {"vertices", level.vertices},
                                                          {"faces", level.faces},

@@ -136,14 +136,15 @@ void write_region_mesh(const std::string& path, const BaseMesh& mesh, std::span<
                        const SourceInfo& source, const std::string& generator, bool overwrite) {
     std::string extension = std::filesystem::path(path).extension().string();
     for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    if (extension != ".glb") throw Error(ErrorCode::kUsage, cat(path, ": a region mesh is written as .glb"));
+    if (extension != ".glb")
+        throw Error(ErrorKind::kBadArgument, cat(path, ": a region mesh is written as .glb"));
     AtomicFile file(path, overwrite);
     const Pieces pieces = cut(stored_from_base(mesh, layout_of(source)), region_of_face);
     if (pieces.pieces.empty())
-        throw Error(ErrorCode::kUnsupported, cat(path, ": no face of the base mesh belongs to a region"));
+        throw Error(ErrorKind::kUnsupported, cat(path, ": no face of the base mesh belongs to a region"));
     const std::uint64_t bytes = 20 * pieces.position.size() + 4 * pieces.index.size();
     if (bytes > kMaxBytes)
-        throw Error(ErrorCode::kUnsupported,
+        throw Error(ErrorKind::kUnsupported,
                     cat(path, ": would have ", bytes, " bytes of vertices and faces"));
     std::vector<std::uint8_t> buffer;
     append(buffer, pieces.position);

@@ -103,7 +103,7 @@ bool is_hdr(const std::array<float, 3>& light) {
 
 StoredMesh stored_from_base(const BaseMesh& mesh, const StoredLayout& layout) {
     const auto fail = [](const std::string& what) {
-        throw Error(ErrorCode::kInternal, "cannot store the mesh: " + what);
+        throw Error(ErrorKind::kInternal, "cannot store the mesh: " + what);
     };
     const std::size_t features = (layout.color ? 3 : 0) + layout.channels;
     if (mesh.channels != static_cast<int>(features) || mesh.feature.size() != features * mesh.vertex_count())
@@ -210,12 +210,12 @@ std::string topology_hash(const StoredMesh& mesh) {
 FaceMatch match_faces(const StoredMesh& from, const StoredMesh& to) {
     const std::vector<Key> a = sorted_keys(from), b = sorted_keys(to);
     if (a.size() != b.size())
-        throw Error(ErrorCode::kInternal,
+        throw Error(ErrorKind::kInternal,
                     cat("the stored mesh has ", b.size(), " faces, the mesh has ", a.size()));
     FaceMatch match{std::vector<Id>(a.size()), std::vector<std::uint8_t>(a.size())};
     for (std::size_t i = 0; i < a.size(); ++i) {
         if (a[i].corner != b[i].corner)
-            throw Error(ErrorCode::kInternal, cat("face ", a[i].face, " is not in the stored mesh"));
+            throw Error(ErrorKind::kInternal, cat("face ", a[i].face, " is not in the stored mesh"));
         match.face[a[i].face] = b[i].face;
         match.shift[a[i].face] = static_cast<std::uint8_t>((b[i].first + 3 - a[i].first) % 3);
     }

@@ -81,10 +81,10 @@ SampleType check_channels(const std::string& path, const Imf::ChannelList& chann
     for (auto it = channels.begin(); it != channels.end(); ++it) {
         const Imf::Channel& channel = it.channel();
         if (channel.type == Imf::UINT)
-            throw Error(ErrorCode::kUnsupported, cat(path, ": channel ", printable(it.name()),
+            throw Error(ErrorKind::kUnsupported, cat(path, ": channel ", printable(it.name()),
                                                      " holds integers, expected half or float"));
         if (channel.xSampling != 1 || channel.ySampling != 1)
-            throw Error(ErrorCode::kUnsupported,
+            throw Error(ErrorKind::kUnsupported,
                         cat(path, ": channel ", printable(it.name()), " is subsampled"));
         if (channel.type == Imf::FLOAT) type = SampleType::kFloat;
     }
@@ -99,13 +99,13 @@ void check_primaries(const std::string& path, const Imf::Header& header) {
     for (const Imath::V2f& d : differences)
         if (!(std::abs(d.x) < 0.005f && std::abs(d.y) < 0.005f))
             throw Error(
-                ErrorCode::kUnsupported,
+                ErrorKind::kUnsupported,
                 cat(path, ": the EXR's primaries are not Rec.709's; convert it, or name its colour space"));
 }
 
 void check_part(const std::string& path, const Imf::Header& header, const ImageLimits& limits) {
     if (header.hasType() && Imf::isDeepData(header.type()))
-        throw Error(ErrorCode::kUnsupported, cat(path, ": deep EXR images are not supported"));
+        throw Error(ErrorKind::kUnsupported, cat(path, ": deep EXR images are not supported"));
     const auto channels = static_cast<std::int64_t>(channel_order(header.channels()).size());
     const Imath::Box2i &shown = header.displayWindow(), &stored = header.dataWindow();
     for (const Imath::Box2i* window : {&shown, &stored})
@@ -117,7 +117,7 @@ void check_part(const std::string& path, const Imf::Header& header, const ImageL
         check_size(path, tile.xSize, tile.ySize, channels, limits);
         const std::int64_t row = (length(stored.min.x, stored.max.x) + tile.xSize) * tile.ySize;
         if (row > limits.max_pixels)
-            throw Error(ErrorCode::kBadFile, cat(path, ": a row of the EXR's tiles has ", row,
+            throw Error(ErrorKind::kBadFile, cat(path, ": a row of the EXR's tiles has ", row,
                                                  " pixels, at most ", limits.max_pixels, " are read"));
     }
 }
@@ -172,7 +172,7 @@ DecodedPicture decode_exr(const std::string& path, std::span<std::uint8_t> bytes
     } catch (const std::bad_alloc&) {
         throw;
     } catch (const std::exception& e) {
-        throw Error(ErrorCode::kBadFile, cat(path, ": cannot read the EXR: ", one_line(e.what())));
+        throw Error(ErrorKind::kBadFile, cat(path, ": cannot read the EXR: ", one_line(e.what())));
     }
 }
 

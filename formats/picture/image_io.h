@@ -47,8 +47,8 @@ struct WriteImageOptions {
 /// linear floats become sRGB in integers; other integers stay as encoded, noted by an ICC profile in colour
 /// PNG, JPEG and TIFF, and become sRGB in the rest, which can note none. The same image gives the same bytes.
 ///
-/// Throws Error: kUsage for an extension that cannot be written, and for what its format cannot hold: the
-/// sample type asked for, channels other than grey or colour, transparency (an opaque alpha is left out),
+/// Throws Error: kBadArgument for an extension that cannot be written, and for what its format cannot hold:
+/// the sample type asked for, channels other than grey or colour, transparency (an opaque alpha is left out),
 /// WebP's and JPEG's size; kIo where the file cannot be written.
 void write_image(const std::string& path, const Image& image, const WriteImageOptions& options = {});
 

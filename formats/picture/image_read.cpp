@@ -67,7 +67,7 @@ void check_finite(const std::string& path, const Image& image) {
     const auto channels = static_cast<std::size_t>(image.channels),
                width = static_cast<std::size_t>(image.width);
     const std::size_t pixel = index / channels;
-    throw Error(ErrorCode::kBadFile,
+    throw Error(ErrorKind::kBadFile,
                 cat(path, ": channel ", printable(image.channel_names[index % channels]), " of pixel (",
                     pixel % width, ", ", pixel / width, ") is not a finite number"));
 }

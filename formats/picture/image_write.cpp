@@ -63,7 +63,7 @@ bool holds(const Format& format, SampleType type) {
 Error unknown_format(const std::string& path) {
     std::string list;
     for (const Format& f : formats()) list += cat(list.empty() ? "" : ", ", f.extension);
-    return {ErrorCode::kUsage, cat(path, ": cannot write this kind of image, expected one of ", list)};
+    return {ErrorKind::kBadArgument, cat(path, ": cannot write this kind of image, expected one of ", list)};
 }
 
 const char* type_name(SampleType type) {
@@ -88,7 +88,7 @@ bool is_integer(SampleType type) {
 SampleType choose_type(const std::string& path, const Format& format, const Image& image,
                        std::optional<SampleType> asked) {
     if (asked && !holds(format, *asked))
-        throw Error(ErrorCode::kUsage,
+        throw Error(ErrorKind::kBadArgument,
                     cat(path, ": ", format.extension, " images hold no ", type_name(*asked), " samples"));
     const SampleType wanted = asked.value_or(image.sample_type);
     if (holds(format, wanted)) return wanted;
@@ -152,9 +152,10 @@ Image without_alpha(const std::string& path, const Format& format, Image image) 
         if (i % static_cast<std::size_t>(image.channels) != static_cast<std::size_t>(alpha))
             *to++ = image.data[i];
         else if (!(image.data[i] >= kOpaque))
-            throw Error(ErrorCode::kUsage, cat(path, ": ", format.extension,
-                                               " images hold no transparency, and this one has some; write "
-                                               ".png, .webp, .tif or .exr"));
+            throw Error(ErrorKind::kBadArgument,
+                        cat(path, ": ", format.extension,
+                            " images hold no transparency, and this one has some; write "
+                            ".png, .webp, .tif or .exr"));
     }
     out.channel_names.clear();
     for (const std::string& name : image.channel_names)
@@ -164,7 +165,7 @@ Image without_alpha(const std::string& path, const Format& format, Image image) 
 
 void check_shape(const std::string& path, const Format& format, const Image& image) {
     if (image.width > format.max_side || image.height > format.max_side)
-        throw Error(ErrorCode::kUsage,
+        throw Error(ErrorKind::kBadArgument,
                     cat(path, ": the image is ", image.width, "x", image.height, ", ", format.extension,
                         " images have at most ", format.max_side, " pixels a side"));
     if (format.any_channels) return;
@@ -175,7 +176,7 @@ void check_shape(const std::string& path, const Format& format, const Image& ima
         return;
     std::string list;
     for (const std::string& name : names) list += (list.empty() ? "" : " ") + name;
-    throw Error(ErrorCode::kUsage,
+    throw Error(ErrorKind::kBadArgument,
                 cat(path, ": ", format.extension, " images hold grey or colour, not channels ", list,
                     "; write .exr or .tif"));
 }

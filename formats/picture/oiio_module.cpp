@@ -58,7 +58,7 @@ SampleType sample_type(const std::string& path, OIIO::TypeDesc type) {
         case OIIO::TypeDesc::DOUBLE:
             return SampleType::kFloat;
         default:
-            throw Error(ErrorCode::kUnsupported, cat(path, ": samples of type ", type.c_str(),
+            throw Error(ErrorKind::kUnsupported, cat(path, ": samples of type ", type.c_str(),
                                                      ", expected unsigned integers or floats"));
     }
 }
@@ -66,14 +66,14 @@ SampleType sample_type(const std::string& path, OIIO::TypeDesc type) {
 void check_spec(const std::string& path, const OIIO::ImageSpec& spec, const ImageLimits& limits,
                 decltype(&check_size) check) {
     if (spec.deep || spec.depth > 1)
-        throw Error(ErrorCode::kUnsupported, cat(path, ": deep and volume images are not supported"));
+        throw Error(ErrorKind::kUnsupported, cat(path, ": deep and volume images are not supported"));
     check(path, spec.width, spec.height, spec.nchannels, limits);
     // One tile is held at a time.
     if (spec.tile_width > 0) check(path, spec.tile_width, spec.tile_height, spec.nchannels, limits);
     // CMYK and YCbCr arrive as RGB; CIELAB and its kin arrive as they are.
     const std::string photometric = spec.get_string_attribute("tiff:ColorSpace");
     if (!photometric.empty() && photometric != "CMYK" && photometric != "YCbCr")
-        throw Error(ErrorCode::kUnsupported,
+        throw Error(ErrorKind::kUnsupported,
                     cat(path, ": TIFF colours as ", photometric, " are not supported"));
 }
 
@@ -156,7 +156,7 @@ OiioPicture decode(const std::string& path, std::span<const std::uint8_t> bytes,
     use_one_thread();
     const std::string format = reader_name(claim.format);
     const auto broken = [&](const std::string& reason) {
-        return Error(ErrorCode::kBadFile, cat(path, ": cannot read the image: ", one_line(reason)));
+        return Error(ErrorKind::kBadFile, cat(path, ": cannot read the image: ", one_line(reason)));
     };
     if (claim.width != 0 || claim.height != 0)
         check(path, claim.width, claim.height, std::max<std::int64_t>(claim.channels, 1), limits);
@@ -164,7 +164,7 @@ OiioPicture decode(const std::string& path, std::span<const std::uint8_t> bytes,
         BoundedReader memory(bytes.data(), bytes.size());
         const std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::create(format);
         if (!input)
-            throw Error(ErrorCode::kUnsupported, cat(path, ": OpenImageIO is built without ", format));
+            throw Error(ErrorKind::kUnsupported, cat(path, ": OpenImageIO is built without ", format));
         OIIO::ImageSpec config, spec;
         config.attribute("oiio:UnassociatedAlpha", 1);
         if (input->supports("ioproxy")) input->set_ioproxy(&memory);
@@ -200,7 +200,7 @@ OiioPicture decode(const std::string& path, std::span<const std::uint8_t> bytes,
 std::vector<std::uint8_t> encode(const std::string& path, const OiioTask& task) {
     const auto failed = [&](const std::string& reason) {
         // All happens in memory: what the library refuses is what the format cannot hold.
-        return Error(ErrorCode::kUsage, cat(path, ": cannot be written: ", one_line(reason)));
+        return Error(ErrorKind::kBadArgument, cat(path, ": cannot be written: ", one_line(reason)));
     };
     const OIIO::TypeDesc stored = task.type == SampleType::kUint8    ? OIIO::TypeUInt8
                                   : task.type == SampleType::kUint16 ? OIIO::TypeUInt16
@@ -224,7 +224,7 @@ std::vector<std::uint8_t> encode(const std::string& path, const OiioTask& task) 
     OIIO::Filesystem::IOVecOutput memory(bytes);
     const std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create(task.writer);
     if (!output)
-        throw Error(ErrorCode::kUnsupported, cat(path, ": OpenImageIO is built without ", task.writer));
+        throw Error(ErrorKind::kUnsupported, cat(path, ": OpenImageIO is built without ", task.writer));
     output->set_ioproxy(&memory);
     if (!output->open(cat("memory", task.extension), spec)) throw failed(output->geterror());
     if (!output->write_image(stored, task.samples) || !output->close()) throw failed(output->geterror());
@@ -249,7 +249,7 @@ void text(Image& image, const TextLabel& label) {
     if (!OIIO::ImageBufAlgo::render_text(buffer, label.x, label.y, label.text, label.size, "DejaVuSans",
                                          {label.color.data(), 3}, oiio_align(label.align),
                                          OIIO::ImageBufAlgo::TextAlignY::Baseline))
-        throw Error(ErrorCode::kUnsupported, cat("cannot draw text: ", one_line(buffer.geterror())));
+        throw Error(ErrorKind::kUnsupported, cat("cannot draw text: ", one_line(buffer.geterror())));
 }
 
 constexpr OiioModule kModule = {decode, encode, text};

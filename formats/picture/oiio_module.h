@@ -44,7 +44,8 @@ struct OiioModule {
     /// `check` is called with every size before memory is taken. Throws Error as decode_png() does.
     OiioPicture (*decode)(const std::string& path, std::span<const std::uint8_t> bytes,
                           const PictureClaim& claim, const ImageLimits& limits, decltype(&check_size) check);
-    /// Throws Error: kUsage for what the format cannot hold, kUnsupported for a writer that is not there.
+    /// Throws Error: kBadArgument for what the format cannot hold, kUnsupported for a writer that is not
+    /// there.
     std::vector<std::uint8_t> (*encode)(const std::string& path, const OiioTask& task);
     /// draw_text().
     void (*draw_text)(Image& image, const TextLabel& label);

@@ -20,7 +20,7 @@ namespace {
 using Bytes = std::span<const std::uint8_t>;
 
 Error broken(const std::string& path, const std::string& what) {
-    return Error(ErrorCode::kBadFile, cat(path, ": ", what));
+    return Error(ErrorKind::kBadFile, cat(path, ": ", what));
 }
 
 // Unsigned numbers of 1 to 4 bytes; 0 past the end, which no check below takes for a size.
@@ -104,7 +104,7 @@ void check_bmp_compression(const std::string& path, Bytes b) {
     const std::uint32_t compression = header < 40 ? 0 : little_endian(b, 30, 4);
     constexpr std::uint32_t kNone = 0, kRuns8 = 1, kRuns4 = 2, kMasks = 3, kMasksWithAlpha = 6;
     if (compression > kMasks && compression != kMasksWithAlpha)
-        throw Error(ErrorCode::kUnsupported, cat(path, ": BMP of compression ", compression, ", expected ",
+        throw Error(ErrorKind::kUnsupported, cat(path, ": BMP of compression ", compression, ", expected ",
                                                  kNone, " to ", kMasks, " or ", kMasksWithAlpha));
     if ((compression == kRuns8 && bits != 8) || (compression == kRuns4 && bits != 4))
         throw broken(path, cat("BMP of ", bits, " bits with compression ", compression, ", which is for ",
@@ -163,7 +163,7 @@ PictureFormat recognise(const std::string& path, Bytes b) {
     for (const Signature& s : kSignatures) {
         if (!has(b, s.offset, s.bytes)) continue;
         if (s.format == PictureFormat::kTiff && std::ranges::count(kRawExtensions, extension))
-            throw Error(ErrorCode::kUnsupported,
+            throw Error(ErrorKind::kUnsupported,
                         cat(path, ": camera raw files are not supported; develop it to TIFF, EXR or PNG"));
         return s.format;
     }

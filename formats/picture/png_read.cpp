@@ -106,7 +106,7 @@ DecodedPicture decode_png(const std::string& path, std::span<const std::uint8_t>
     check_size(path, claim.width, claim.height, 1, limits);
     State s;
     const auto broken = [&] {
-        return Error(ErrorCode::kBadFile, cat(path, ": cannot read the image: ", one_line(s.error)));
+        return Error(ErrorKind::kBadFile, cat(path, ": cannot read the image: ", one_line(s.error)));
     };
     s.left = bytes;
     s.png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &s, on_error, on_warning);

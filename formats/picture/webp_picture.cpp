@@ -31,7 +31,7 @@ Bytes chunk(const WebPDemuxer* demuxer, const char* name) {
 
 DecodedPicture decode_webp(const std::string& path, Bytes bytes, const ImageLimits& limits) {
     const auto broken = [&](const char* what) {
-        return Error(ErrorCode::kBadFile, cat(path, ": cannot read the WebP: ", what));
+        return Error(ErrorKind::kBadFile, cat(path, ": cannot read the WebP: ", what));
     };
     const WebPData data{bytes.data(), bytes.size()};
     const std::unique_ptr<WebPDemuxer, decltype(&WebPDemuxDelete)> demuxer(WebPDemux(&data), WebPDemuxDelete);
@@ -88,7 +88,7 @@ std::vector<std::uint8_t> encode_webp(const Image& image) {
     WebPPicture picture;
     WebPMemoryWriter writer;
     if (!WebPConfigInit(&config) || !WebPConfigLosslessPreset(&config, 6) || !WebPPictureInit(&picture))
-        throw Error(ErrorCode::kInternal, "libwebp is of another version than its headers");
+        throw Error(ErrorKind::kInternal, "libwebp is of another version than its headers");
     config.exact = 1;
     WebPMemoryWriterInit(&writer);
     const std::unique_ptr<WebPMemoryWriter, decltype(&WebPMemoryWriterClear)> clear(&writer,

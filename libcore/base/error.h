@@ -7,26 +7,24 @@
 
 namespace imgmesh {
 
-/// Exit codes of every tool. The comments are printed by `--help`.
-enum class ErrorCode : int {
-    kOk = 0,           ///< done
-    kInternal = 1,     ///< internal error
-    kUsage = 2,        ///< wrong use of the command line
-    kIo = 3,           ///< cannot read or write
-    kBadFile = 4,      ///< a file's content is not what it must be
-    kUnsupported = 5,  ///< a valid request or file that imgmesh does not support
-    kDifferent = 7,    ///< compared, and different
+/// What kind of thing is wrong. Tools give each kind an exit code (tools/common/exit_code.h).
+enum class ErrorKind {
+    kInternal,     ///< our own mistake, or a library that failed for no reason of the user's
+    kBadArgument,  ///< a parameter is out of range, or parameters contradict each other
+    kIo,           ///< a file cannot be read or written
+    kBadFile,      ///< a file's content is not what it must be
+    kUnsupported,  ///< a valid request or file that imgmesh does not support
 };
 
 /// Thrown for a bad argument or a bad file. The text names the file or option, what was found and what was
 /// expected, in one line without a full stop. Our own mistakes are assertions, not Errors.
 class Error : public std::runtime_error {
   public:
-    Error(ErrorCode code, const std::string& text) : std::runtime_error(text), code_(code) {}
-    ErrorCode code() const { return code_; }
+    Error(ErrorKind kind, const std::string& text) : std::runtime_error(text), kind_(kind) {}
+    ErrorKind kind() const { return kind_; }
 
   private:
-    ErrorCode code_;
+    ErrorKind kind_;
 };
 
 /// Concatenates everything that streams into one string; for messages.

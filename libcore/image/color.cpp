@@ -212,7 +212,7 @@ Gamut gamut_of(const Image& image, const Mask& mask) {
 FeatureImage luv_image(const Image& image, Range range) {
     const ColorChannels channels(image);
     if (!channels.any())
-        throw Error(ErrorCode::kUnsupported, "the image has no colour: neither channels R, G, B nor Y");
+        throw Error(ErrorKind::kUnsupported, "the image has no colour: neither channels R, G, B nor Y");
     const DecodeTable decode(image.color_space);
     const bool tabulated = image.sample_type == SampleType::kUint8 && has_srgb_primaries(image.color_space);
     FeatureImage out{image.width, image.height, 3, parallel_vector<float>(image.pixel_count() * 3)};

@@ -44,7 +44,7 @@ SplitNames split_names(const std::vector<std::string>& names) {
 }
 
 void check_channels(const std::vector<ChannelChoice>& choices) {
-    const auto refuse = [](const std::string& text) { throw Error(ErrorCode::kUsage, text); };
+    const auto refuse = [](const std::string& text) { throw Error(ErrorKind::kBadArgument, text); };
     const std::vector<std::string> names = names_of(choices);
     for (const auto& [name, weight] : choices) {
         if (!(weight > 0 && std::isfinite(weight)))
@@ -64,13 +64,13 @@ FeatureSpace feature_space(const Image& image, const std::vector<ChannelChoice>&
     check_channels(choices);
     for (const ChannelChoice& choice : choices)
         if (image.channel(choice.name) < 0)
-            throw Error(ErrorCode::kBadFile, cat("the image has no channel ", choice.name, ", it has ",
+            throw Error(ErrorKind::kBadFile, cat("the image has no channel ", choice.name, ", it has ",
                                                  listed(image.channel_names)));
     const SplitNames split = split_names(choices.empty() ? image.channel_names : names_of(choices));
     FeatureSpace space;
     space.color = !split.color.empty();
     if (choices.empty() && !space.color)
-        throw Error(ErrorCode::kUnsupported,
+        throw Error(ErrorKind::kUnsupported,
                     cat("the image has no colour, neither channels R, G, B nor Y, but ",
                         listed(image.channel_names), "; channels can be chosen"));
     if (space.color) {
@@ -100,7 +100,7 @@ FeatureImage extract_features(const Image& image, const FeatureSpace& space, con
             const float feature = mask.contains(i) ? value * space.plain_weight[c] : 0;
             if (!(std::abs(feature) <= kLargestFeature)) {
                 const auto width = static_cast<std::size_t>(image.width);
-                throw Error(ErrorCode::kUnsupported,
+                throw Error(ErrorKind::kUnsupported,
                             cat("channel ", space.auxiliary[c], " is ", value, " at pixel (", i % width, ", ",
                                 i / width, "); times its weight ", space.plain_weight[c], " at most ",
                                 kLargestFeature, " is supported"));

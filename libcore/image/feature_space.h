@@ -40,7 +40,7 @@ struct ChannelChoice {
     double weight = 1;  ///< of its values as they are, beside L*u*v* with L* from 0 to 100; > 0
 };
 
-/// Throws Error(kUsage) for a channel that is chosen twice, a weight that is not finite and above 0,
+/// Throws Error(kBadArgument) for a channel that is chosen twice, a weight that is not finite and above 0,
 /// different weights of R, G and B and more than kMaxFeatures features.
 void check_channels(const std::vector<ChannelChoice>& choices);
 

@@ -42,7 +42,7 @@ Mask image_mask(const Image& image, float threshold) {
         });
     if (const int alpha = image.channel("A"); alpha >= 0)
         return thresholded(image, threshold, [&](const float* pixel) { return pixel[alpha]; });
-    throw Error(ErrorCode::kUnsupported, "a mask needs channels A, Y, or R, G and B");
+    throw Error(ErrorKind::kUnsupported, "a mask needs channels A, Y, or R, G and B");
 }
 
 }  // namespace imgmesh

@@ -19,7 +19,7 @@ std::array<int, 3> color_channels(const Image& image) {
     const int grey = image.channel("Y");
     const std::array<int, 3> rgb = {image.channel("R"), image.channel("G"), image.channel("B")};
     if (*std::min_element(rgb.begin(), rgb.end()) >= 0) return rgb;
-    if (grey < 0) throw Error(ErrorCode::kUnsupported, "a texture needs channels R, G and B, or Y");
+    if (grey < 0) throw Error(ErrorKind::kUnsupported, "a texture needs channels R, G and B, or Y");
     return {grey, grey, grey};
 }
 

@@ -17,7 +17,7 @@ bool is_hidden(const Image& image, int alpha, int x, int y) {
 
 std::vector<ChannelDifference> compare_channels(const Image& a, const Image& b) {
     if (a.width != b.width || a.height != b.height)
-        throw Error(ErrorCode::kUsage,
+        throw Error(ErrorKind::kBadArgument,
                     cat("images differ in size: ", a.width, "x", a.height, " and ", b.width, "x", b.height));
     const int alpha_a = a.channel("A"), alpha_b = b.channel("A");
     const std::vector<std::string> of_b = split_names(b.channel_names).auxiliary;

@@ -15,8 +15,8 @@ struct ChannelDifference {
 };
 
 /// Of every channel that both have and that is neither colour nor alpha, in the order of `a`, over the pixels
-/// that are wholly transparent in neither; none where there is no such pixel. Throws Error(kUsage) where
-/// sizes differ.
+/// that are wholly transparent in neither; none where there is no such pixel. Throws Error(kBadArgument)
+/// where sizes differ.
 std::vector<ChannelDifference> compare_channels(const Image& a, const Image& b);
 
 }  // namespace imgmesh

@@ -26,7 +26,7 @@ class Colors {
           alpha_(image.channel("A")) {
         if (std::min({rgb_[0], rgb_[1], rgb_[2]}) < 0) rgb_.fill(image.channel("Y"));
         if (rgb_[0] < 0)
-            throw Error(ErrorCode::kUnsupported, "the image has no colour: neither channels R, G, B nor Y");
+            throw Error(ErrorKind::kUnsupported, "the image has no colour: neither channels R, G, B nor Y");
     }
 
     bool transparent(int x, int y) const { return alpha_ >= 0 && image_.pixel(x, y)[alpha_] <= 0; }
@@ -91,7 +91,7 @@ bool has_color(const Image& image) {
 
 ImageDifference compare_images(const Image& a, const Image& b) {
     if (a.width != b.width || a.height != b.height)
-        throw Error(ErrorCode::kUsage,
+        throw Error(ErrorKind::kBadArgument,
                     cat("images differ in size: ", a.width, "x", a.height, " and ", b.width, "x", b.height));
     ImageDifference result;
     // Differences of linear light say little about what one sees, and would not compare with other images'.

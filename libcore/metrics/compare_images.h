@@ -31,8 +31,8 @@ struct ImageDifference {
 };
 
 /// Grey counts as R = G = B; alpha only tells which pixels are compared. Symmetric in `a` and `b`; the
-/// figures are 0 where no pixel is compared. Same result for any number of threads. Throws Error(kUsage)
-/// where sizes differ, Error(kUnsupported) for an image without colour.
+/// figures are 0 where no pixel is compared. Same result for any number of threads. Throws
+/// Error(kBadArgument) where sizes differ, Error(kUnsupported) for an image without colour.
 ImageDifference compare_images(const Image& a, const Image& b);
 
 /// Whether the image has R, G and B, or Y.

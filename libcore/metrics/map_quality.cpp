@@ -143,10 +143,10 @@ namespace {
 double range_rms(const BaseMesh& mesh, const PixelMap& map, const FeatureImage& reference, int feature_begin,
                  int feature_end) {
     if (map.width != reference.width || map.height != reference.height)
-        throw Error(ErrorCode::kUsage, cat("pixel map is ", map.width, "x", map.height, ", reference is ",
-                                           reference.width, "x", reference.height));
+        throw Error(ErrorKind::kBadArgument, cat("pixel map is ", map.width, "x", map.height,
+                                                 ", reference is ", reference.width, "x", reference.height));
     if (mesh.channels != reference.channels)
-        throw Error(ErrorCode::kUsage,
+        throw Error(ErrorKind::kBadArgument,
                     cat("base mesh has ", mesh.channels, " channels, reference has ", reference.channels));
     // One sum a row, added in order: the same result for any number of threads.
     std::vector<double> sums(static_cast<std::size_t>(map.height));

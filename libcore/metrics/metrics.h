@@ -56,7 +56,7 @@ std::vector<Vec2d> mapped_positions(const BaseMesh& mesh, const PixelMap& map);
 
 /// Root mean square over pixels of the Euclidean distance in feature space between the map's interpolated
 /// features and `reference`; pixels with map face kNone are left out (0 if all are). Face ids must be valid.
-/// Throws Error(kUsage) where sizes or channels differ.
+/// Throws Error(kBadArgument) where sizes or channels differ.
 double map_rms(const BaseMesh& mesh, const PixelMap& map, const FeatureImage& reference);
 
 /// The same of one feature alone.

@@ -35,7 +35,7 @@ PixelMap stored(const BaseMesh& mesh, const PixelEmbedding& pixels, const std::v
     for (const WeightPrecision precision : {WeightPrecision::kHalf, WeightPrecision::kFloat})
         if (!wanted || *wanted == precision)
             if (auto map = quantize_map(mesh, pixels, fields, neighbors, precision)) return *std::move(map);
-    throw Error(ErrorCode::kUnsupported,
+    throw Error(ErrorKind::kUnsupported,
                 "the weights are too coarse for faces this large: --bary float holds them");
 }
 

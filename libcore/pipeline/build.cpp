@@ -61,10 +61,10 @@ std::int64_t largest_patch(const Level& level) {
 Mask checked(Mask mask, const Image& image) {
     if (mask.empty()) return mask;
     if (mask.width != image.width || mask.height != image.height)
-        throw Error(ErrorCode::kBadFile, cat("the mask is ", mask.width, "x", mask.height, ", the image is ",
+        throw Error(ErrorKind::kBadFile, cat("the mask is ", mask.width, "x", mask.height, ", the image is ",
                                              image.width, "x", image.height));
     const std::int64_t inside = mask.count();
-    if (inside == 0) throw Error(ErrorCode::kUnsupported, "no pixel is inside the mask");
+    if (inside == 0) throw Error(ErrorKind::kUnsupported, "no pixel is inside the mask");
     if (inside == static_cast<std::int64_t>(image.pixel_count())) return {};
     return mask;
 }
@@ -243,7 +243,7 @@ void build_to_rms(const Pipeline& pipeline, SimplifyParams& limits, MeshImage& m
     const double guess = std::clamp(share, 1.0 / 4096, kMost) * static_cast<double>(vertices);
     RmsMeshes meshes(pipeline, grid, limits, mesh_image);
     if (!search_rms(std::max(std::int64_t{4}, vertices), std::llround(guess), rms, meshes))
-        throw Error(ErrorCode::kUnsupported,
+        throw Error(ErrorKind::kUnsupported,
                     cat("rms is ", rms, ", but the least that could be reached is ", meshes.least()));
 }
 
@@ -252,10 +252,10 @@ void build_to_rms(const Pipeline& pipeline, SimplifyParams& limits, MeshImage& m
 BuildResult build_mesh_image(const Image& image, const BuildParams& asked, const Progress& progress,
                              Mask mask) {
     check_params(asked);
-    if (image.width < 1 || image.height < 1) throw Error(ErrorCode::kUsage, "the image is empty");
+    if (image.width < 1 || image.height < 1) throw Error(ErrorKind::kBadArgument, "the image is empty");
     for (const float sample : image.data)
         if (!std::isfinite(sample))
-            throw Error(ErrorCode::kUnsupported, "the image has samples that are not finite");
+            throw Error(ErrorKind::kUnsupported, "the image has samples that are not finite");
     mask = checked(std::move(mask), image);
     Stopwatch watch;
     // What lies outside of the colours that a container holds could only mislead the fit: L*u*v* of negative
@@ -266,7 +266,7 @@ BuildResult build_mesh_image(const Image& image, const BuildParams& asked, const
     BuildParams params = asked;
     if (!params.refine) params.refine = refinable ? refine_rounds(asked) : 0;
     if ((*params.refine > 0 || params.objective == Objective::kRgb) && !refinable)
-        throw Error(ErrorCode::kUnsupported,
+        throw Error(ErrorKind::kUnsupported,
                     "refinement, which the presets best and fem bring along, is for colour alone, without "
                     "light above 1");
     const FeatureImage feature = extract_features(image, space, mask);
@@ -291,7 +291,7 @@ BuildResult build_mesh_image(const Image& image, const BuildParams& asked, const
         for (const Level& level : levels) largest = std::max(largest, largest_patch(level));
         if (largest <= *params.max_cluster) break;
         if (collapse.max_face_area < 0.5f)
-            throw Error(ErrorCode::kUnsupported, cat("the map gathers ", largest,
+            throw Error(ErrorKind::kUnsupported, cat("the map gathers ", largest,
                                                      " pixels in a face of the dense mesh, more than the ",
                                                      *params.max_cluster, " allowed"));
         collapse.max_face_area *=

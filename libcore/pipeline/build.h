@@ -128,7 +128,7 @@ struct BuildResult {
 /// mask   the pixels to mesh (mask.h); empty() for all. Exactly the others get no face in the map. A mask
 /// with
 ///        all pixels inside counts as none. Percents and shares are of the pixels inside.
-/// Throws Error(kUsage) for a parameter out of range, Error(kBadFile) for a mask of another size,
+/// Throws Error(kBadArgument) for a parameter out of range, Error(kBadFile) for a mask of another size,
 /// Error(kUnsupported) for a mask without a pixel inside, and for an image without colour channels or with
 /// values that are not finite; and as feature_space() and extract_features() do.
 BuildResult build_mesh_image(const Image& image, const BuildParams& params, const Progress& progress = {},

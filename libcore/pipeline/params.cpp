@@ -10,7 +10,7 @@ namespace imgmesh {
 namespace {
 
 void require(bool holds, const std::string& text) {
-    if (!holds) throw Error(ErrorCode::kUsage, text);
+    if (!holds) throw Error(ErrorKind::kBadArgument, text);
 }
 
 // Smoother gradients pay where vertices are far apart; figures in docs/paper-map.md.

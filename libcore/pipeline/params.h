@@ -8,7 +8,7 @@
 
 namespace imgmesh {
 
-/// Throws Error(kUsage) for the first parameter that is out of its range.
+/// Throws Error(kBadArgument) for the first parameter that is out of its range.
 void check_params(const BuildParams& params);
 
 /// The collapse's targets, finest level first, for an image of that many pixels.

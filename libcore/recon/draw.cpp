@@ -141,10 +141,10 @@ bool may_scale(DrawMode mode) {
 double checked_scale(const SourceInfo& source, const DrawParams& params) {
     if (params.scale == 1) return 1;
     if (!may_scale(params.mode))
-        throw Error(ErrorCode::kUsage,
+        throw Error(ErrorKind::kBadArgument,
                     cat("scale is ", params.scale, ": this drawing has the image's own size"));
     if (!(params.scale > 0 && params.scale * source.width * params.scale * source.height <= kMaxPixels))
-        throw Error(ErrorCode::kUsage,
+        throw Error(ErrorKind::kBadArgument,
                     cat("scale is ", params.scale, ", expected above 0 and at most ", kMaxPixels,
                         " pixels of a ", source.width, "x", source.height, " image"));
     return params.scale;
@@ -181,7 +181,7 @@ Image draw(const MeshImage& mesh_image, int level_index, const DrawParams& param
         }
         case DrawMode::kVisits: {
             if (level_index != 0)
-                throw Error(ErrorCode::kUsage,
+                throw Error(ErrorKind::kBadArgument,
                             cat("level is ", level_index, ": visits are those of level 0"));
             const std::vector<float> lightness = visit_lightness(mesh_image);
             return encode_rows(source, map, [&](int y, float* planes) {

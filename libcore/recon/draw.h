@@ -26,7 +26,7 @@ struct DrawParams {
 /// above 1 counts, Gamut::kHdr), clamped to [0, 1] unless the space is linear; RGB, and A where the source
 /// has a mask (0 outside the mask for map, patches and visits, outside the mesh for the others). Size is
 /// round(scale * source size), at least 1; the centre of output pixel i is at (i + 0.5) / scale - 0.5 of the
-/// source. Throws Error(kUsage) for a level that is not there or a scale that the mode does not have,
+/// source. Throws Error(kBadArgument) for a level that is not there or a scale that the mode does not have,
 /// Error(kUnsupported) for a mesh without colour or, drawing visits, a file without them. Visits are those
 /// down to level 0: no other level has any.
 Image draw(const MeshImage& mesh_image, int level_index, const DrawParams& params);
@@ -36,7 +36,7 @@ double checked_scale(const SourceInfo& source, const DrawParams& params);
 
 /// The wire drawing (the edges alone, on nothing) or the flat drawing as an SVG document in sRGB. One unit is
 /// a source pixel; the image's sides lie half a pixel outside the outermost pixel centres, as in draw().
-/// Throws as draw() does, Error(kUsage) for another mode.
+/// Throws as draw() does, Error(kBadArgument) for another mode.
 std::string draw_svg(const MeshImage& mesh_image, int level_index, DrawMode mode);
 
 /// As draw_svg, each face with a linear gradient: of all that SVG can say the nearest to colours interpolated

@@ -36,7 +36,7 @@ std::vector<Origin> origins(const SplitNames& names, const Image& drawn) {
 
 Image draw_channels(const MeshImage& mesh_image, int level_index, const DrawParams& params) {
     if (params.mode != DrawMode::kMap && params.mode != DrawMode::kGouraud)
-        throw Error(ErrorCode::kUsage, "only the map and Gouraud drawings have all channels");
+        throw Error(ErrorKind::kBadArgument, "only the map and Gouraud drawings have all channels");
     const SourceInfo& source = mesh_image.source;
     const SplitNames names = split_names(source.channel_names);
     const Level& level = checked_level(mesh_image, level_index);

@@ -41,7 +41,7 @@ void append_edges(std::string& out, const BaseMesh& mesh, const std::vector<Vec2
 
 std::string draw_svg(const MeshImage& mesh_image, int level_index, DrawMode mode) {
     if (mode != DrawMode::kWire && mode != DrawMode::kFlat)
-        throw Error(ErrorCode::kUsage, "only the wire and flat drawings can be written as SVG");
+        throw Error(ErrorKind::kBadArgument, "only the wire and flat drawings can be written as SVG");
     const BaseMesh& mesh = level_to_draw(mesh_image, level_index).mesh;
     const SourceInfo& source = mesh_image.source;
     const std::vector<Vec2d> points = outward(mesh, source);

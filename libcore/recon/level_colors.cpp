@@ -7,8 +7,8 @@ namespace imgmesh {
 
 const Level& checked_level(const MeshImage& mesh_image, int level_index) {
     if (level_index < 0 || static_cast<std::size_t>(level_index) >= mesh_image.levels.size())
-        throw Error(ErrorCode::kUsage, cat("level is ", level_index, ", expected 0 to ",
-                                           static_cast<int>(mesh_image.levels.size()) - 1));
+        throw Error(ErrorKind::kBadArgument, cat("level is ", level_index, ", expected 0 to ",
+                                                 static_cast<int>(mesh_image.levels.size()) - 1));
     return mesh_image.levels[static_cast<std::size_t>(level_index)];
 }
 
@@ -18,7 +18,7 @@ const Level& level_to_draw(const MeshImage& mesh_image, int level_index) {
     for (const std::string& name : mesh_image.source.channel_names)
         names += (names.empty() ? "" : ", ") + name;
     if (level.mesh.channels < 3 || split_names(mesh_image.source.channel_names).color.empty())
-        throw Error(ErrorCode::kUnsupported,
+        throw Error(ErrorKind::kUnsupported,
                     cat("the base mesh has no colour, its channels are ", names, "; an EXR holds them"));
     return level;
 }

@@ -7,7 +7,7 @@
 
 namespace imgmesh {
 
-/// Level `level_index`. Throws Error(kUsage) where it is not there.
+/// Level `level_index`. Throws Error(kBadArgument) where it is not there.
 const Level& checked_level(const MeshImage& mesh_image, int level_index);
 /// The same; throws Error(kUnsupported) for a mesh without colour.
 const Level& level_to_draw(const MeshImage& mesh_image, int level_index);

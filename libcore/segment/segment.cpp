@@ -11,7 +11,7 @@ namespace imgmesh {
 namespace {
 
 void check(const Level& level, const FeatureImage& picture, const SegmentParams& params) {
-    const auto fail = [](const std::string& text) { throw Error(ErrorCode::kUsage, text); };
+    const auto fail = [](const std::string& text) { throw Error(ErrorKind::kBadArgument, text); };
     if (!(params.threshold > 0 && std::isfinite(params.threshold)))
         fail(cat("threshold is ", params.threshold, ", expected above 0"));
     if (params.segments && params.superpixels) fail("segments and superpixels exclude each other");
@@ -26,7 +26,7 @@ void check(const Level& level, const FeatureImage& picture, const SegmentParams&
         fail(cat("the image has ", picture.width, "x", picture.height, " pixels, the container ",
                  level.map.width, "x", level.map.height));
     if (picture.channels != 3)
-        throw Error(ErrorCode::kUnsupported,
+        throw Error(ErrorKind::kUnsupported,
                     cat("the image has ", picture.channels, " channels, expected L*, u*, v*"));
 }
 
@@ -35,13 +35,13 @@ std::size_t merges_to_count(const Hierarchy& hierarchy, std::int64_t count, cons
     const std::size_t least = hierarchy.cells - hierarchy.merges.size(),
                       most = hierarchy.cells - hierarchy.forced;
     if (wanted > most)
-        throw Error(ErrorCode::kUsage,
+        throw Error(ErrorKind::kBadArgument,
                     cat(what, " is ", count, ", at most ", most,
                         hierarchy.forced > 0 ? " regions of that size can be had from " : " can be had from ",
                         hierarchy.cells, " connected patches; a mesh with more faces has more"));
     if (wanted < least)
-        throw Error(ErrorCode::kUsage, cat(what, " is ", count, ", expected at least ", least,
-                                           ": so many islands has the mask"));
+        throw Error(ErrorKind::kBadArgument, cat(what, " is ", count, ", expected at least ", least,
+                                                 ": so many islands has the mask"));
     return hierarchy.cells - wanted;
 }
 
@@ -49,7 +49,7 @@ std::size_t merges_to_count(const Hierarchy& hierarchy, std::int64_t count, cons
 
 FeatureImage reconstruct_luv(const Level& level) {
     if (level.mesh.channels < 3)
-        throw Error(ErrorCode::kUnsupported, cat("the base mesh has ", level.mesh.channels,
+        throw Error(ErrorKind::kUnsupported, cat("the base mesh has ", level.mesh.channels,
                                                  " channels, expected colour as L*, u*, v*"));
     FeatureImage picture{level.map.width, level.map.height, 3, {}};
     picture.data.assign(level.map.coords.size() * 3, 0.0f);
@@ -75,7 +75,7 @@ Segmentation segment(const Level& level, const FeatureImage& picture, const Segm
     result.cells = cut_cells(level.map);
     const auto pixels = static_cast<double>(std::count_if(
         result.cells.of_pixel.begin(), result.cells.of_pixel.end(), [](Id cell) { return cell != kNone; }));
-    if (pixels == 0) throw Error(ErrorCode::kUnsupported, "every pixel is outside the mask");
+    if (pixels == 0) throw Error(ErrorKind::kUnsupported, "every pixel is outside the mask");
 
     const bool contours = !params.superpixels && params.distance == DistanceRule::kContour;
     tell(0.1, "contrasts");

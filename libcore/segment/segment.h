@@ -39,9 +39,9 @@ FeatureImage reconstruct_luv(const Level& level);
 /// Patches, cut where they are not connected, merge until `params` say stop. image: L*u*v*, of the map's
 /// size. Same result for any number of threads.
 ///
-/// Throws Error(kUsage) for a parameter out of range, an image of another size, more regions than there are
-/// connected parts of patches (of that least size), or fewer than the mask has islands; Error(kUnsupported)
-/// for an image without colour or a mask without a pixel.
+/// Throws Error(kBadArgument) for a parameter out of range, an image of another size, more regions than
+/// there are connected parts of patches (of that least size), or fewer than the mask has islands;
+/// Error(kUnsupported) for an image without colour or a mask without a pixel.
 Segmentation segment(const Level& level, const FeatureImage& picture, const SegmentParams& params,
                      const Progress& progress = {});
 

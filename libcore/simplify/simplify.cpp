@@ -76,7 +76,7 @@ std::unique_ptr<SimplifyRun::Engine> make_engine(const GridMesh& grid, const Sim
                                                  const SimplifyHooks& hooks) {
     const int channels = grid.feature.channels;
     if (channels < 1 || channels > kMaxFeatures)
-        throw Error(ErrorCode::kUsage, cat(channels, " features, expected 1 to ", kMaxFeatures));
+        throw Error(ErrorKind::kBadArgument, cat(channels, " features, expected 1 to ", kMaxFeatures));
     return with_padded_features(channels, [&](auto padded) -> std::unique_ptr<SimplifyRun::Engine> {
         constexpr int kPadded = padded();
         const auto make = [&](const GridMesh& g) -> std::unique_ptr<SimplifyRun::Engine> {

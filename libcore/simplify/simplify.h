@@ -76,8 +76,8 @@ struct SimplifyHooks {
 /// targets  one a level, each at least as coarse as the one before
 /// return   the mesh at each of the targets, in that order
 ///
-/// Any number of features, 1 to kMaxFeatures (Error(kUsage) else). About 70 bytes a pixel with up to three
-/// of them, 170 where it cannot begin in tiles (hooks, total priority, a goal above half the pixels),
+/// Any number of features, 1 to kMaxFeatures (Error(kBadArgument) else). About 70 bytes a pixel with up to
+/// three of them, 170 where it cannot begin in tiles (hooks, total priority, a goal above half the pixels),
 /// 480 with another metric or solver than the first; O(n). Deterministic, with any number of threads.
 std::vector<SimplifyResult> simplify(const GridMesh& grid, const SimplifyParams& params,
                                      std::span<const SimplifyTarget> targets, const Progress& progress = {},

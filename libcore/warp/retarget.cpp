@@ -175,7 +175,7 @@ VertexMoves retarget_moves(const BaseMesh& mesh, int width, int height, const Ou
 DisplacementField retarget_field(const MeshImage& mesh_image, const OutputSize& size) {
     const SourceInfo& source = mesh_image.source;
     if (source.has_mask)
-        throw Error(ErrorCode::kUnsupported, "a masked image has no sides to give another size to");
+        throw Error(ErrorKind::kUnsupported, "a masked image has no sides to give another size to");
     MeshImage by_place;
     by_place.source = source;
     by_place.levels.resize(1);

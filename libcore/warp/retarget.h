@@ -15,7 +15,7 @@ namespace imgmesh {
 /// face's area and s the face's own best scale, found by turns (as in Wang et al. 2008, "Optimized
 /// scale-and-stretch"; linear systems over the mesh, factorised once).
 ///
-/// Throws Error(kUsage) for a size outside what warp_image() draws.
+/// Throws Error(kBadArgument) for a size outside what warp_image() draws.
 VertexMoves retarget_moves(const BaseMesh& mesh, int width, int height, const OutputSize& size);
 
 /// The field that draws level 0 so. Pixels move with the face that covers them, not through the pixel map,

@@ -11,7 +11,7 @@ namespace imgmesh {
 namespace {
 
 [[noreturn]] void fail(const std::string& where, const std::string& text) {
-    throw Error(ErrorCode::kBadFile, cat(where, ": ", text));
+    throw Error(ErrorKind::kBadFile, cat(where, ": ", text));
 }
 
 Id nearest_vertex(const BaseMesh& mesh, const Vec2d& point) {

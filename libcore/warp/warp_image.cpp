@@ -18,8 +18,8 @@ OutputSize checked_size(const DisplacementField& field, OutputSize size) {
     if (size.width == 0 && size.height == 0) return {field.width, field.height};
     if (size.width < 1 || size.height < 1 || std::max(size.width, size.height) > kMaxSide ||
         std::int64_t{size.width} * size.height > kMaxPixels)
-        throw Error(ErrorCode::kUsage, cat("size is ", size.width, "x", size.height, ", expected 1 to ",
-                                           kMaxSide, " a side and at most ", kMaxPixels, " pixels"));
+        throw Error(ErrorKind::kBadArgument, cat("size is ", size.width, "x", size.height, ", expected 1 to ",
+                                                 kMaxSide, " a side and at most ", kMaxPixels, " pixels"));
     return size;
 }
 
@@ -213,7 +213,7 @@ std::vector<float> alpha_of(const Image& image) {
 
 Image warp_image(const Image& image, const DisplacementField& given, const OutputSize& wanted) {
     if (image.width != given.width || image.height != given.height)
-        throw Error(ErrorCode::kBadFile, cat("the image has ", image.width, "x", image.height,
+        throw Error(ErrorKind::kBadFile, cat("the image has ", image.width, "x", image.height,
                                              " pixels, the pixel map ", given.width, "x", given.height));
     const OutputSize size = checked_size(given, wanted);
     DisplacementField extended;

@@ -31,8 +31,8 @@ struct OutputSize {
 ///   pixels move by whole numbers it is the image shifted.
 ///
 /// image  of the field's size. Same result for any number of threads.
-/// Throws Error(kBadFile) for an image of another size, Error(kUsage) for an output size below 1 or with more
-/// than 2^28 pixels or 65535 a side.
+/// Throws Error(kBadFile) for an image of another size, Error(kBadArgument) for an output size below 1 or
+/// with more than 2^28 pixels or 65535 a side.
 Image warp_image(const Image& image, const DisplacementField& field, const OutputSize& size = {});
 
 /// The image's own alpha, size width * height; empty without one.

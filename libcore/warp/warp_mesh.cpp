@@ -57,11 +57,11 @@ void check_faces(const BaseMesh& mesh, std::size_t level) {
                     &c = mesh.position[mesh.faces[f][2]];
         for (const Vec2f& p : {a, b, c})
             if (!(p.cwiseAbs().maxCoeff() < kFarthest))
-                throw Error(ErrorCode::kUnsupported,
+                throw Error(ErrorKind::kUnsupported,
                             cat("level ", level, ": a vertex would lie at (", p.x(), ",", p.y(),
                                 "), a container holds coordinates below ", kFarthest));
         if (!(signed_area2(a, b, c) > 0))
-            throw Error(ErrorCode::kUnsupported, cat("level ", level, ": face ", f, " would turn over near (",
+            throw Error(ErrorKind::kUnsupported, cat("level ", level, ": face ", f, " would turn over near (",
                                                      a.x(), ",", a.y(), "), a container holds no such mesh"));
     }
 }

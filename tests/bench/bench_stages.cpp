@@ -78,7 +78,7 @@ void check_same(const MeshImage& written, const MeshImage& read, const FeatureIm
     const Level &a = written.levels.front(), &b = read.levels.front();
     if (a.mesh.faces.size() != b.mesh.faces.size() ||
         std::abs(map_rms(a.mesh, a.map, feature) - map_rms(b.mesh, b.map, feature)) > 1e-4)
-        throw Error(ErrorCode::kInternal, "the container read is not the one written");
+        throw Error(ErrorKind::kInternal, "the container read is not the one written");
 }
 
 }  // namespace

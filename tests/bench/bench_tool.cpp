@@ -37,7 +37,8 @@ int number(const std::string& text, int least, int most) {
     char* end = nullptr;
     const long value = std::strtol(text.c_str(), &end, 10);
     if (text.empty() || *end != '\0' || value < least || value > most)
-        throw Error(ErrorCode::kUsage, cat("'", text, "': expected a number from ", least, " to ", most));
+        throw Error(ErrorKind::kBadArgument,
+                    cat("'", text, "': expected a number from ", least, " to ", most));
     return static_cast<int>(value);
 }
 
@@ -54,9 +55,9 @@ int mosaic(const Arguments& a) {
         pictures.push_back(read_image(a[i]));
         if (pictures.back().channels != 3 || pictures.back().width != pictures.front().width ||
             pictures.back().height != pictures.front().height)
-            throw Error(ErrorCode::kUsage, cat(a[i], ": expected RGB pictures of one size"));
+            throw Error(ErrorKind::kBadArgument, cat(a[i], ": expected RGB pictures of one size"));
     }
-    if (pictures.empty()) throw Error(ErrorCode::kUsage, "mosaic: expected a picture");
+    if (pictures.empty()) throw Error(ErrorKind::kBadArgument, "mosaic: expected a picture");
     const int width = pictures.front().width, height = pictures.front().height;
     Image out = make_image(side, side, 3);
     for (int y = 0; y < side; ++y)
@@ -75,7 +76,7 @@ BuildParams params_of(const std::string& preset, const std::string& density) {
                                                    {"best", Preset::kBest},
                                                    {"fem", Preset::kFem}};
     const auto at = presets.find(preset);
-    if (at == presets.end()) throw Error(ErrorCode::kUsage, cat("'", preset, "' is no preset"));
+    if (at == presets.end()) throw Error(ErrorKind::kBadArgument, cat("'", preset, "' is no preset"));
     BuildParams params = preset_params(at->second);
     params.stop.density = std::strtod(density.c_str(), nullptr);
     return params;
@@ -136,7 +137,7 @@ int main(int argc, char** argv) {
         return at->second(Arguments(argv + 2, argv + argc));
     } catch (const Error& e) {
         std::fprintf(stderr, "bench-tool: error: %s\n", e.what());
-        return static_cast<int>(e.code());
+        return 1;
     } catch (const std::out_of_range&) {
         std::fprintf(stderr, "bench-tool: error: %s: too few arguments\n", argv[1]);
         return 2;

@@ -30,7 +30,7 @@ class Writer {
     }
     void close() {
         file_.close();
-        if (!file_) throw Error(ErrorCode::kIo, cat(path_, ": cannot write"));
+        if (!file_) throw Error(ErrorKind::kIo, cat(path_, ": cannot write"));
     }
 
   private:
@@ -41,16 +41,16 @@ class Writer {
 class Reader {
   public:
     Reader(const std::string& path, const char* magic) : path_(path), file_(path, std::ios::binary) {
-        if (!file_) throw Error(ErrorCode::kIo, cat(path, ": cannot read"));
+        if (!file_) throw Error(ErrorKind::kIo, cat(path, ": cannot read"));
         char found[kMagicBytes];
         file_.read(found, kMagicBytes);
         if (!file_ || std::memcmp(found, magic, kMagicBytes) != 0)
-            throw Error(ErrorCode::kBadFile, cat(path, ": does not begin with ", std::string(magic, 7)));
+            throw Error(ErrorKind::kBadFile, cat(path, ": does not begin with ", std::string(magic, 7)));
     }
     template <typename T>
     void take(std::span<T> values) {
         file_.read(reinterpret_cast<char*>(values.data()), static_cast<std::streamsize>(values.size_bytes()));
-        if (!file_) throw Error(ErrorCode::kBadFile, cat(path_, ": is too short"));
+        if (!file_) throw Error(ErrorKind::kBadFile, cat(path_, ": is too short"));
     }
     std::uint32_t number() {
         std::uint32_t value = 0;
@@ -111,7 +111,7 @@ BaseMesh read_mesh(const std::string& path) {
         file.take(std::span<Id>(face));
         for (const Id v : face)
             if (v >= vertices)
-                throw Error(ErrorCode::kBadFile,
+                throw Error(ErrorKind::kBadFile,
                             cat(path, ": face ", f, " has the corner ", v, " of ", vertices, " vertices"));
         const double area2 =
             signed_area2(mesh.position[face[0]], mesh.position[face[1]], mesh.position[face[2]]);

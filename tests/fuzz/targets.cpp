@@ -47,8 +47,8 @@ bool accepts(Read&& read) {
         read();
         return true;
     } catch (const Error& e) {
-        if (e.code() != ErrorCode::kIo && e.code() != ErrorCode::kBadFile &&
-            e.code() != ErrorCode::kUnsupported)
+        if (e.kind() != ErrorKind::kIo && e.kind() != ErrorKind::kBadFile &&
+            e.kind() != ErrorKind::kUnsupported)
             throw;
         if (std::string_view(e.what()).find('\n') != std::string_view::npos)
             throw std::logic_error("a message of more than one line");

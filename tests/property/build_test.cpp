@@ -20,12 +20,12 @@ namespace {
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-std::optional<ErrorCode> failure(const Image& image, const BuildParams& params) {
+std::optional<ErrorKind> failure(const Image& image, const BuildParams& params) {
     try {
         build_mesh_image(image, params);
     } catch (const Error& error) {
         CHECK(std::string(error.what()).find('\n') == std::string::npos);
-        return error.code();
+        return error.kind();
     }
     return std::nullopt;
 }
@@ -65,33 +65,33 @@ TEST_CASE("build: every parameter out of range is refused as wrong use") {
     for (const std::int64_t faces : {-1, 0, 1}) {
         BuildParams p;
         p.stop.faces = faces;
-        CHECK(failure(image, p) == ErrorCode::kUsage);
+        CHECK(failure(image, p) == ErrorKind::kBadArgument);
     }
     for (const std::int64_t vertices : {-7, 0, 3}) {
         BuildParams p;
         p.stop.vertices = vertices;
-        CHECK(failure(image, p) == ErrorCode::kUsage);
+        CHECK(failure(image, p) == ErrorKind::kBadArgument);
     }
     for (const double error : {-1.0, kNan, kInfinity}) {
         BuildParams p;
         p.stop.error = error;
-        CHECK(failure(image, p) == ErrorCode::kUsage);
+        CHECK(failure(image, p) == ErrorKind::kBadArgument);
     }
     for (const double density : {0.0, -1.0, 100.5, kNan, kInfinity})
-        CHECK(failure(image, with_density(density)) == ErrorCode::kUsage);
+        CHECK(failure(image, with_density(density)) == ErrorKind::kBadArgument);
     for (const double weight : {0.0, -1.0, kNan, kInfinity}) {
         BuildParams geometry, color;
         geometry.geometry_weight = weight;
         color.color_weight = weight;
-        CHECK(failure(image, geometry) == ErrorCode::kUsage);
-        CHECK(failure(image, color) == ErrorCode::kUsage);
+        CHECK(failure(image, geometry) == ErrorKind::kBadArgument);
+        CHECK(failure(image, color) == ErrorKind::kBadArgument);
     }
     for (const double weight : {-1e-9, -1.0, kNan, kInfinity}) {
         BuildParams p;
         p.projection_color_weight = weight;
-        CHECK(failure(image, p) == ErrorCode::kUsage);
+        CHECK(failure(image, p) == ErrorKind::kBadArgument);
     }
-    CHECK(failure(Image{}, {}) == ErrorCode::kUsage);
+    CHECK(failure(Image{}, {}) == ErrorKind::kBadArgument);
 }
 
 TEST_CASE("build: what is in range works, to its very ends") {
@@ -130,7 +130,7 @@ TEST_CASE("build: the ratio of geometry and color weight") {
         check_sound(build_mesh_image(image, with(ratio, 1)).mesh_image, image);
     for (const auto& [geometry, color] :
          {std::pair{1e300, 1e-300}, {1e-300, 1e300}, {1e-40, 1.0}, {1e30, 1.0}})
-        CHECK(failure(image, with(geometry, color)) == ErrorCode::kUsage);
+        CHECK(failure(image, with(geometry, color)) == ErrorKind::kBadArgument);
 }
 
 TEST_CASE("build: an error limit counts in the weights' own units") {
@@ -179,12 +179,12 @@ TEST_CASE("build: grey is colour with equal channels, and alpha is ignored") {
 TEST_CASE("build: pictures without colour, or with samples that are none, are not supported") {
     Image depth = make_image(4, 4, 1);
     depth.channel_names = {"Z"};
-    CHECK(failure(depth, {}) == ErrorCode::kUnsupported);
-    CHECK(failure(make_image(4, 4, 5), {}) == ErrorCode::kUnsupported);
+    CHECK(failure(depth, {}) == ErrorKind::kUnsupported);
+    CHECK(failure(make_image(4, 4, 5), {}) == ErrorKind::kUnsupported);
     for (const double bad : {kNan, kInfinity, -kInfinity}) {
         Image image = sample_picture(Kind::kDisc, 6, 6);
         image.pixel(2, 3)[1] = static_cast<float>(bad);
-        CHECK(failure(image, {}) == ErrorCode::kUnsupported);
+        CHECK(failure(image, {}) == ErrorKind::kUnsupported);
     }
 }
 

@@ -13,11 +13,11 @@ using namespace imgmesh::test;
 
 namespace {
 
-std::optional<ErrorCode> failure(const Image& image, const Mask& mask) {
+std::optional<ErrorKind> failure(const Image& image, const Mask& mask) {
     try {
         build_mesh_image(image, {}, {}, mask);
     } catch (const Error& error) {
-        return error.code();
+        return error.kind();
     }
     return std::nullopt;
 }
@@ -31,8 +31,8 @@ bool same(const Level& a, const Level& b) {
 
 TEST_CASE("masked images: masks that do not fit, or have nothing inside, are refused") {
     const Image image = sample_picture(Kind::kDisc, 9, 7);
-    CHECK(failure(image, mask_where(9, 7, [](int, int) { return false; })) == ErrorCode::kUnsupported);
-    CHECK(failure(image, mask_where(7, 9, [](int, int) { return true; })) == ErrorCode::kBadFile);
+    CHECK(failure(image, mask_where(9, 7, [](int, int) { return false; })) == ErrorKind::kUnsupported);
+    CHECK(failure(image, mask_where(7, 9, [](int, int) { return true; })) == ErrorKind::kBadFile);
 }
 
 TEST_CASE("masked images: a mask with all pixels inside gives what none gives") {

@@ -32,11 +32,11 @@ bool on_grid(const PixelMap& map) {
     return true;
 }
 
-std::optional<ErrorCode> failure(const BuildParams& params) {
+std::optional<ErrorKind> failure(const BuildParams& params) {
     try {
         build_mesh_image(sample_picture(Kind::kDisc, 12, 9), params);
     } catch (const Error& error) {
-        return error.code();
+        return error.kind();
     }
     return std::nullopt;
 }
@@ -163,18 +163,18 @@ TEST_CASE("tracked build: contradictions are refused as wrong use") {
     for (const MapKind kind : {MapKind::kTracked, MapKind::kRelaxed}) {
         BuildParams p = with_map(kind);
         p.projection_color_weight = 0;
-        CHECK(failure(p) == ErrorCode::kUsage);
+        CHECK(failure(p) == ErrorKind::kBadArgument);
         p.projection_color_weight = 1e-9;
         CHECK_FALSE(failure(p));
     }
     BuildParams trivial = with_map(MapKind::kTrivial);
     trivial.projection_color_weight = 0.5;
-    CHECK(failure(trivial) == ErrorCode::kUsage);
+    CHECK(failure(trivial) == ErrorKind::kBadArgument);
     trivial.projection_color_weight = 0;
     CHECK_FALSE(failure(trivial));
     BuildParams refined = with_map(MapKind::kTracked);
     refined.refine = 1;
-    CHECK(failure(refined) == ErrorCode::kUsage);
+    CHECK(failure(refined) == ErrorKind::kBadArgument);
 }
 
 TEST_CASE("tracked build: which map it is, is listed") {

@@ -43,7 +43,7 @@ inline std::string refusal(const std::string& path, const ContainerLimits& limit
         const std::string text = error.what();
         CHECK(text.starts_with(path + ": ["));
         CHECK(text.find('\n') == std::string::npos);
-        CHECK((error.code() == ErrorCode::kBadFile || error.code() == ErrorCode::kUnsupported));
+        CHECK((error.kind() == ErrorKind::kBadFile || error.kind() == ErrorKind::kUnsupported));
         const auto begin = text.find('[') + 1;
         return text.substr(begin, text.find(']') - begin);
     }

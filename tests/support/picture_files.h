@@ -3,6 +3,7 @@
 
 #include <OpenImageIO/imageio.h>
 #include <doctest/doctest.h>
+#include <optional>
 
 #include <cmath>
 #include <functional>
@@ -46,15 +47,16 @@ inline void write_with_oiio(const std::string& path, const imgmesh::Image& image
     REQUIRE(out->close());
 }
 
-/// The code of the Error that `call` throws, kOk if none; its text goes to `text`.
-inline imgmesh::ErrorCode error_of(const std::function<void()>& call, std::string* text = nullptr) {
+/// The code of the Error that `call` throws, nothing if it throws none; its text goes to `text`.
+inline std::optional<imgmesh::ErrorKind> error_of(const std::function<void()>& call,
+                                                  std::string* text = nullptr) {
     try {
         call();
     } catch (const imgmesh::Error& e) {
         const std::string what = e.what();
         CHECK(what.find('\n') == std::string::npos);
         if (text) *text = what;
-        return e.code();
+        return e.kind();
     }
-    return imgmesh::ErrorCode::kOk;
+    return std::nullopt;
 }

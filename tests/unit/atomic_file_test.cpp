@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 #include <sys/wait.h>
 #include <unistd.h>
+#include <optional>
 
 #include <csignal>
 #include <filesystem>
@@ -21,13 +22,13 @@ std::size_t entries(const fs::path& folder) {
     return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder), fs::directory_iterator()));
 }
 
-ErrorCode code_of(const auto& action) {
+std::optional<ErrorKind> code_of(const auto& action) {
     try {
         action();
     } catch (const Error& error) {
-        return error.code();
+        return error.kind();
     }
-    return ErrorCode::kOk;
+    return std::nullopt;
 }
 
 }  // namespace
@@ -60,16 +61,16 @@ TEST_CASE("atomic file: does not overwrite unless told to, not even at the last 
     AtomicFile first(path, false);
     first.write(Bytes{1});
     first.commit();
-    CHECK(code_of([&] { late.commit(); }) == ErrorCode::kIo);
-    CHECK(code_of([&] { AtomicFile(path, false); }) == ErrorCode::kIo);
+    CHECK(code_of([&] { late.commit(); }) == ErrorKind::kIo);
+    CHECK(code_of([&] { AtomicFile(path, false); }) == ErrorKind::kIo);
     CHECK(read_file(path, 1) == Bytes{1});
 }
 
 TEST_CASE("atomic file: devices, folders and missing folders are refused, links are followed") {
     const TemporaryFolder folder;
-    CHECK(code_of([&] { AtomicFile("/dev/null", true); }) == ErrorCode::kIo);
-    CHECK(code_of([&] { AtomicFile(folder.path().string(), true); }) == ErrorCode::kIo);
-    CHECK(code_of([&] { AtomicFile(folder / "no/such/folder", true); }) == ErrorCode::kIo);
+    CHECK(code_of([&] { AtomicFile("/dev/null", true); }) == ErrorKind::kIo);
+    CHECK(code_of([&] { AtomicFile(folder.path().string(), true); }) == ErrorKind::kIo);
+    CHECK(code_of([&] { AtomicFile(folder / "no/such/folder", true); }) == ErrorKind::kIo);
 
     const std::string target = folder / "target", link = folder / "link";
     AtomicFile(target, true).commit();
@@ -103,12 +104,12 @@ TEST_CASE("atomic file: a killed process leaves nothing behind") {
 
 TEST_CASE("read_file: limits and errors") {
     const TemporaryFolder folder;
-    CHECK(code_of([&] { read_file(folder / "none", 10); }) == ErrorCode::kIo);
-    CHECK(code_of([&] { read_file(folder.path().string(), 10); }) == ErrorCode::kIo);
+    CHECK(code_of([&] { read_file(folder / "none", 10); }) == ErrorKind::kIo);
+    CHECK(code_of([&] { read_file(folder.path().string(), 10); }) == ErrorKind::kIo);
     AtomicFile file(folder / "x", true);
     file.write(Bytes(11, 1));
     file.commit();
-    CHECK(code_of([&] { read_file(folder / "x", 10); }) == ErrorCode::kBadFile);
+    CHECK(code_of([&] { read_file(folder / "x", 10); }) == ErrorKind::kBadFile);
     CHECK(read_file(folder / "x", 11).size() == 11);
-    CHECK(code_of([&] { read_file("/dev/zero", 1000); }) == ErrorCode::kBadFile);
+    CHECK(code_of([&] { read_file("/dev/zero", 1000); }) == ErrorKind::kBadFile);
 }

@@ -17,7 +17,7 @@ std::string refusal(const std::string& text) {
         edits_from_json(text, "e.json");
     } catch (const Error& e) {
         const std::string what = e.what();
-        CHECK(e.code() == ErrorCode::kBadFile);
+        CHECK(e.kind() == ErrorKind::kBadFile);
         CHECK(what.find('\n') == std::string::npos);
         return what;
     }

@@ -61,14 +61,15 @@ TEST_CASE("labels: what a PNG cannot hold is refused, and nothing is left behind
     const TemporaryFolder folder;
     const std::vector<Id> labels = {0, 65535, kNone};
     std::string text;
-    CHECK(error_of([&] { write_labels(folder / "a.png", 3, 1, labels, true); }, &text) == ErrorCode::kUsage);
+    CHECK(error_of([&] { write_labels(folder / "a.png", 3, 1, labels, true); }, &text) ==
+          ErrorKind::kBadArgument);
     CHECK(text.find("65535") != std::string::npos);
-    CHECK(error_of([&] { write_labels(folder / "a.tif", 3, 1, labels, true); }) == ErrorCode::kUsage);
+    CHECK(error_of([&] { write_labels(folder / "a.tif", 3, 1, labels, true); }) == ErrorKind::kBadArgument);
     CHECK(folder.count() == 0);
     write_labels(folder / "a.exr", 3, 1, labels, true);
     CHECK(read_exr_layer<Id>(folder / "a.exr", "id", Imf::UINT) == labels);
-    CHECK(error_of([&] { write_labels(folder / "a.exr", 3, 1, labels, false); }) == ErrorCode::kIo);
-    CHECK(error_of([&] { write_labels(folder / "no/a.exr", 3, 1, labels, true); }) == ErrorCode::kIo);
+    CHECK(error_of([&] { write_labels(folder / "a.exr", 3, 1, labels, false); }) == ErrorKind::kIo);
+    CHECK(error_of([&] { write_labels(folder / "no/a.exr", 3, 1, labels, true); }) == ErrorKind::kIo);
 }
 
 TEST_CASE("float layers keep every bit, infinity too") {

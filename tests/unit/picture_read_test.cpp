@@ -360,12 +360,12 @@ TEST_CASE("read: what an EXR can hold and a picture cannot") {
     };
     std::string text;
     write(Imf::Channel(Imf::UINT), false);
-    CHECK(error_of([&] { read_image(folder / "u.exr"); }, &text) == ErrorCode::kUnsupported);
+    CHECK(error_of([&] { read_image(folder / "u.exr"); }, &text) == ErrorKind::kUnsupported);
     CHECK(text.find("holds integers") != std::string::npos);
     write(Imf::Channel(Imf::HALF, 2, 2), false);
-    CHECK(error_of([&] { read_image(folder / "u.exr"); }) == ErrorCode::kUnsupported);
+    CHECK(error_of([&] { read_image(folder / "u.exr"); }) == ErrorKind::kUnsupported);
     write(Imf::Channel(Imf::FLOAT), true);
-    CHECK(error_of([&] { read_image(folder / "u.exr"); }) == ErrorCode::kUnsupported);
+    CHECK(error_of([&] { read_image(folder / "u.exr"); }) == ErrorKind::kUnsupported);
     CHECK(read_image(folder / "u.exr", ColorSpace::kLinear).data[0] == 1);
 }
 
@@ -380,7 +380,7 @@ TEST_CASE("read: the first sample that is no number is named") {
             made.pixel(5, 4)[0] = bad;
             write_with_oiio(folder / name, made, OIIO::TypeFloat);
             std::string text;
-            CHECK(error_of([&] { read_image(folder / name); }, &text) == ErrorCode::kBadFile);
+            CHECK(error_of([&] { read_image(folder / name); }, &text) == ErrorKind::kBadFile);
             CHECK(text.find("channel G of pixel (4, 2)") != std::string::npos);
         }
     }

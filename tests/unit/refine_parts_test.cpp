@@ -4,6 +4,7 @@
 #include <cmath>
 #include <random>
 
+#include "libcore/mesh/adjacency.h"
 #include "libcore/mesh/face_field.h"
 #include "libcore/mesh/vertex_coloring.h"
 #include "libcore/metrics/metrics.h"

@@ -31,7 +31,7 @@ std::string refusal(const MeshImage& m, const WarpEdits& edits) {
     try {
         solve_edits(m, edits);
     } catch (const Error& e) {
-        CHECK(e.code() == ErrorCode::kBadFile);
+        CHECK(e.kind() == ErrorKind::kBadFile);
         return e.what();
     }
     return "";

@@ -8,7 +8,7 @@ ChannelChoice parse_choice(const std::string& text, const std::string& item) {
     const std::size_t colon = item.rfind(':');
     choice.name = item.substr(0, colon);
     if (choice.name.empty())
-        throw Error(ErrorCode::kUsage,
+        throw Error(ErrorKind::kBadArgument,
                     cat("--channels '", text, "': expected NAME or NAME:WEIGHT, with commas between"));
     if (colon != std::string::npos)
         choice.weight =
@@ -31,7 +31,7 @@ CLI::Option* add_channels(CLI::App& app, std::vector<ChannelChoice>& channels) {
             try {
                 check_channels(channels);
             } catch (const Error& e) {
-                throw Error(e.code(), cat("--channels ", text, ": ", e.what()));
+                throw Error(e.kind(), cat("--channels ", text, ": ", e.what()));
             }
         },
         "Channels that the mesh follows and keeps, each perhaps with a weight, as R,G,B,depth.Z:0.5 (default "

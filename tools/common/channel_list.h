@@ -8,8 +8,8 @@
 
 namespace imgmesh {
 
-/// A list of NAME or NAME:WEIGHT. What is wrong without any image (check_channels) is Error(kUsage) at
-/// once.
+/// A list of NAME or NAME:WEIGHT. What is wrong without any image (check_channels) is Error(kBadArgument)
+/// at once.
 CLI::Option* add_channels(CLI::App& app, std::vector<ChannelChoice>& channels);
 
 }  // namespace imgmesh

@@ -26,7 +26,7 @@ class StrictConfig : public CLI::ConfigBase {
             if (at == line.size() || line[at] == '#') continue;
             const auto refuse = [&](const std::string& what) {
                 const auto file = app_.get_config_ptr()->as<std::string>();
-                throw Error(ErrorCode::kUsage, cat(file, ":", number, ": ", what));
+                throw Error(ErrorKind::kBadArgument, cat(file, ":", number, ": ", what));
             };
 
             CLI::ConfigItem item;
@@ -62,8 +62,8 @@ class StrictConfig : public CLI::ConfigBase {
             if (c == '\n') return true;
             line += static_cast<char>(c);
             if (line.size() > kLongest)
-                throw Error(ErrorCode::kUsage, cat(app_.get_config_ptr()->as<std::string>(),
-                                                   ": a line of more than ", kLongest, " bytes"));
+                throw Error(ErrorKind::kBadArgument, cat(app_.get_config_ptr()->as<std::string>(),
+                                                         ": a line of more than ", kLongest, " bytes"));
         }
         return !line.empty();
     }

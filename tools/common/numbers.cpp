@@ -17,7 +17,7 @@ bool parse_whole(const std::string& text, Value& value) {
 }
 
 [[noreturn]] void refuse(const std::string& name, const std::string& text, const std::string& expected) {
-    throw Error(ErrorCode::kUsage, cat(name, " '", text, "': expected ", expected));
+    throw Error(ErrorKind::kBadArgument, cat(name, " '", text, "': expected ", expected));
 }
 
 std::string describe(const CountRange& range) {

@@ -1,5 +1,5 @@
-// Numbers from text, strictly: what is not wholly a number in range is refused with Error(kUsage), in a line
-// that names the option, the value and what is expected.
+// Numbers from text, strictly: what is not wholly a number in range is refused with Error(kBadArgument), in a
+// line that names the option, the value and what is expected.
 #pragma once
 
 #include <cstdint>

@@ -48,7 +48,7 @@ CLI::Option* add_output(CLI::App& app, std::string& output, const std::string& h
     CLI::Option* option = add_value(
         app, "-o,--output", "FILE",
         [&output](const std::string& text) {
-            if (text.empty()) throw Error(ErrorCode::kUsage, "--output '': expected a file name");
+            if (text.empty()) throw Error(ErrorKind::kBadArgument, "--output '': expected a file name");
             output = text;
         },
         help);

@@ -1,4 +1,4 @@
-// Options that read their values strictly: anything else is refused with Error(kUsage) in one line.
+// Options that read their values strictly: anything else is refused with Error(kBadArgument) in one line.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -89,7 +89,7 @@ CLI::Option* add_choice(CLI::App& app, const std::string& name, Target& target,
                 target = value;
                 return;
             }
-            throw Error(ErrorCode::kUsage,
+            throw Error(ErrorKind::kBadArgument,
                         cat(name, " '", text, "': expected one of ", choice_names(choices)));
         },
         help + ": " + choice_names(choices));

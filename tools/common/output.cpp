@@ -21,11 +21,11 @@ void check_output(const std::string& path, bool overwrite) {
     std::error_code error;
     const fs::path parent = fs::path(path).parent_path();
     if (!parent.empty() && !fs::is_directory(parent, error))
-        throw Error(ErrorCode::kIo, cat(path, ": cannot write: there is no folder ", parent.string()));
+        throw Error(ErrorKind::kIo, cat(path, ": cannot write: there is no folder ", parent.string()));
     if (fs::exists(path, error) && !fs::is_regular_file(path, error))
-        throw Error(ErrorCode::kIo, cat(path, ": cannot write: is not a regular file"));
+        throw Error(ErrorKind::kIo, cat(path, ": cannot write: is not a regular file"));
     if (!overwrite && fs::exists(fs::symlink_status(path, error)))
-        throw Error(ErrorCode::kIo, cat(path, ": exists, and is not overwritten"));
+        throw Error(ErrorKind::kIo, cat(path, ": exists, and is not overwritten"));
 }
 
 void check_distinct(const std::vector<std::string>& inputs, const std::vector<std::string>& outputs) {
@@ -33,7 +33,7 @@ void check_distinct(const std::vector<std::string>& inputs, const std::vector<st
         for (const std::string& input : inputs) {
             std::error_code error;  // of files that are not there, which are no conflict
             if (fs::equivalent(input, output, error))
-                throw Error(ErrorCode::kUsage, cat(output, ": would replace the input ", input));
+                throw Error(ErrorKind::kBadArgument, cat(output, ": would replace the input ", input));
         }
     }
 }
@@ -44,15 +44,15 @@ void check_separate(const std::vector<std::string>& outputs) {
         std::error_code error;  // of what cannot be resolved; writing it will say why
         const fs::path path = fs::weakly_canonical(fs::absolute(output), error);
         if (!error && !seen.insert(path).second)
-            throw Error(ErrorCode::kUsage, cat(output, ": is named for two outputs"));
+            throw Error(ErrorKind::kBadArgument, cat(output, ": is named for two outputs"));
     }
 }
 
 void make_folder(const std::string& path) {
     std::error_code error;
     fs::create_directories(path, error);
-    if (error) throw Error(ErrorCode::kIo, cat(path, ": cannot make the folder: ", error.message()));
-    if (!fs::is_directory(path)) throw Error(ErrorCode::kIo, cat(path, ": is not a folder"));
+    if (error) throw Error(ErrorKind::kIo, cat(path, ": cannot make the folder: ", error.message()));
+    if (!fs::is_directory(path)) throw Error(ErrorKind::kIo, cat(path, ": is not a folder"));
 }
 
 }  // namespace imgmesh

@@ -13,10 +13,10 @@ std::string lower_extension(const std::string& path);
 /// or it exists and `overwrite` is false.
 void check_output(const std::string& path, bool overwrite);
 
-/// Throws Error(kUsage) where one of the `outputs` is one of the files of `inputs`, by whatever name.
+/// Throws Error(kBadArgument) where one of the `outputs` is one of the files of `inputs`, by whatever name.
 void check_distinct(const std::vector<std::string>& inputs, const std::vector<std::string>& outputs);
 
-/// Throws Error(kUsage) where two of the `outputs` are one file, however they are spelled.
+/// Throws Error(kBadArgument) where two of the `outputs` are one file, however they are spelled.
 void check_separate(const std::vector<std::string>& outputs);
 
 /// `path` as a folder, made where it is not there. Throws Error(kIo) where that fails.

@@ -23,20 +23,20 @@
 namespace imgmesh {
 namespace {
 
-struct ExitCode {
-    ErrorCode code;
+struct ExitCodeMeaning {
+    ExitCode code;
     const char* meaning;
 };
 
 // Every exit code of every tool; --help prints it.
-constexpr ExitCode kExitCodes[] = {
-    {ErrorCode::kOk, "done"},
-    {ErrorCode::kInternal, "internal error"},
-    {ErrorCode::kUsage, "wrong use of the command line"},
-    {ErrorCode::kIo, "cannot read or write"},
-    {ErrorCode::kBadFile, "a file's content is not what it must be"},
-    {ErrorCode::kUnsupported, "a valid request or file that imgmesh does not support"},
-    {ErrorCode::kDifferent, "compared, and different"},
+constexpr ExitCodeMeaning kExitCodes[] = {
+    {ExitCode::kOk, "done"},
+    {ExitCode::kInternal, "internal error"},
+    {ExitCode::kUsage, "wrong use of the command line"},
+    {ExitCode::kIo, "cannot read or write"},
+    {ExitCode::kBadFile, "a file's content is not what it must be"},
+    {ExitCode::kUnsupported, "a valid request or file that imgmesh does not support"},
+    {ExitCode::kDifferent, "compared, and different"},
 };
 
 // More than any machine has, few enough for the thread library's tables.
@@ -51,7 +51,8 @@ struct CommonOptions {
 
 std::string exit_code_table() {
     std::string table = "Exit codes:";
-    for (const ExitCode& e : kExitCodes) table += cat("\n  ", static_cast<int>(e.code), "  ", e.meaning);
+    for (const ExitCodeMeaning& e : kExitCodes)
+        table += cat("\n  ", static_cast<int>(e.code), "  ", e.meaning);
     return table;
 }
 
@@ -85,7 +86,7 @@ void write_stdout(const std::string& text) {
         if (n >= 0) {
             done += static_cast<std::size_t>(n);
         } else if (errno != EINTR) {
-            throw Error(ErrorCode::kIo, cat("standard output: cannot write: ", std::strerror(errno)));
+            throw Error(ErrorKind::kIo, cat("standard output: cannot write: ", std::strerror(errno)));
         }
     }
 }
@@ -95,15 +96,15 @@ void print_error(const std::string& tool, const std::string& message) {
 }
 
 // What failures that did not stop the run add up to.
-ErrorCode joint_code(const std::vector<Failure>& failures) {
-    if (failures.empty()) return ErrorCode::kOk;
+ExitCode joint_code(const std::vector<Failure>& failures) {
+    if (failures.empty()) return ExitCode::kOk;
     for (const Failure& f : failures) {
-        if (f.code != failures.front().code) return ErrorCode::kBadFile;
+        if (f.code != failures.front().code) return ExitCode::kBadFile;
     }
     return failures.front().code;
 }
 
-ErrorCode run_parsed(const Tool& tool, const CommonOptions& common) {
+ExitCode run_parsed(const Tool& tool, const CommonOptions& common) {
     Context context;
     context.generator = tool.name + " " IMGMESH_VERSION;
     context.overwrite = common.overwrite;
@@ -127,7 +128,7 @@ ErrorCode run_parsed(const Tool& tool, const CommonOptions& common) {
     return joint_code(context.failures);
 }
 
-ErrorCode parse_and_run(const Tool& tool, int argc, char** argv) {
+ExitCode parse_and_run(const Tool& tool, int argc, char** argv) {
     CLI::App app(tool.description, tool.name);
     CommonOptions common;
     tool.add_options(app);
@@ -136,14 +137,14 @@ ErrorCode parse_and_run(const Tool& tool, int argc, char** argv) {
         app.parse(argc, argv);
     } catch (const CLI::CallForHelp&) {
         write_stdout(app.help());
-        return ErrorCode::kOk;
+        return ExitCode::kOk;
     } catch (const CLI::CallForVersion& version) {
         write_stdout(cat(version.what(), '\n'));
-        return ErrorCode::kOk;
+        return ExitCode::kOk;
     } catch (const CLI::FileError& e) {
-        throw Error(ErrorCode::kIo, cat("--config: ", e.what()));
+        throw Error(ErrorKind::kIo, cat("--config: ", e.what()));
     } catch (const CLI::ParseError& e) {
-        throw Error(ErrorCode::kUsage, cat(e.what(), " (see --help)"));
+        throw Error(ErrorKind::kBadArgument, cat(e.what(), " (see --help)"));
     }
     return run_parsed(tool, common);
 }
@@ -154,15 +155,15 @@ Failure current_failure() {
     try {
         throw;
     } catch (const Error& e) {
-        return {e.code(), e.what()};
+        return {exit_code(e.kind()), e.what()};
     } catch (const std::filesystem::filesystem_error& e) {
-        return {ErrorCode::kIo, cat(e.path1().string(), ": ", e.code().message())};
+        return {ExitCode::kIo, cat(e.path1().string(), ": ", e.code().message())};
     } catch (const std::bad_alloc&) {
-        return {ErrorCode::kInternal, "out of memory"};
+        return {ExitCode::kInternal, "out of memory"};
     } catch (const std::exception& e) {
-        return {ErrorCode::kInternal, cat("internal error: ", e.what())};
+        return {ExitCode::kInternal, cat("internal error: ", e.what())};
     } catch (...) {
-        return {ErrorCode::kInternal, "internal error: unknown exception"};
+        return {ExitCode::kInternal, "internal error: unknown exception"};
     }
 }
 

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "libcore/base/error.h"
 #include "libcore/base/progress.h"
+#include "tools/common/exit_code.h"
 
 namespace imgmesh {
 
@@ -18,7 +18,7 @@ using Report = nlohmann::ordered_json;
 
 /// A mistake as it is told to the user: one error line and an exit code.
 struct Failure {
-    ErrorCode code = ErrorCode::kInternal;
+    ExitCode code = ExitCode::kInternal;
     std::string message;
 };
 

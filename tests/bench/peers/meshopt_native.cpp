@@ -87,6 +87,6 @@ int main(int argc, char** argv) {
         simplify(argv[1], argv[2], argv[3]);
     } catch (const Error& e) {
         std::fprintf(stderr, "meshopt-native: error: %s\n", e.what());
-        return static_cast<int>(e.code());
+        return 1;
     }
 }
