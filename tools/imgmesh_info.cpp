@@ -120,7 +120,8 @@ Report validate(const Options& o, Context& context) {
         const bool fails = finding.severity == Severity::kError ||
                            (o.warnings_as_errors && finding.severity == Severity::kWarning);
         if (fails && context.failures.empty())
-            context.failures.push_back({finding.error, cat(o.input, ": [", finding.code, "] ", issue.text)});
+            context.failures.push_back(
+                {exit_code(finding.error), cat(o.input, ": [", finding.code, "] ", issue.text)});
         findings.push_back({{"code", finding.code},
                             {"severity", severity_name(finding.severity)},
                             {"message", issue.text},
