@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Draws the picture of docs/blender.md: make_blender.py BIN, with BIN the folder of the tools.
+"""Draws the image of docs/blender.md: make_blender.py BIN, with BIN the folder of the tools.
 
 tests/data/kodim23.png as Blender shows its mesh: from the front, and from aside with the edges drawn.
 """
@@ -64,8 +64,8 @@ def main(bin_folder):
                             shots[-1]], check=True, stdout=subprocess.DEVNULL)
         sheet = Image.new("RGB", (1032, 342), "white")
         for place, shot in zip((0, 520), shots):
-            picture = Image.open(shot).convert("RGBA").resize((512, 342), Image.LANCZOS)
-            sheet.paste(picture, (place, 0), picture)
+            image = Image.open(shot).convert("RGBA").resize((512, 342), Image.LANCZOS)
+            sheet.paste(image, (place, 0), image)
         sheet.save(HERE / "blender.jpg", quality=88)
 
 

@@ -2,7 +2,7 @@
 """Takes the screenshots of docs/engines.md: make_engines.py BIN, with BIN the folder of the tools. Node.js, Chromium and the
 packages of tests/interop have to be there, as after ./run test.
 
-tests/data/kodim23.png as a mesh in three.js, and bent, with the picture as texture, in Babylon.js; and the steering wheel
+tests/data/kodim23.png as a mesh in three.js, and bent, with the image as texture, in Babylon.js; and the steering wheel
 of docs/warp.md, cut out and textured, in three.js.
 """
 import json

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Draws the pictures of docs/warp.md: make_warp.py BIN, with BIN the folder of the tools.
+"""Draws the images of docs/warp.md: make_warp.py BIN, with BIN the folder of the tools.
 
 A steering wheel (made up here) edited on three levels, and tests/data/kodim23.png edited and given another shape.
 """
@@ -51,10 +51,10 @@ def run(*args):
 
 
 def shown(path, box=None, background=(255, 255, 255)):
-    """A picture over a background, cut to `box`."""
-    picture = Image.open(path).convert("RGBA")
-    under = Image.new("RGBA", picture.size, background)
-    under.alpha_composite(picture)
+    """An image over a background, cut to `box`."""
+    image = Image.open(path).convert("RGBA")
+    under = Image.new("RGBA", image.size, background)
+    under.alpha_composite(image)
     return (under.crop(box) if box else under).convert("RGB")
 
 
@@ -81,11 +81,11 @@ def main():
         draw_retarget(tools, pathlib.Path(name))
 
 
-def edited(tools, folder, container, picture, edits, level):
-    """The picture after the edits, and the warped mesh of `level`."""
+def edited(tools, folder, container, image, edits, level):
+    """The image after the edits, and the warped mesh of `level`."""
     (folder / "edits.json").write_text(json.dumps({"edits": edits}))
     warp = [tools / "imgmesh-warp", container, "--edits", folder / "edits.json", "-q"]
-    run(*warp, "--image", picture, "-o", folder / "edited.png")
+    run(*warp, "--image", image, "-o", folder / "edited.png")
     run(*warp, "-o", folder / "edited.glb")
     run(tools / "imgmesh-reconstruct", "-q", folder / "edited.glb", "-o", folder / "wire.png", "--mode", "wire",
         "--level", level)
@@ -93,16 +93,16 @@ def edited(tools, folder, container, picture, edits, level):
 
 
 def draw_wheel(tools, folder):
-    picture, container = folder / "wheel.png", folder / "wheel.glb"
-    Image.fromarray(wheel(), "RGBA").save(picture)
-    run(tools / "imgmesh-build", picture, "-o", container, "--level-faces", "3000,700,160", "-q")
+    image, container = folder / "wheel.png", folder / "wheel.glb"
+    Image.fromarray(wheel(), "RGBA").save(image)
+    run(tools / "imgmesh-build", image, "-o", container, "--level-faces", "3000,700,160", "-q")
     rim = {"level": 2, "solver": "arap", "handles": [{"box": [500, 100, 640, 380], "move": [70, 0]}],
            "pins": [{"box": [0, 0, 330, 480]}]}
     spoke = {"level": 1, "solver": "arap", "handles": [{"circle": [320, 350, 24], "move": [-34, 0]}],
              "pins": [{"box": [0, 0, 640, 300]}, {"box": [0, 412, 640, 480]}]}
     hub = {"level": 0, "solver": "arap", "handles": [{"circle": [320, 240, 36], "scale": 1.35}],
            "pins": [{"beyond": [320, 240, 80]}]}
-    columns = [edited(tools, folder, container, picture, edits, level)
+    columns = [edited(tools, folder, container, image, edits, level)
                for edits, level in (([], 2), ([rim], 2), ([rim, spoke], 1), ([rim, spoke, hub], 0))]
     sheet(list(zip(*columns)), HERE / "warp-wheel.jpg", 0.5)
 
@@ -122,8 +122,8 @@ def draw_retarget(tools, folder):
     run(tools / "imgmesh-build", PHOTO, "-o", container, "-q")
     for option in ("--size", "--retarget"):
         run(tools / "imgmesh-warp", container, "-q", "--image", PHOTO, option, "480x512", "-o", folder / f"{option}.png")
-    pictures = [shown(PHOTO), shown(folder / "--size.png"), shown(folder / "--retarget.png")]
-    sheet([pictures], HERE / "warp-retarget.jpg", 0.5)
+    images = [shown(PHOTO), shown(folder / "--size.png"), shown(folder / "--retarget.png")]
+    sheet([images], HERE / "warp-retarget.jpg", 0.5)
 
 
 if __name__ == "__main__":
