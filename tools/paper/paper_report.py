@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The paper's table and figures again, on the pictures that ship: one HTML page, each of the paper's numbers
+"""The paper's table and figures again, on the photographs of the project: one HTML page, each of the paper's numbers
 beside ours.
 
     paper_report.py BIN PICTURES OUT     folders of the tools, of kodim05.png and kodim23.png, and of report.html
@@ -10,7 +10,7 @@ import sys
 from PIL import Image, ImageDraw
 
 import svg_plot
-from tools_runner import Tools, picture
+from tools_runner import Tools, image_tag
 
 # As the paper has it: total error as the priority, gradients of the pixels themselves, quadrics summed up from
 # the pixels on, colours from the quadrics. The weight of geometry against colour, which the paper does not
@@ -32,9 +32,9 @@ def table(head, rows):
     return f"<table><tr>{cells('th', head)}</tr>" + "".join(f"<tr>{cells('td', r)}</tr>" for r in rows) + "</table>"
 
 
-def table_1(tools, pictures):
+def table_1(tools, images):
     """Seconds by size: collapse by SVD and LU, the closed form, and the map."""
-    whole = Image.open(pictures / "kodim23.png").convert("RGB").crop((128, 0, 640, 512))
+    whole = Image.open(images / "kodim23.png").convert("RGB").crop((128, 0, 640, 512))
     rows = []
     for size, paper in TABLE_1.items():
         path = tools.folder / f"square{size}.png"
@@ -59,38 +59,38 @@ def table_1(tools, pictures):
         "follows after the collapse instead; its time includes the fit of its colours.</p>")
 
 
-def figure_1(tools, pictures):
-    """Hoppe's base mesh, ours, and the picture through the map."""
+def figure_1(tools, images):
+    """Hoppe's base mesh, ours, and the image through the map."""
     rows = []
     for name, faces in zip(PICTURES, (1300, 1960)):
-        path = pictures / f"{name}.png"
-        cells = [picture(path)]
+        path = images / f"{name}.png"
+        cells = [image_tag(path)]
         for args, mode in ((HOPPE, "gouraud"), (FLATTENED, "gouraud"), ((), "map")):
             report = tools.build(path, "--faces", faces, *args)
             rms = report["map_rms" if mode == "map" else "gouraud_rms"]
             cells.append(tools.draw(mode) + f"<br>{report['faces']} faces, RMS {rms:.2f}")
         rows.append(cells)
     return "<h2>Figure 1: base meshes and reconstruction</h2>" + table(
-        ["picture", "Hoppe's metric", "the paper's", "through our map (defaults)"], rows)
+        ["image", "Hoppe's metric", "the paper's", "through our map (defaults)"], rows)
 
 
-def figure_2(tools, pictures):
+def figure_2(tools, images):
     """Visit maps."""
     cells = []
     for name in PICTURES:
-        tools.build(pictures / f"{name}.png", *TRACKED, "--visits")
-        cells.append(picture(pictures / f"{name}.png") + tools.draw("visits"))
+        tools.build(images / f"{name}.png", *TRACKED, "--visits")
+        cells.append(image_tag(images / f"{name}.png") + tools.draw("visits"))
     return "<h2>Figure 2: visits, the fewer the brighter</h2>" + table(PICTURES, [cells])
 
 
-def figure_6(tools, pictures):
+def figure_6(tools, images):
     """RMS over faces."""
     plots, rows = [], []
     for name in PICTURES:
         series = {"Hoppe's metric": [], "the paper's metric": [], "the paper's map": [], "defaults, mesh": [],
                   "defaults, map": []}
         for faces in FACES:
-            path = pictures / f"{name}.png"
+            path = images / f"{name}.png"
             hoppe = tools.build(path, "--faces", faces, *HOPPE)["gouraud_rms"]
             flattened = tools.build(path, "--faces", faces, *FLATTENED)["gouraud_rms"]
             tracked = tools.build(path, "--faces", faces, *TRACKED)["map_rms"]
@@ -101,14 +101,14 @@ def figure_6(tools, pictures):
             rows.append([name, str(faces), *values])
         plots.append(svg_plot.curves(f"{name}: RMS over faces", "faces", "RMS in L*u*v*", series))
     return "<h2>Figure 6: error over faces</h2>" + "".join(plots) + table(
-        ["picture", "faces", "Hoppe's metric", "the paper's metric", "the paper's map", "our defaults, mesh",
+        ["image", "faces", "Hoppe's metric", "the paper's metric", "the paper's map", "our defaults, mesh",
          "our defaults, map"],
         rows) + (
         "<p>The paper gives curves without numbers: ours close to Hoppe's and better at most resolutions, the map far "
         "below both. The first three have the colours of their quadrics' minimisers, our defaults have fitted ones.</p>")
 
 
-def figures_7_8(tools, pictures):
+def figures_7_8(tools, images):
     """Valence, ratios and their histograms."""
     out, rows = [], []
     figures = {"valence": "valence", "edge ratio": "edge_ratio", "aspect ratio": "aspect_ratio",
@@ -116,7 +116,7 @@ def figures_7_8(tools, pictures):
     for name, faces in zip(PICTURES, (1300, 1960)):
         meshes = {}
         for title, args in (("Hoppe's metric", HOPPE), ("the paper's metric", FLATTENED), ("our defaults", ())):
-            tools.build(pictures / f"{name}.png", "--faces", faces, *args)
+            tools.build(images / f"{name}.png", "--faces", faces, *args)
             meshes[title] = tools.mesh()
             rows.append([name, title, *(meshes[title][key]["mean"] for key in figures.values())])
             if title != "our defaults":
@@ -124,15 +124,15 @@ def figures_7_8(tools, pictures):
         for title, key in figures.items():
             out.append(svg_plot.histograms(f"{name}, {faces} faces: {title}", title,
                                            {k: m[key]["histogram"] for k, m in meshes.items()}))
-    paper = [["the paper's picture", "Hoppe's metric", 5.919, 1.97, "", ""],
-             ["the paper's picture", "the paper's metric", 5.923, 1.69, "", ""]]
-    return "<h2>Figures 7 and 8: triangulation quality</h2>" + table(["picture", "mesh", *figures], paper + rows) + \
+    paper = [["the paper's image", "Hoppe's metric", 5.919, 1.97, "", ""],
+             ["the paper's image", "the paper's metric", 5.923, 1.69, "", ""]]
+    return "<h2>Figures 7 and 8: triangulation quality</h2>" + table(["image", "mesh", *figures], paper + rows) + \
         "".join(out)
 
 
-def figure_5(tools, pictures):
+def figure_5(tools, images):
     """A masked image at several errors, and patches without and with colour."""
-    path = pictures / "kodim23.png"
+    path = images / "kodim23.png"
     mask = Image.new("L", Image.open(path).size, 0)
     draw = ImageDraw.Draw(mask)
     draw.ellipse((20, 30, 420, 500), fill=255)
@@ -155,13 +155,13 @@ STYLE = ("body{font:14px sans-serif;margin:2em auto;max-width:1700px}table{borde
 SECTIONS = (table_1, figure_1, figure_2, figure_5, figure_6, figures_7_8)
 
 
-def main(bin_folder, pictures, out):
+def main(bin_folder, images, out):
     out = pathlib.Path(out)
     tools = Tools(bin_folder, out / "work")
     body = []
     for section in SECTIONS:
         print(f"paper: {section.__name__}", flush=True)
-        body.append(section(tools, pathlib.Path(pictures)))
+        body.append(section(tools, pathlib.Path(images)))
     text = (f'<!doctype html><html lang="en"><meta charset="utf-8"><title>The paper again</title><style>{STYLE}</style>'
             "<h1>A New QEM for Parameterization of Raster Images, again</h1><p>Hoppe's metric and the paper's are run as "
             "the paper describes them: total error as the priority, unsmoothed gradients, colours of the quadrics' "

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Error and shape over size for every preset and for Hoppe's metric: a page with tables and curves.
 
-    quality_report.py BIN PICTURES OUT    folders of the tools, of PNG pictures, and of quality.md and its SVGs
+    quality_report.py BIN IMAGES OUT    folders of the tools, of PNG images, and of quality.md and its SVGs
 """
 import pathlib
 import statistics
@@ -25,10 +25,10 @@ COLUMNS = (("map RMS", "map", ".2f"), ("mesh RMS", "mesh", ".2f"), ("mesh PSNR [
            ("folds", "folds", "d"), ("CPU seconds", "seconds", ".2f"))
 
 
-def measure(tools, picture, density, options):
-    report = tools.build(picture, "--density", density, "--threads", 1, *options)
+def measure(tools, image, density, options):
+    report = tools.build(image, "--density", density, "--threads", 1, *options)
     seconds = tools.cpu_seconds
-    compared = tools.compare(picture, "gouraud")
+    compared = tools.compare(image, "gouraud")
     shape = tools.mesh()
     return {"map": report["map_rms"], "mesh": report["gouraud_rms"], "psnr": compared["psnr"],
             "edge_ratio": report["mean_edge_ratio"], "mean_q": shape["shape"]["mean"],
@@ -62,17 +62,17 @@ def cell(figures, key, form):
 
 
 def summary(rows):
-    """Means over pictures; the least of q, the sum of folds."""
+    """Means over images; the least of q, the sum of folds."""
     out = {key: statistics.fmean(r[key] for r in rows) for key in rows[0]}
     out["least_q"] = min(r["least_q"] for r in rows)
     out["folds"] = sum(r["folds"] for r in rows)
     return out
 
 
-def main(bin_folder, pictures, out):
-    paths, out = sorted(pathlib.Path(pictures).glob("*.png")), pathlib.Path(out)
+def main(bin_folder, images, out):
+    paths, out = sorted(pathlib.Path(images).glob("*.png")), pathlib.Path(out)
     if not paths:
-        sys.exit(f"quality: {pictures} has no .png pictures")
+        sys.exit(f"quality: {images} has no .png images")
     tools = Tools(bin_folder, out / "work")
     results = {}
     for name, options in METHODS.items():
@@ -83,13 +83,18 @@ def main(bin_folder, pictures, out):
     results |= peers
     names = [*METHODS, *dict.fromkeys(name for name, _ in peers)]
     text = ["# Error over size", "",
-            f"Means over {len(paths)} pictures, made by `./run quality FOLDER`. RMS is in L\\*u\\*v\\*, of the reconstruction "
-            "through the pixel map and of the mesh drawn alone; PSNR is that of the mesh drawn alone "
-            "(`imgmesh-reconstruct --mode gouraud`), in 8-bit sRGB; q = 4 sqrt(3) area / sum of squared edges, the least of "
-            "all pictures; folds are folded pixel triangles in all pictures; CPU seconds are those of the whole program on "
-            "one thread.", "",
-            "Other simplifiers, where `./run bench peers` has installed them, get the same pixel grid; theirs are the error of "
-            "the mesh with colours of least squares and the seconds of the one call that simplifies.", ""]
+            "    ./run quality FOLDER      # measures every preset on the PNG images of FOLDER and writes this page",
+            "    ./run bench peers         # installs the other simplifiers first", "",
+            f"All figures are means over {len(paths)} images.", "",
+            "| column | meaning |", "|---|---|",
+            "| map RMS | error of the reconstruction through the pixel map, Euclidean distance in L\\*u\\*v\\* |",
+            "| mesh RMS | error of the mesh drawn alone, likewise |",
+            "| mesh PSNR | of the mesh drawn alone (`imgmesh-reconstruct --mode gouraud`), in 8-bit sRGB |",
+            "| edge ratio | longest edge of a triangle / its shortest edge |",
+            "| mean q, least q | q = 4 sqrt(3) area / sum of squared edges; the least is over all images |",
+            "| folds | folded pixel triangles in all images |",
+            "| CPU seconds | of the whole program on one thread; for other simplifiers, of the one call that simplifies |", "",
+            "Other simplifiers get the same pixel grid. Their error is that of the mesh with least-squares colours.", ""]
     for density in DENSITIES:
         text += [f"## {density} % of the pixels as vertices", "",
                  "| | " + " | ".join(c[0] for c in COLUMNS) + " |", "|---" * (len(COLUMNS) + 1) + "|"]

@@ -26,26 +26,26 @@ class Tools:
             raise SystemExit(f"paper: {' '.join(command)} failed: {result.stderr.strip()}")
         return json.loads(result.stdout)
 
-    def build(self, picture, *args, output="mesh.glb"):
-        """The report of the one picture."""
-        return self._run("imgmesh-build", picture, "-o", self.folder / output, *args)["images"][0]
+    def build(self, image, *args, output="mesh.glb"):
+        """The report of the one image."""
+        return self._run("imgmesh-build", image, "-o", self.folder / output, *args)["images"][0]
 
     def mesh(self, container="mesh.glb"):
         """Distributions of the container's mesh."""
         return self._run("imgmesh-compare", self.folder / container)["inputs"][0]["mesh"]
 
     def compare(self, original, mode, container="mesh.glb"):
-        """How far the container, drawn in that mode, is from the picture."""
+        """How far the container, drawn in that mode, is from the image."""
         return self._run("imgmesh-compare", original, self.folder / container, "--mode", mode)["difference"]
 
     def draw(self, mode, *args, container="mesh.glb", width=384):
         """An HTML image of the container, that many pixels wide."""
         target = self.folder / f"{mode}.png"
         self._run("imgmesh-reconstruct", self.folder / container, "-o", target, "--mode", mode, *args)
-        return picture(target, width)
+        return image_tag(target, width)
 
 
-def picture(path, width=384):
+def image_tag(path, width=384):
     """An HTML image that holds its bytes."""
     image = Image.open(path).convert("RGBA")
     white = Image.new("RGBA", image.size, "white")
