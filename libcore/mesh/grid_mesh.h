@@ -16,7 +16,7 @@ namespace imgmesh {
 /// mask pinches is one vertex for every fan of triangles around it, and one that is in no triangle belongs to
 /// a strip one pixel wide, of two vertices a pixel (four for a single one) half a pixel beside it; see
 /// mask_fans.h, masked_rings.h. The first of a pixel's vertices has the pixel's number, the others follow
-/// those of all pixels. Docs: docs/decisions/0005-cut-outs.md.
+/// those of all pixels. Docs: docs/decisions/0005-masked-images.md.
 struct GridMesh {
     FeatureImage feature;  ///< at the vertices: `data` goes on with those of `copies`; sides >= 2 but for
                            ///< masks

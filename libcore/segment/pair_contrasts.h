@@ -7,7 +7,7 @@
 namespace imgmesh {
 
 /// The spread that colours have without any meaning: noise, shading, compression [L*u*v*]. What a texture
-/// spreads beyond it counts against a contrast of means. Chosen on photographs, docs/decisions/0009.
+/// spreads beyond it counts against a contrast of means. Chosen on photographs, docs/decisions/0009-segmentation.md.
 inline constexpr double kPlainSpread = 6.0;
 
 /// Bhattacharyya's distance of two colour populations with independent channels, each a normal distribution

@@ -12,7 +12,7 @@ namespace imgmesh {
 /// No point of a simplified boundary is farther from the dense one than this, nor the other way round [px].
 /// The pixels of a straight line are less than one pixel from a line that covers them, so stairs of any slope
 /// become straight; with 0.75 the flat ones stay, and a disc of 300 pixels keeps 116 boundary vertices
-/// instead of 76 (docs/decisions/0005-cut-outs.md).
+/// instead of 76 (docs/decisions/0005-masked-images.md).
 inline constexpr float kBoundaryBand = 1.0f;
 
 /// Two neighbours on a boundary may merge where
