@@ -1,4 +1,4 @@
-// The one way in which imgmesh reports a bad argument or a bad file: an exception of class Error.
+// imgmesh reports every bad argument and every bad file by an exception of class Error.
 #pragma once
 
 #include <sstream>
@@ -16,7 +16,7 @@ enum class ErrorKind {
     kUnsupported,  ///< a valid request or file that imgmesh does not support
 };
 
-/// Thrown for a bad argument or a bad file. The text names the file or option, what was found and what was
+/// Thrown for a bad argument or a bad file. The text names the file or parameter, what was found and what was
 /// expected, in one line without a full stop. Our own mistakes are assertions, not Errors.
 class Error : public std::runtime_error {
   public:
@@ -27,7 +27,7 @@ class Error : public std::runtime_error {
     ErrorKind kind_;
 };
 
-/// Concatenates everything that streams into one string; for messages.
+/// Concatenates everything that can be streamed into one string; for messages.
 template <typename... Parts>
 std::string cat(const Parts&... parts) {
     std::ostringstream out;

@@ -29,8 +29,8 @@ int hardware_threads() {
 }
 
 #if defined(__SANITIZE_THREAD__)
-// The distribution's TBB is not built for ThreadSanitizer, which sees races wherever it hands work over.
-// Plain threads show the races that are ours.
+// The distribution's TBB is not built for ThreadSanitizer, which reports races wherever it hands over work.
+// With std::thread only our own races are reported.
 void parallel_blocks(int begin, int end, int grain, const std::function<void(int, int)>& body) {
     std::atomic<int> next{begin};
     std::exception_ptr failure;
@@ -53,8 +53,8 @@ void parallel_blocks(int begin, int end, int grain, const std::function<void(int
 void parallel_blocks(int begin, int end, int grain, const std::function<void(int, int)>& body) {
     if (begin >= end) return;
     const int blocks = (end - begin + grain - 1) / grain;
-    // A thread that waits for these blocks must not begin a block of a loop around them: with an image a
-    // block, it would hold several images at a time, one on top of the other.
+    // A thread that waits for these blocks must not begin a block of an enclosing loop. With one image a
+    // block, it would hold several images at a time.
     tbb::this_task_arena::isolate([&] {
         tbb::parallel_for(0, blocks, [&](int b) {
             const int first = begin + b * grain;

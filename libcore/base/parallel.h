@@ -1,5 +1,5 @@
-// The only place that names the thread library. Work is cut into blocks whose bounds depend on the problem
-// alone, never on the number of threads, so results are the same bytes for any number.
+// The only header that names the thread library. Work is cut into blocks whose bounds depend only on the
+// problem, never on the number of threads. So results are the same bytes for any number.
 #pragma once
 
 #include <algorithm>
@@ -8,14 +8,14 @@
 
 namespace imgmesh {
 
-/// Calls body(block_begin, block_end) for consecutive blocks of [begin, end), `grain` long (the last may be
-/// shorter), in any order and on any thread. Blocks must not write to what another block touches.
+/// Calls body(block_begin, block_end) for consecutive blocks of [begin, end) of `grain` (the last may be
+/// shorter), in any order and on any thread. A block must not write to anything that another one touches.
 void parallel_blocks(int begin, int end, int grain, const std::function<void(int, int)>& body);
 
-/// Number of hardware threads, at least 1.
+/// Returns the number of hardware threads, at least 1.
 int hardware_threads();
 
-/// While it lives, parallel_blocks uses at most `threads` threads (>= 1).
+/// While this object lives, parallel_blocks() uses at most `threads` threads (>= 1).
 class ThreadLimit {
   public:
     explicit ThreadLimit(int threads);

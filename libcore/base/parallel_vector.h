@@ -1,5 +1,5 @@
-// Large vectors whose memory the threads touch together: the kernel makes and clears pages when they are
-// touched first, which is most of the time that a fresh vector takes.
+// Large vectors whose memory all threads touch together. The kernel makes and clears pages when they are
+// first touched, which is most of the time that a fresh vector takes.
 #pragma once
 
 #include <cstddef>
@@ -9,16 +9,16 @@
 
 namespace imgmesh {
 
-/// Touches the pages of fresh memory, whose content does not matter yet, on all threads.
+/// Touches the pages of fresh memory on all threads. The content does not matter yet.
 inline void touch_pages(void* memory, std::size_t bytes) {
-    constexpr std::size_t kPage = 4096, kGrain = 512;  // as many as a large page has
+    constexpr std::size_t kPage = 4096, kGrain = 512;  // 512 pages are one huge page
     parallel_blocks(0, static_cast<int>(bytes / kPage), kGrain, [&](int first, int last) {
         for (int page = first; page < last; ++page)
             static_cast<volatile char*>(memory)[static_cast<std::size_t>(page) * kPage] = 0;
     });
 }
 
-/// std::vector<T>(size, value).
+/// Returns std::vector<T>(size, value).
 template <class T>
 std::vector<T> parallel_vector(std::size_t size, const T& value = {}) {
     std::vector<T> vector;
@@ -28,7 +28,7 @@ std::vector<T> parallel_vector(std::size_t size, const T& value = {}) {
     return vector;
 }
 
-/// A copy.
+/// Returns a copy.
 template <class T>
 std::vector<T> parallel_copy(const std::vector<T>& from) {
     std::vector<T> vector;

@@ -1,4 +1,4 @@
-// How long work tells where it stands.
+// How long work reports its progress.
 #pragma once
 
 #include <functional>
@@ -6,8 +6,8 @@
 
 namespace imgmesh {
 
-/// Called now and then, always from the thread that started the work: `fraction` of the whole in [0, 1],
-/// never falling, and a word for the current stage ("collapse"). May be empty. Must not throw.
+/// Called from time to time on the thread that started the work. `fraction` in [0, 1] never falls; the word
+/// names the current stage ("collapse"). May be empty. Must not throw.
 using Progress = std::function<void(double fraction, std::string_view stage)>;
 
 }  // namespace imgmesh

@@ -1,6 +1,6 @@
-// Eight floats side by side, in the compiler's own vector types: two SSE registers or, inside a function
-// built for it, one AVX2 register. Arithmetic, comparison and choice (mask ? a : b) are operators of the
-// language, lane by lane.
+// Eight floats side by side, in the compiler's own vector types: two SSE registers, or one AVX2 register
+// inside a function built for it. Arithmetic, comparison and selection (mask ? a : b) are operators of the
+// language and work lane by lane.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +15,7 @@ namespace imgmesh {
 using Float8 = float __attribute__((vector_size(32)));
 using Int8 = std::int32_t __attribute__((vector_size(32)));
 
-// Such vectors must not cross a call between functions built for different processors, so all of this is
+// Such vectors must not be passed between functions built for different processors, so everything here is
 // inlined.
 #define IMGMESH_INLINE inline __attribute__((always_inline))
 
@@ -24,12 +24,12 @@ IMGMESH_INLINE Float8 load8(const float* p) {
     std::memcpy(&v, p, sizeof v);
     return v;
 }
-/// p[0], p[2], ... p[14]; reads p[15] too.
+/// Returns p[0], p[2], ... p[14]; reads p[15] too.
 IMGMESH_INLINE Float8 load8_every_other(const float* p) {
     return __builtin_shufflevector(load8(p), load8(p + 8), 0, 2, 4, 6, 8, 10, 12, 14);
 }
 
-/// Bit k is set where values[k] is `wanted`, for 0 <= k < 12.
+/// Returns a number whose bit k is set if values[k] is `wanted`, for 0 <= k < 12.
 inline unsigned match12(const std::uint32_t* values, std::uint32_t wanted) {
 #if defined(__SSE2__)
     const __m128i w = _mm_set1_epi32(static_cast<int>(wanted));
@@ -45,7 +45,7 @@ inline unsigned match12(const std::uint32_t* values, std::uint32_t wanted) {
 #endif
 }
 
-/// rows[i][j] <-> rows[j][i].
+/// Transposes: rows[i][j] <-> rows[j][i].
 IMGMESH_INLINE void transpose8(Float8 (&rows)[8]) {
     Float8 a[8], b[8];
     for (int i = 0; i < 8; i += 2) {

@@ -1,4 +1,4 @@
-// Time that passes on the wall.
+// Measures wall time.
 #pragma once
 
 #include <chrono>
@@ -7,7 +7,7 @@ namespace imgmesh {
 
 class Stopwatch {
   public:
-    /// Seconds since the last lap, or since it was made.
+    /// Returns the seconds since the last lap, or since construction.
     double lap() {
         const auto now = Clock::now();
         const std::chrono::duration<double> seconds = now - last_;

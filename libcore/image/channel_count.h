@@ -1,4 +1,4 @@
-// How many features a pixel or vertex may have, and for how many of them code is compiled.
+// How many features a pixel or vertex may have, and the numbers of features that code is compiled for.
 #pragma once
 
 #include <type_traits>
@@ -6,11 +6,11 @@
 
 namespace imgmesh {
 
-/// Features of a pixel or vertex at most.
+/// The largest number of features of a pixel or vertex.
 inline constexpr int kMaxFeatures = 16;
 
-/// The numbers of features that templates are compiled for. Between them features of value zero fill up,
-/// which change no error.
+/// The numbers of features that templates are compiled for. Other numbers are padded with features of value
+/// zero, which change no error.
 constexpr int padded_features(int features) {
     return features <= 3 ? 3 : features <= 8 ? 8 : kMaxFeatures;
 }

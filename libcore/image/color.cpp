@@ -150,7 +150,7 @@ Vec3f linear_from_luv(const Vec3f& luv) {
         u += luv[1] / (13 * lightness);
         v += luv[2] / (13 * lightness);
     }
-    // Far outside any gamut v' can reach 0 or less, where X and Z have no value; stay just above.
+    // Far outside any gamut v' can reach 0 or less, where X and Z are undefined; stay just above.
     v = std::max(v, 1e-3);
     const Vec3d xyz(y * 9 * u / (4 * v), y, y * (12 - 3 * u - 20 * v) / (4 * v));
     return (matrices().xyz_to_srgb * xyz).cast<float>();
@@ -158,14 +158,14 @@ Vec3f linear_from_luv(const Vec3f& luv) {
 
 namespace {
 
-// decode_curve of the 256 values that an 8-bit sample has, as floats.
+// decode_curve() of the 256 values of an 8-bit sample, as floats.
 class DecodeTable {
   public:
     explicit DecodeTable(ColorSpace space) : space_(space) {
         for (std::size_t k = 0; k < value_.size(); ++k)
             value_[k] = static_cast<float>(decode_curve(space, double(static_cast<float>(k) / 255.0f)));
     }
-    // Any other value is decoded as it is.
+    // Other values are decoded directly.
     float operator()(float encoded) const {
         const float code = encoded * 255.0f;
         const auto k = static_cast<std::size_t>(code >= 0 && code <= 255 ? code + 0.5f : 0);
@@ -179,7 +179,7 @@ class DecodeTable {
     std::array<float, 256> value_;
 };
 
-// Where an image's colour is; grey counts as R = G = B.
+// The channels of an image's colour. Grey counts as R = G = B.
 struct ColorChannels {
     int r, g, b;
 
@@ -191,7 +191,7 @@ struct ColorChannels {
     Vec3f at(const float* pixel) const { return {pixel[r], pixel[g], pixel[b]}; }
 };
 
-// Whether a space has sRGB's primaries, so that decoding its curve gives linear light.
+// Whether a space has sRGB's primaries, so that decoding its curve gives linear RGB.
 bool has_srgb_primaries(ColorSpace space) {
     return space != ColorSpace::kAdobeRgb && space != ColorSpace::kDisplayP3;
 }

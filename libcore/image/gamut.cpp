@@ -1,4 +1,4 @@
-// Which colours a container holds.
+// The colours that a container holds.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -11,19 +11,19 @@ Vec3f in_gamut(const Vec3f& luv, Gamut gamut) {
     constexpr float kInfinity = std::numeric_limits<float>::infinity();
     const float most = gamut == Gamut::kDisplay ? 1.0f : kInfinity,
                 lightest = gamut == Gamut::kDisplay ? 100.0f : kInfinity;
-    // Less than half a 16-bit code beyond counts as inside, so that a result is never projected again.
+    // Less than half a 16-bit code outside counts as inside, so that a result is never projected again.
     const auto inside = [most](const Vec3f& color) {
         const Vec3f linear = linear_from_luv(color);
         const float kSlack = 4e-6f * (most > 1 ? std::max(1.0f, linear.maxCoeff()) : 1.0f);
-        // Without lightness there is no chroma: linear_from_luv makes (0, u, v) the black that it is not.
+        // Without lightness there is no chroma: linear_from_luv() turns any (0, u, v) into black.
         return linear.minCoeff() >= -kSlack && linear.maxCoeff() <= most + kSlack &&
                (color[0] > 0 || (color[1] == 0 && color[2] == 0));
     };
     if (inside(luv)) return luv;
-    // Towards a grey of the same lightness the gamut is always reached; bisect for where.
+    // The way to a grey of the same lightness always enters the gamut; bisection finds where.
     const Vec3f grey(std::clamp(luv[0], 0.0f, lightest), 0, 0);
     Vec3f best = luv_from_linear(linear_from_luv(luv).cwiseMax(0.0f).cwiseMin(most));
-    // Darker and lighter greys too: at a lightness a little off, the gamut may reach much closer.
+    // Try darker and lighter greys too: at a slightly different lightness the gamut may reach much closer.
     for (const float shift : {-8.0f, -4.0f, -2.0f, 0.0f, 2.0f, 4.0f, 8.0f}) {
         const Vec3f center(std::clamp(grey[0] + shift, 0.0f, lightest), 0, 0);
         const Vec3f rim(center[0], luv[1], luv[2]);
@@ -54,7 +54,7 @@ Vec3f color_from_codes(const std::array<std::uint16_t, 3>& codes) {
 Vec3f quantized_hdr(const Vec3f& luv) {
     constexpr int kBits = 16, kLeastExponent = -4;
     Vec3f linear = linear_from_luv(in_gamut(luv, Gamut::kHdr)).cwiseMax(0.0f).cwiseMin(kMaxHdr);
-    // Once more, as rounding may reach the next power of two, whose step is the double.
+    // Round once more, because rounding may reach the next power of two, whose step is twice as large.
     for (int pass = 0; pass < 2; ++pass) {
         int exponent = 0;
         std::frexp(linear.maxCoeff(), &exponent);

@@ -20,10 +20,10 @@ struct PixelRect {
     int height() const { return bottom - top; }
 };
 
-/// How samples were stored in the file that an image came from, so that results can be stored alike.
+/// How the file of an image stored its samples, so that results can be stored alike.
 enum class SampleType { kUint8, kUint16, kHalf, kFloat };
 
-/// What the numbers of a colour image mean: primaries and transfer curve.
+/// The meaning of the numbers of a colour image: primaries and transfer curve.
 enum class ColorSpace {
     kSrgb,      ///< "sRGB": IEC 61966-2-1, the default for integer images
     kLinear,    ///< "linear": sRGB/Rec.709 primaries, linear light; the default for half and float images
@@ -67,12 +67,12 @@ struct Image {
     int channel(const std::string& name) const;
 };
 
-/// An all-zero image of that shape. channels 1, 2, 3, 4 are named Y / Y A / R G B / R G B A; others C0, C1,
-/// ...
+/// Returns an all-zero image of that shape. With 1, 2, 3 or 4 channels they are named Y / Y A / R G B / R G B
+/// A, otherwise C0, C1, ...
 Image make_image(int width, int height, int channels);
 
-/// An image in feature space: per pixel `channels` floats, for colour L*, u*, v* (L* in 0..100). This is
-/// what errors are measured in.
+/// An image in feature space: `channels` floats per pixel; for colour L*, u*, v* (L* in 0..100). Errors are
+/// measured in this space.
 struct FeatureImage {
     int width = 0;
     int height = 0;

@@ -6,7 +6,7 @@
 namespace imgmesh {
 namespace {
 
-// The table is indexed by the square root of the linear value: all curves are nearly straight over it, also
+// The table is indexed by the square root of the linear value. Over it all curves are nearly straight, also
 // near black, where pure powers rise steeply. The largest error is about 0.6/65535, in the first step of
 // Gamma2.2.
 constexpr int kCurveSteps = 4096;
@@ -14,16 +14,16 @@ constexpr int kCurveSteps = 4096;
 constexpr int kBlock = 64;  // colours in flight: a dozen planes of them fit the first-level cache
 using Plane = Eigen::Array<float, Eigen::Dynamic, 1, 0, kBlock, 1>;
 
-// CIE 1976 L*u*v*: where the branches of L* meet, L* per Y below, and the white D65 (as in color.cpp).
+// CIE 1976 L*u*v*: where the branches of L* meet, L* per Y below that, the white D65 (as in color.cpp).
 constexpr float kLinearLightness = 8.0f;
 constexpr float kLinearSlope = 24389.0f / 27.0f;
 constexpr float kWhiteU = static_cast<float>(4 * 0.3127 / (-2 * 0.3127 + 12 * 0.3290 + 3));
 constexpr float kWhiteV = static_cast<float>(9 * 0.3290 / (-2 * 0.3127 + 12 * 0.3290 + 3));
 
 // With U = 13 L u', V = 13 L v' the inverse of L*u*v* needs one division: X = 9 U k, Z = (156 L - 3 U - 20 V)
-// k, k = Y / 4 V. The two branches of Y add up: the cube stands still below L* = 8, the line above.
+// k, k = Y / 4 V. The two branches of Y are added: the cube is constant below L* = 8, the line above.
 void xyz_from_luv(const Plane& l, const Plane& u, const Plane& v, Plane (&xyz)[3]) {
-    constexpr float kTiny = 1e-30f;  // stands in for L <= 0, where chroma has no meaning and is dropped
+    constexpr float kTiny = 1e-30f;  // replaces L <= 0, where chroma is dropped
     const Plane lightness = l.max(kTiny), chroma = (l * (1 / kTiny)).max(0.0f).min(1.0f);
     const Plane su = 13 * kWhiteU * lightness + chroma * u;
     // v' >= 0.001, as in linear_from_luv().
@@ -44,7 +44,7 @@ Vec3f encoded_from_luv(ColorSpace space, const Vec3f& luv) {
 
 LuvEncoder::LuvEncoder(ColorSpace space) : rgb_from_xyz_(rgb_from_xyz(space).cast<float>()) {
     if (space == ColorSpace::kLinear) return;
-    // White is white in every space, so greys pass through the space's curve alone. One entry more, so that
+    // White is white in every space, so greys need only the space's curve. There is one more entry, so that
     // the last value has a right neighbour.
     for (int i = 0; i <= kCurveSteps + 1; ++i) {
         const double root = std::min(double(i) / kCurveSteps, 1.0);

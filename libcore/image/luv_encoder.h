@@ -1,4 +1,4 @@
-// L*u*v* to encoded samples, a row at a time: the last step of every drawing.
+// Converts L*u*v* to encoded samples, a row at a time: the last step of every drawing.
 #pragma once
 
 #include <span>
@@ -8,18 +8,18 @@
 
 namespace imgmesh {
 
-/// The plain form, and the test's reference: linear_from_luv, clamped to [0, 1] unless `space` is linear,
-/// encoded_from_linear, clamped again.
+/// The slow clear form, and the reference of the test: linear_from_luv(), clamped to [0, 1] unless `space` is
+/// linear, then encoded_from_linear(), clamped again.
 Vec3f encoded_from_luv(ColorSpace space, const Vec3f& luv);
 
-/// encoded_from_luv without roots and powers. Curves come from a table: errors stay below
-/// 2/65535 (Rec709: 2e-4 at the small jump that its curve has near 0.018).
+/// encoded_from_luv() without roots and powers. Curves come from a table. Errors stay below 2/65535 (Rec709:
+/// 2e-4 at the small jump of its curve near 0.018).
 class LuvEncoder {
   public:
     explicit LuvEncoder(ColorSpace space);
 
-    /// Colours as planes of one row: L, u and v hold `count` values each, one after the other, at
-    /// luv[0 .. 3 count). Writes R, G, B of colour i to out[i * stride .. i * stride + 2].
+    /// Encodes one row of `count` colours, given as planes: L, u and v have `count` values each, one after
+    /// the other, at luv[0 .. 3 count). Writes R, G, B of colour i to out[i * stride .. i * stride + 2].
     void encode_row(std::span<const float> luv, int count, float* out, int stride) const;
 
   private:

@@ -1,4 +1,4 @@
-// Which pixels of an image belong to it: masked images of any shape and topology.
+// The pixels of an image that belong to it: masked images of any shape and topology.
 #pragma once
 
 #include <cstdint>
@@ -8,8 +8,8 @@
 
 namespace imgmesh {
 
-/// One flag a pixel, rows from top to bottom; not 0 inside. Without pixels (the default) nothing is masked
-/// out.
+/// One flag for each pixel, rows from top to bottom; not 0 inside. A mask without pixels (the default) masks
+/// nothing.
 struct Mask {
     int width = 0;
     int height = 0;
@@ -17,7 +17,7 @@ struct Mask {
 
     bool empty() const { return inside.empty(); }
     bool contains(std::size_t pixel) const { return empty() || inside[pixel] != 0; }
-    /// Whether pixel (x, y) is inside; false beyond the image. For a mask that is not empty().
+    /// Returns whether pixel (x, y) is inside; false beyond the image. Only for a mask that is not empty().
     bool at(int x, int y) const {
         return x >= 0 && x < width && y >= 0 && y < height &&
                inside[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
@@ -26,12 +26,12 @@ struct Mask {
     std::int64_t count() const;  ///< pixels inside
 };
 
-/// The pixels of which alpha is at least `threshold`; empty() where the image has no channel A or all are.
+/// Returns the pixels with alpha >= `threshold`; empty() without a channel A or if all are inside.
 Mask alpha_mask(const Image& image, float threshold);
 
-/// The pixels of which a mask's image is at least `threshold`: its alpha, unless it has none or an opaque
-/// one; then Y, or the mean of R, G and B, as encoded. Never empty(): all may be inside.
-/// Throws Error(kUnsupported) for an image with none of these.
+/// Returns the pixels where the image of a mask is at least `threshold`. Its alpha counts, unless it has none
+/// or all of it is opaque; then Y counts, or the mean of R, G and B, as encoded. Never empty(): all pixels
+/// may be inside. Throws Error(kUnsupported) for an image with none of these channels.
 Mask image_mask(const Image& image, float threshold);
 
 }  // namespace imgmesh

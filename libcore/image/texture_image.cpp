@@ -10,8 +10,8 @@
 namespace imgmesh {
 namespace {
 
-// How far colours spread out of the mask [pixels]: drawn at an eighth of its size, a texture still mixes
-// pixels inside with these alone.
+// How far colours spread outside the mask [pixels]. At an eighth of its size a texture still mixes pixels
+// inside only with these.
 constexpr int kSpread = 8;
 constexpr int kGrainRows = 16;
 
@@ -23,7 +23,7 @@ std::array<int, 3> color_channels(const Image& image) {
     return {grey, grey, grey};
 }
 
-constexpr std::uint8_t kClear = 0, kColored = 1, kNext = 2;  // what a pixel is; kNext: of the ring to come
+constexpr std::uint8_t kClear = 0, kColored = 1, kNext = 2;  // states of a pixel; kNext: in the next ring
 
 class Spread {
   public:
@@ -31,7 +31,7 @@ class Spread {
         for (std::uint8_t& state : state_) state = state ? kColored : kClear;
     }
 
-    // Ring by ring, each from those before alone: no order of pixels counts.
+    // Each ring depends only on the rings before it, so the order of pixels does not matter.
     void run() {
         std::vector<std::size_t> ring;
         for (std::size_t i = 0; i < state_.size(); ++i) {
@@ -69,7 +69,7 @@ class Spread {
                 visit(v * width + u);
     }
 
-    // The mean colour of the neighbours that have one; there are some.
+    // The mean colour of the neighbours that have one; there is at least one.
     void mix(std::size_t i) {
         Vec3f sum(0, 0, 0);
         float count = 0;

@@ -1,4 +1,4 @@
-// Which faces of a base mesh share an edge.
+// Finds the faces of a base mesh that share an edge.
 #pragma once
 
 #include <vector>
@@ -7,7 +7,7 @@
 
 namespace imgmesh {
 
-/// For each face the faces across the edges opposite its corners a, b, c; kNone on the border.
+/// Returns for each face the faces across the edges opposite its corners a, b, c; kNone on a boundary.
 std::vector<Face> face_neighbors(const BaseMesh& mesh);
 
 }  // namespace imgmesh

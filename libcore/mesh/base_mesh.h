@@ -1,4 +1,4 @@
-// The base mesh: the small triangle mesh that stands for an image.
+// The base mesh: the small triangle mesh that represents an image.
 #pragma once
 
 #include <cmath>
@@ -9,11 +9,11 @@
 
 namespace imgmesh {
 
-/// Vertex positions are multiples of this step [pixels], so that Draco's quantisation loses nothing
+/// Vertex positions are multiples of this step [pixels], so Draco's quantisation loses nothing
 /// (docs/format.md).
 inline constexpr float kPositionStep = 1.0f / 32.0f;
 
-/// The multiple of kPositionStep nearest to x [pixels].
+/// Returns the multiple of kPositionStep nearest to x [pixels].
 inline float snapped(float x) {
     return std::round(x / kPositionStep) * kPositionStep;
 }
@@ -37,15 +37,15 @@ struct BaseMesh {
     }
 };
 
-/// Twice the signed area of triangle (a, b, c) in pixels^2, positive when it runs counter-clockwise on
-/// screen. Exact for positions on the kPositionStep grid.
+/// Returns twice the signed area of triangle (a, b, c) in pixels^2. It is positive if the corners run
+/// counter-clockwise on screen, and exact for positions on the kPositionStep grid.
 inline double signed_area2(const Vec2f& a, const Vec2f& b, const Vec2f& c) {
     const double abx = double(b.x()) - a.x(), aby = double(b.y()) - a.y();
     const double acx = double(c.x()) - a.x(), acy = double(c.y()) - a.y();
     return aby * acx - abx * acy;
 }
 
-/// Every edge once, its lower vertex first, in ascending order.
+/// Returns every edge once, its lower vertex first, in ascending order.
 std::vector<std::pair<Id, Id>> mesh_edges(const BaseMesh& mesh);
 
 }  // namespace imgmesh

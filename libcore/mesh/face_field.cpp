@@ -50,7 +50,7 @@ AuxiliaryFields auxiliary_fields(const BaseMesh& mesh, const std::vector<FaceFie
 
 Id locate_face(const Vec2f& p, Id face, const std::vector<FaceField>& fields,
                const std::vector<Face>& neighbors) {
-    // The bound only guards against rounding in circles: in a convex domain the walk arrives.
+    // The bound only guards against rounding that leads in circles: in a convex domain the search arrives.
     for (std::size_t step = 0; step < fields.size() + 8; ++step) {
         const FaceField& field = fields[face];
         const float u = field.u(p.x(), p.y()), v = field.v(p.x(), p.y()), w = 1 - u - v;

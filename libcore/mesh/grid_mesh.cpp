@@ -14,7 +14,7 @@ float squared_distance(const float* a, const float* b, int channels) {
     return sum;
 }
 
-// Repeats columns and rows of one pixel, so that every grid has an area.
+// Repeats a single column or row, so that every grid has an area.
 FeatureImage doubled_sides(FeatureImage in) {
     if (in.width >= 2 && in.height >= 2) return in;
     FeatureImage out{std::max(2, in.width), std::max(2, in.height), in.channels, {}};
@@ -27,10 +27,10 @@ FeatureImage doubled_sides(FeatureImage in) {
     return out;
 }
 
-// A small tile's rows and some around them are one block.
+// One block is about the rows of a small tile and some around them.
 constexpr int kRowsPerBlock = 80;
 
-// How many vertices pixel (x, y) has beside its first one.
+// Returns how many vertices pixel (x, y) has after its first one.
 int further_vertices(const GridMesh& mesh, int x, int y) {
     switch (strip_at(mesh.mask, x, y)) {
         case Strip::kAlongX:
@@ -41,7 +41,7 @@ int further_vertices(const GridMesh& mesh, int x, int y) {
         case Strip::kNoStrip:
             break;
     }
-    // Which diagonal a cell has does not change the number of fans: it joins faces of one cell alone.
+    // The diagonal of a cell does not change the number of fans: it only joins faces of that cell.
     return std::max(0, fans_at(mesh.mask, x, y, [](int) { return false; }).count - 1);
 }
 
@@ -131,7 +131,7 @@ FeaturePatch smoothed_patch(const GridMesh& grid, int passes, const PixelRect& r
         patch.image = smoothed(std::move(patch.image), passes);
         return patch;
     }
-    // Smoothed colours times insides over smoothed insides.
+    // Smoothed (colour times inside) divided by smoothed inside.
     FeatureImage weighted{right - left, bottom - top, c + 1, {}};
     weighted.data.assign(weighted.pixel_count() * static_cast<std::size_t>(c + 1), 0.0f);
     float* out = weighted.data.data();

@@ -1,5 +1,5 @@
-// The dense mesh that the collapse starts from: one vertex a pixel (paper sec. 3.1), or a few where a mask
-// leaves less than triangles.
+// The dense mesh that the collapse starts from: one vertex for each pixel (paper sec. 3.1), or several where
+// a mask pinches or leaves strips.
 #pragma once
 
 #include <vector>
@@ -12,11 +12,11 @@ namespace imgmesh {
 /// A W x H grid of pixels as a triangle mesh. Connectivity is implicit: cell (x, y) is the quad of pixels (x,
 /// y) to (x+1, y+1), split by one diagonal; vertex (x, y) has the number y * W + x.
 ///
-/// With a mask, cells of four pixels inside have two triangles, those of three have one. A pixel where the
-/// mask pinches is one vertex for every fan of triangles around it, and one that is in no triangle belongs to
-/// a strip one pixel wide, of two vertices a pixel (four for a single one) half a pixel beside it; see
-/// mask_fans.h, masked_rings.h. The first of a pixel's vertices has the pixel's number, the others follow
-/// those of all pixels. Docs: docs/decisions/0005-masked-images.md.
+/// With a mask, cells of four pixels inside have two triangles, cells of three have one. A pixel where the
+/// mask pinches is one vertex for every fan of triangles around it. A pixel in no triangle belongs to a strip
+/// one pixel wide; it has two vertices (four if it is alone), half a pixel beside it. See mask_fans.h and
+/// masked_rings.h. The first of a pixel's vertices has the pixel's number. The others are numbered after
+/// those of all pixels. Why: docs/decisions/0005-masked-images.md.
 struct GridMesh {
     FeatureImage feature;  ///< at the vertices: `data` goes on with those of `copies`; sides >= 2 but for
                            ///< masks
@@ -25,25 +25,25 @@ struct GridMesh {
     std::vector<std::uint8_t> diagonal;  ///< (W-1) x (H-1): 1 joins top left to bottom right, 0 the other two
 
     Mask mask;               ///< empty() for the whole image
-    std::vector<Id> copies;  ///< pixels of the vertices W * H, W * H + 1, ..., ascending
+    std::vector<Id> copies;  ///< pixels of the split vertices W * H, W * H + 1, ..., ascending
 
     bool falling_diagonal(int x, int y) const {
         return diagonal[static_cast<std::size_t>(y) * static_cast<std::size_t>(feature.width - 1) +
                         static_cast<std::size_t>(x)] != 0;
     }
     std::size_t vertex_count() const { return feature.pixel_count() + copies.size(); }
-    /// The pixel that vertex v stands for.
+    /// Returns the pixel of vertex v.
     Id pixel_of(Id v) const { return v < feature.pixel_count() ? v : copies[v - feature.pixel_count()]; }
 };
 
-/// Splits each cell along the diagonal whose ends differ less in feature space (paper sec. 3.1); ties fall
-/// from top left to bottom right. A side of one pixel is doubled at -0.5 and +0.5, without a mask. Takes any
+/// Splits each cell along the diagonal whose ends differ less in feature space (paper sec. 3.1), in a tie
+/// from top left to bottom right. Without a mask, a side of one pixel is doubled at -0.5 and +0.5. Takes any
 /// size from 1 x 1. mask: empty(), or of the image's size with a pixel inside.
 GridMesh grid_mesh(FeatureImage feature, Mask mask = {});
 
-/// A copy smoothed by `passes` of the separable [1 2 1] / 4 filter, borders repeated. Gradients are taken
-/// from such a copy: most of the error of gradient-based quadrics is noise in per-pixel gradients
-/// (docs/paper-map.md).
+/// Returns a copy smoothed by `passes` of the separable [1 2 1] / 4 filter, borders repeated. Gradients are
+/// taken from such a copy, because most of the error of gradient-based quadrics is noise in per-pixel
+/// gradients (docs/paper-map.md).
 FeatureImage smoothed(FeatureImage image, int passes);
 
 /// Part of an image of features.
@@ -51,13 +51,13 @@ struct FeaturePatch {
     FeatureImage image;
     int left = 0, top = 0;  ///< of it in the image
 
-    /// In the image's coordinates.
+    /// Takes the image's coordinates.
     const float* pixel(int x, int y) const { return image.pixel(x - left, y - top); }
 };
 
-/// smoothed() of the pixels in `rect` and, inside the image, of those beside it, from the grid's features
-/// around them. With a mask the filter's weights outside count as none, so that colours outside do not bleed
-/// in.
+/// Returns smoothed() for the pixels in `rect` and, inside the image, for those beside it, computed from the
+/// grid's features around them. With a mask the filter's weights outside are zero, so colours outside do not
+/// bleed in.
 FeaturePatch smoothed_patch(const GridMesh& grid, int passes, const PixelRect& rect);
 
 inline PixelRect whole_rect(const GridMesh& grid) {

@@ -3,7 +3,7 @@
 namespace imgmesh {
 namespace {
 
-// Inside, and in no cell with three pixels inside.
+// Whether the pixel is inside, and in no cell with three pixels inside.
 bool bare(const Mask& mask, int x, int y) {
     if (!mask.at(x, y)) return false;
     for (int q = 0; q < 4; ++q) {
@@ -17,7 +17,7 @@ bool bare(const Mask& mask, int x, int y) {
 
 }  // namespace
 
-// A bare pixel cannot have bare ones both beside and above or below it: their cell would have three pixels.
+// A bare pixel has no two bare neighbours at a right angle: their cell would have three pixels inside.
 Strip strip_at(const Mask& mask, int x, int y) {
     if (!bare(mask, x, y)) return Strip::kNoStrip;
     if (bare(mask, x - 1, y) || bare(mask, x + 1, y)) return Strip::kAlongX;

@@ -1,4 +1,4 @@
-// The dense mesh at one pixel of a masked image: its fans of triangles, or the strip that it is part of.
+// The dense mesh at one pixel of a masked image: its fans of triangles, or the strip to which it belongs.
 #pragma once
 
 #include <array>
@@ -8,15 +8,15 @@
 
 namespace imgmesh {
 
-/// The eight pixels around one, counter-clockwise on screen (y down) from the east; odd ones are diagonals.
+/// The eight pixels around one, counter-clockwise on screen from the east; odd indices are diagonals.
 struct PixelStep {
     int dx, dy;
 };
 inline constexpr PixelStep kAround[8] = {{1, 0},  {1, -1}, {0, -1}, {-1, -1},
                                          {-1, 0}, {-1, 1}, {0, 1},  {1, 1}};
 
-/// Consecutive triangles around a pixel: directions (indices into kAround) of their other corners in
-/// counter-clockwise order; a closed fan does not repeat its first one.
+/// Consecutive triangles around a pixel, as the directions (indices into kAround) of their other corners in
+/// counter-clockwise order. A closed fan does not repeat its first direction.
 struct Fan {
     std::array<std::uint8_t, 8> direction{};
     int count = 0;
@@ -29,7 +29,7 @@ struct Fan {
     }
 };
 
-/// All fans of a pixel, each a vertex of its own: more than one where the mask pinches.
+/// All fans of a pixel. Each is a vertex of its own; there are several where the mask pinches.
 struct PixelFans {
     std::array<Fan, 4> fan;
     int count = 0;
@@ -43,7 +43,7 @@ PixelFans fans_at(const Mask& mask, int x, int y, const DiagonalThrough& diagona
     if (!mask.at(x, y)) return out;
     bool inside[8];
     for (int d = 0; d < 8; ++d) inside[d] = mask.at(x + kAround[d].dx, y + kAround[d].dy);
-    // The triangles, from one direction to another.
+    // The triangles, each from one direction to another.
     std::array<std::array<std::uint8_t, 2>, 8> faces{};
     int count = 0;
     const auto add = [&](int from, int to) {
@@ -81,8 +81,8 @@ PixelFans fans_at(const Mask& mask, int x, int y, const DiagonalThrough& diagona
     return out;
 }
 
-/// How a pixel inside the mask that is in no triangle is meshed: as part of a strip one pixel wide along a
-/// row or a column, or as a square of its own.
+/// How a pixel that is inside the mask but in no triangle is meshed: as part of a strip one pixel wide along
+/// a row or a column, or as a square of its own.
 enum class Strip { kNoStrip, kAlongX, kAlongY, kAlone };
 Strip strip_at(const Mask& mask, int x, int y);
 

@@ -37,7 +37,7 @@ class MaskedRings {
         });
     }
 
-    // The n-th vertex of a pixel.
+    // Returns the n-th vertex of a pixel.
     Id vertex(int x, int y, int n) const {
         const auto pixel = static_cast<Id>(y * width_ + x);
         if (n == 0) return pixel;
@@ -46,7 +46,7 @@ class MaskedRings {
                static_cast<Id>(first - grid_.copies.begin() + n - 1);
     }
 
-    // The next vertex of the pixel.
+    // Adds the next vertex of the pixel.
     Ring& add(PixelRings& pixel, int x, int y) const {
         pixel.vertex[pixel.count] = vertex(x, y, static_cast<int>(pixel.count));
         return pixel.ring[pixel.count++];
@@ -60,7 +60,7 @@ class MaskedRings {
         for (int k = 0; k < fan.count; ++k) {
             const int d = fan.direction[static_cast<std::size_t>(k)];
             const int nx = x + kAround[d].dx, ny = y + kAround[d].dy;
-            // An edge is in one fan of its other end: its two faces are neighbours there as well.
+            // An edge is in one fan of its other end: its two faces are neighbours there too.
             const PixelFans fans = fans_of(nx, ny);
             int n = 0;
             while (!fans.fan[static_cast<std::size_t>(n)].has((d + 4) % 8)) ++n;
@@ -69,8 +69,8 @@ class MaskedRings {
         return ring;
     }
 
-    // A strip's pixels have their first vertex at its upper (left) side and their second at its lower (right)
-    // one; cells are split from top left to bottom right.
+    // The first vertex of a strip's pixel is on its upper (left) side, the second on its lower (right) side.
+    // Cells are split from top left to bottom right.
     void add_strip(PixelRings& out, Strip strip, int x, int y) const {
         if (strip == Strip::kAlone) {
             const Id tl = vertex(x, y, 0), tr = vertex(x, y, 1), bl = vertex(x, y, 2), br = vertex(x, y, 3);
@@ -87,8 +87,8 @@ class MaskedRings {
         Ring &first = add(out, x, y), &second = add(out, x, y);
         set(first, x, y, -0.5f * static_cast<float>(dy), -0.5f * static_cast<float>(dx), {});
         set(second, x, y, 0.5f * static_cast<float>(dy), 0.5f * static_cast<float>(dx), {});
-        // Along a row: up is the first side. Along a column everything is mirrored at the falling diagonal,
-        // and so is the sense of turning.
+        // Along a row the upper side comes first. Along a column everything is mirrored at the falling
+        // diagonal, including the sense of turning.
         std::array<Id, 4> upper{}, lower{};
         int up = 0, low = 0;
         if (before) upper[static_cast<std::size_t>(up++)] = side(-1, 0);

@@ -11,18 +11,18 @@ namespace imgmesh {
 struct PixelRings {
     std::array<Ring, 4> ring;
     std::array<Id, 4> vertex;  ///< their numbers, ascending
-    std::size_t count = 0;     ///< 0 outside
+    std::size_t count = 0;     ///< 0 for a pixel outside
 };
 PixelRings masked_pixel_rings(const GridMesh& grid, int x, int y);
 
-/// Where a vertex of the dense mesh is, with or without a mask.
+/// Returns the position of a vertex of the dense mesh, with or without a mask.
 Vec2f vertex_place(const GridMesh& grid, Id vertex);
 
 std::int64_t masked_face_count(const GridMesh& grid);
 
-/// The rings of a grid mesh with a mask, vertices as grid_mesh.h numbers them; those of pixels outside have
-/// no neighbour. All vertices of boundaries are corners (kFixedX and kFixedY): what may become of a boundary
-/// is mask_boundary.h's to say.
+/// Returns the rings of a grid mesh with a mask; vertices are numbered as in grid_mesh.h. Vertices of pixels
+/// outside have no neighbour. All boundary vertices are marked as corners (kFixedX and kFixedY);
+/// mask_boundary.h decides how a boundary may change.
 RingMesh masked_rings(const GridMesh& grid);
 
 }  // namespace imgmesh

@@ -1,4 +1,4 @@
-// An image as a pyramid of base meshes, each with its pixel map: what a container holds.
+// An image as a pyramid of base meshes, each with its pixel map: the content of a container.
 #pragma once
 
 #include <string>
@@ -30,10 +30,10 @@ struct SourceInfo {
     ColorSpace color_space =
         ColorSpace::kSrgb;  ///< of the image; meshes are in feature space (L*u*v*) all the same
     SampleType sample_type = SampleType::kUint8;
-    /// What meshes are made of, by the file's names: split_names() says which are the features' L*u*v*, the
-    /// others are features as they are, in this order.
+    /// The channels that the meshes are made of, by their names in the file. split_names() tells the colour,
+    /// which is stored as L*u*v*, from the others, which are features of their own in this order.
     std::vector<std::string> channel_names = {"R", "G", "B"};
-    bool has_mask = false;          ///< some pixels are outside (PixelCoord::face == kNone)
+    bool has_mask = false;          ///< whether some pixels are outside (PixelCoord::face == kNone)
     Gamut gamut = Gamut::kDisplay;  ///< of the meshes' colours
 };
 

@@ -1,4 +1,4 @@
-// The pixel map: for every pixel the face of the base mesh that it lies in, and where in that face.
+// The pixel map: for every pixel its face of the base mesh and its position inside that face.
 #pragma once
 
 #include <span>
@@ -8,8 +8,8 @@
 
 namespace imgmesh {
 
-/// A point of the base mesh: face (a, b, c) and weights (1-u-v, u, v) of its corners; u, v >= 0 and u + v
-/// <= 1.
+/// A point of the base mesh: a face (a, b, c) and the weights (1-u-v, u, v) of its corners, with u, v >= 0
+/// and u + v <= 1.
 struct PixelCoord {
     Id face = kNone;  ///< kNone for a pixel outside the mask; then u = v = 0
     float u = 0;      ///< weight of the second corner
@@ -18,8 +18,8 @@ struct PixelCoord {
     bool operator==(const PixelCoord&) const = default;
 };
 
-/// How finely weights are stored: every weight, the first corner's included, is a multiple of this step, so
-/// that rotating a face's corners loses nothing and the simplex holds exactly (docs/format.md).
+/// The step of stored weights. Every weight, including the first corner's, is a multiple of it. So rotating a
+/// face's corners loses nothing, and u + v <= 1 holds exactly (docs/format.md).
 inline constexpr float kHalfWeightStep = 1.0f / 2048.0f;       ///< exact in a HALF
 inline constexpr float kFloatWeightStep = 1.0f / 16777216.0f;  ///< exact in a FLOAT
 
@@ -30,7 +30,7 @@ struct PixelMap {
     int width = 0;
     int height = 0;
     std::vector<PixelCoord> coords;                       ///< size width * height
-    WeightPrecision precision = WeightPrecision::kFloat;  ///< the grid that every weight is known to lie on
+    WeightPrecision precision = WeightPrecision::kFloat;  ///< the grid on which every weight is known to lie
 
     std::span<const PixelCoord> row(int y) const {
         return {coords.data() + static_cast<std::size_t>(y) * static_cast<std::size_t>(width),

@@ -1,6 +1,6 @@
 // A scanline rasteriser. A corner's weight times the face's area is linear in the sample's position, and so
-// are its zeros: each row of a face is one span, bounded by three such functions. A span's ends are guessed
-// by a multiplication and then settled by the functions' exact signs.
+// is the place where it is zero. Each row of a face is therefore one span, bounded by three such functions.
+// The ends of a span are estimated by a multiplication and then settled by the functions' exact signs.
 #include "libcore/mesh/raster.h"
 
 #include <algorithm>
@@ -13,11 +13,11 @@
 namespace imgmesh {
 namespace {
 
-// Rows of one block: few enough to share work well, many enough that few faces lie in two blocks.
+// Rows of one block: the work spreads well over threads, and few faces lie in two blocks.
 constexpr int kBandRows = 32;
 
-// value(x, y) = c + dx x + dy y: twice the area of the triangle that the sample spans with the side (p, q),
-// which is the weight of the corner opposite times twice the face's area.
+// value(x, y) = c + dx x + dy y is twice the area of the triangle of the sample and the side (p, q). That is
+// the weight of the opposite corner times twice the face's area.
 struct SideFunction {
     SideFunction(const Vec2f& p, const Vec2f& q)
         : dx(double(q.y()) - p.y()),
@@ -27,12 +27,12 @@ struct SideFunction {
     double dx, dy, c, guess;
 };
 
-// The index of the sample nearest to x, only a guess; in [0, size].
+// Estimates the index of the sample nearest to x, in [0, size].
 int index_near(double x, double scale, int size) {
     return static_cast<int>(std::clamp((x + 0.5) * scale, 0.0, double(size)));
 }
 
-// First index at which `inside` holds, where it is monotone over [0, size) (false, then true).
+// Returns the first index at which `inside` holds. `inside` is monotone over [0, size): false, then true.
 template <typename Inside>
 int first_index(int guess, int size, Inside inside) {
     while (guess < size && !inside(guess)) ++guess;
@@ -40,7 +40,7 @@ int first_index(int guess, int size, Inside inside) {
     return guess;
 }
 
-// Weights as whole multiples of the step: rounded one by one, then the sum held at 1 or below.
+// Returns weights as whole multiples of the step: each is rounded, then the sum is kept at 1 or below.
 PixelCoord coordinate(Id face, double u, double v) {
     constexpr int kOne = static_cast<int>(1 / kFloatWeightStep);
     const int iu = std::min(static_cast<int>(u * kOne + 0.5), kOne);
@@ -48,7 +48,7 @@ PixelCoord coordinate(Id face, double u, double v) {
     return {face, static_cast<float>(iu) * kFloatWeightStep, static_cast<float>(iv) * kFloatWeightStep};
 }
 
-// Writes the rows [first, last) of one face. All sums are exact: multiples of kPositionStep * kSampleStep.
+// Writes the rows [first, last) of one face. All sums are exact multiples of kPositionStep * kSampleStep.
 void rasterize_face(const BaseMesh& mesh, Id id, const SampleGrid& grid, int first, int last, PixelMap& out) {
     const Vec2f &a = mesh.position[mesh.faces[id][0]], &b = mesh.position[mesh.faces[id][1]],
                 &c = mesh.position[mesh.faces[id][2]];
@@ -88,7 +88,7 @@ struct FaceRows {
 
 std::vector<std::vector<FaceRows>> sort_into_bands(const BaseMesh& mesh, const SampleGrid& grid, int height) {
     std::vector<std::vector<FaceRows>> bands(static_cast<std::size_t>((height + kBandRows - 1) / kBandRows));
-    // Highest id first, so that where faces share a border the lowest one writes last and stays.
+    // Highest id first: where faces share an edge, the lowest one is written last and stays.
     for (std::size_t f = mesh.faces.size(); f-- > 0;) {
         const auto [ia, ib, ic] = mesh.faces[f];
         const Vec2f &a = mesh.position[ia], &b = mesh.position[ib], &c = mesh.position[ic];

@@ -11,7 +11,7 @@ namespace {
 struct Step {
     int dx, dy;
 };
-// Counter-clockwise on screen, y down, starting at east; odd ones are diagonals.
+// Counter-clockwise on screen (y down), starting at east; odd indices are diagonals.
 constexpr Step kAround[8] = {{1, 0}, {1, -1}, {0, -1}, {-1, -1}, {-1, 0}, {-1, 1}, {0, 1}, {1, 1}};
 
 }  // namespace
@@ -26,7 +26,7 @@ Ring grid_ring(const GridMesh& grid, int x, int y) {
     const auto inside = [&](Step s) {
         return x + s.dx >= 0 && x + s.dx < w && y + s.dy >= 0 && y + s.dy < h;
     };
-    // Begin after the gap, so that a border vertex's open fan comes out in order.
+    // Begin after the gap, so that a border vertex's open fan is in order.
     int first = 0;
     for (int k = 0; k < 8; k += 2)
         if (inside(kAround[k]) && !inside(kAround[(k + 6) % 8])) first = k;
@@ -71,9 +71,9 @@ bool merge_rings(const RingMesh& rings, Id i, Id j, MergedRing& merged) {
     int shared = 0;  // faces at the edge
     const auto push = [&](Id v) { merged.neighbor[static_cast<std::size_t>(count++)] = v; };
 
-    // The outer neighbours of j, in order, and how many of the edge's two faces exist.
+    // Collects the outer neighbours of j, in order, and how many of the edge's two faces exist.
     if (a.border() && b.border()) {
-        // Legal only along the border, where the one is last in the other's fan.
+        // Legal only along the border, where one end is last in the other's fan.
         if (at_j == na - 1 && at_i == 0) {
             for (int k = 0; k < na - 1; ++k) push(a.neighbor[k]);
             for (int k = 2; k < nb; ++k) push(b.neighbor[k]);
@@ -86,11 +86,11 @@ bool merge_rings(const RingMesh& rings, Id i, Id j, MergedRing& merged) {
         shared = 1;
     } else {
         // An interior edge: j's cycle is cut open after i's second face. If i is interior and j on the
-        // border, j's fan takes i's place instead, which is the same ring read from the other side.
+        // border, j's fan replaces i's, which is the same ring read from the other side.
         const Ring &outer = b.border() ? b : a, &inner = b.border() ? a : b;
         const int at_inner = b.border() ? at_i : at_j, at_outer = b.border() ? at_j : at_i;
         for (int k = 0; k < at_inner; ++k) push(outer.neighbor[k]);
-        // From the neighbour after outer's predecessor of inner round to the one before its successor.
+        // From the neighbour of outer after the predecessor of inner, round to the one before its successor.
         for (int k = 2; k < inner.valence - 1; ++k) push(inner.neighbor[(at_outer + k) % inner.valence]);
         for (int k = at_inner + 1; k < outer.valence; ++k) push(outer.neighbor[k]);
         shared = 2;
@@ -114,7 +114,7 @@ void apply_merge(RingMesh& rings, Id i, Id j, const MergedRing& merged) {
         const int at_j = n.find(j);
         if (n.find(i) < 0) {
             n.neighbor[at_j] = i;
-        } else {  // a corner of a face at the edge: j leaves its ring
+        } else {  // a corner of a face at the edge: j is removed from its ring
             for (int m = at_j; m + 1 < n.valence; ++m) n.neighbor[m] = n.neighbor[m + 1];
             --n.valence;
         }

@@ -1,4 +1,4 @@
-// The pixel map that every other one starts from.
+// The pixel map from which every other one starts.
 #pragma once
 
 #include "libcore/image/mask.h"
@@ -7,10 +7,10 @@
 
 namespace imgmesh {
 
-/// The paper's trivial map (sec. 3.4, fig. 5 e): every pixel of a width x height image lies where it is, in
-/// the face that covers its centre; on shared edges in the lowest such face. kNone where no face does, and
-/// outside the mask, which is empty() or of that size.
-/// Weights lie on the kFloatWeightStep grid. Guarantees, cost and assumptions as rasterize().
+/// Returns the paper's trivial map (sec. 3.4, fig. 5 e): each pixel of a width x height image keeps its
+/// place, in the face that covers its centre; on shared edges the lowest such face. It is kNone without such
+/// a face and outside the mask (empty(), or of that size). Weights lie on the kFloatWeightStep grid.
+/// Guarantees, cost and assumptions are those of rasterize().
 PixelMap trivial_map(const BaseMesh& mesh, int width, int height, const Mask& mask = {});
 
 }  // namespace imgmesh

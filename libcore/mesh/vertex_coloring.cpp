@@ -18,7 +18,7 @@ std::vector<std::vector<Id>> vertex_coloring(std::span<const Face> faces, std::s
 
     std::vector<std::vector<Id>> classes;
     std::vector<Id> class_of(vertices, kNone);
-    std::vector<Id> taken_by;  // for each class the vertex at hand, if a neighbour of it is in that class
+    std::vector<Id> taken_by;  // for each class: the current vertex, if a neighbour of it is in the class
     for (Id v = 0; v < vertices; ++v) {
         if (first[v] == first[v + 1]) continue;
         for (std::size_t k = first[v]; k < first[v + 1]; ++k)

@@ -1,4 +1,4 @@
-// Vertices that can change at the same time.
+// Vertex colouring: which vertices can change at the same time.
 #pragma once
 
 #include <span>
@@ -8,10 +8,10 @@
 
 namespace imgmesh {
 
-/// The vertices of `faces` in classes such that no two of a class share a face, so what one does to itself
-/// and its faces none of the others sees. Each vertex, in the order of numbers, goes into the first class
-/// that has none of its neighbours (a planar mesh takes six or seven). Numbers ascend in a class; vertices
-/// without a face are in none. Faces with faces[f][0] == kNone are holes.
+/// Returns the vertices of `faces` in colour classes. No two vertices of a class share a face, so a change of
+/// one vertex and its faces is not seen by the others. Each vertex, in the order of numbers, gets the first
+/// class without a neighbour of it (a planar mesh needs six or seven). Numbers ascend within a class.
+/// Vertices without a face are left out. Faces with faces[f][0] == kNone are holes.
 std::vector<std::vector<Id>> vertex_coloring(std::span<const Face> faces, std::size_t vertices);
 
 }  // namespace imgmesh

@@ -9,13 +9,13 @@
 
 namespace imgmesh {
 
-/// Steps of the grid in a weight of 1.
+/// The number of grid steps in a weight of 1.
 inline double weight_steps(WeightPrecision precision) {
     return 1.0 / (precision == WeightPrecision::kHalf ? kHalfWeightStep : kFloatWeightStep);
 }
 
-/// The point of `face` nearest to weights >= 0 of any positive sum, on a grid of that many steps: by largest
-/// remainders, so that the three weights sum to one exactly. Weights of 0 stay 0 where the sum is 1.
+/// Rounds weights >= 0 of any positive sum to the nearest point of `face` on a grid with that many steps. It
+/// uses largest remainders, so the three weights sum to one exactly. Weights of 0 stay 0 if the sum is 1.
 inline PixelCoord on_weight_grid(Id face, const std::array<double, 3>& weight, double steps) {
     const double sum = weight[0] + weight[1] + weight[2];
     std::array<double, 3> whole{}, rest{};

@@ -21,19 +21,19 @@ double power7(double x) {
     return cubed * cubed * x;
 }
 
-// C^7 / (C^7 + 25^7), which grows from 0 to 1 with chroma.
+// Returns C^7 / (C^7 + 25^7), which grows from 0 to 1 with chroma.
 double chroma_share(double chroma) {
     return power7(chroma) / (power7(chroma) + power7(25));
 }
 
-// Hue angle in [0, 2 pi), (7); 0 for grey.
+// Returns the hue angle in [0, 2 pi), (7); 0 for grey.
 double hue_angle(double a, double b) {
     if (a == 0 && b == 0) return 0;
     const double hue = std::atan2(b, a);
     return hue < 0 ? hue + 2 * kPi : hue;
 }
 
-// f of L*a*b* (CIE 15): the cube root, and its tangent near black.
+// The function f of L*a*b* (CIE 15): the cube root, and its tangent near black.
 double lab_curve(double t) {
     constexpr double kLimit = 216.0 / 24389.0, kSlope = 24389.0 / 27.0;
     return t > kLimit ? std::cbrt(t) : (kSlope * t + 16) / 116;
@@ -57,7 +57,7 @@ double ciede2000(const Vec3d& lab_1, const Vec3d& lab_2) {
     const double h1 = hue_angle(a1, b1), h2 = hue_angle(a2, b2);    // (7)
     const double delta_l = lab_2[0] - lab_1[0], delta_c = c2 - c1;  // (8, 9)
 
-    // The shorter way round from one hue to the other, (10); none from or to grey.
+    // The shorter way round from one hue to the other, (10). It is 0 if either is grey.
     const bool grey = c1 * c2 == 0;
     double turn = grey ? 0 : h2 - h1;
     if (turn > kPi) turn -= 2 * kPi;

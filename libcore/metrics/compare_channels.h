@@ -1,4 +1,4 @@
-// The channels beside the colour of two images against each other.
+// Compares the auxiliary channels of two images.
 #pragma once
 
 #include <string>
@@ -14,9 +14,9 @@ struct ChannelDifference {
     double max = 0;  ///< largest difference
 };
 
-/// Of every channel that both have and that is neither colour nor alpha, in the order of `a`, over the pixels
-/// that are wholly transparent in neither; none where there is no such pixel. Throws Error(kBadArgument)
-/// where sizes differ.
+/// Compares every channel that both images have and that is neither colour nor alpha, in the order of `a`.
+/// Pixels that are wholly transparent in either image are left out; if none remains, the result is empty.
+/// Throws Error(kBadArgument) if the sizes differ.
 std::vector<ChannelDifference> compare_channels(const Image& a, const Image& b);
 
 }  // namespace imgmesh

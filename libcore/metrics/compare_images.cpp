@@ -16,7 +16,7 @@ namespace {
 
 constexpr int kGrainRows = 16;
 
-// The colours of an image, whatever its channels are.
+// The colours of an image with any channels.
 class Colors {
   public:
     Colors(const Image& image, ColorSpace common)
@@ -56,7 +56,7 @@ struct RowSums {
     double rgb = 0, luv = 0, max_rgb = 0, max_luv = 0;
 };
 
-// Row y of both images: its sums, and its part of the errors and the lumas, which hold NaN so far.
+// Row y of both images: its sums, and its rows of the error images and the lumas, which are NaN before.
 void compare_row(const Colors& a, const Colors& b, int width, int y, RowSums& sums, ImageDifference& result,
                  std::vector<float>& luma_a, std::vector<float>& luma_b) {
     std::size_t i = static_cast<std::size_t>(y) * static_cast<std::size_t>(width);
@@ -94,7 +94,7 @@ ImageDifference compare_images(const Image& a, const Image& b) {
         throw Error(ErrorKind::kBadArgument,
                     cat("images differ in size: ", a.width, "x", a.height, " and ", b.width, "x", b.height));
     ImageDifference result;
-    // Differences of linear light say little about what one sees, and would not compare with other images'.
+    // Differences of linear light are far from what one sees, and other tools do not report them.
     if (a.color_space == b.color_space && a.color_space != ColorSpace::kLinear)
         result.color_space = a.color_space;
     const Colors colors_a(a, result.color_space), colors_b(b, result.color_space);
@@ -102,7 +102,7 @@ ImageDifference compare_images(const Image& a, const Image& b) {
     const std::vector<float> none(a.pixel_count(), std::numeric_limits<float>::quiet_NaN());
     result.luv = result.ciede2000 = none;
     std::vector<float> luma_a = none, luma_b = none;
-    // One sum a row, added in order: the same result for any number of threads.
+    // One sum for each row, added in order: the result is the same for any number of threads.
     std::vector<RowSums> rows(static_cast<std::size_t>(a.height));
     parallel_blocks(0, a.height, kGrainRows, [&](int first, int last) {
         for (int y = first; y < last; ++y)

@@ -1,4 +1,4 @@
-// Two images against each other, pixel by pixel.
+// Compares two images pixel by pixel.
 #pragma once
 
 #include <cstdint>
@@ -9,14 +9,14 @@
 
 namespace imgmesh {
 
-/// Fixed bins for the errors of pixels, so that histograms of different pairs can stand side by side.
+/// The bins are fixed, so that histograms of different pairs can be compared.
 inline constexpr Bins kLuvErrorBins{0, 20, 20};
 inline constexpr Bins kCiede2000Bins{0, 10, 20};
 
 struct ImageDifference {
-    std::int64_t pixels = 0;       ///< compared: not wholly transparent (alpha 0) in either image
+    std::int64_t pixels = 0;       ///< pixels compared: not wholly transparent (alpha 0) in either image
     std::int64_t in_one_only = 0;  ///< pixels that are wholly transparent in one of the two
-    /// Of the RGB figures and SSIM: that of both images where they share one that is not linear, else sRGB.
+    /// Colour space of RGB figures and SSIM: that of both images if equal and not linear, else sRGB.
     ColorSpace color_space = ColorSpace::kSrgb;
 
     double rms_luv = 0;  ///< root mean square Euclidean distance in L*u*v* per pixel
@@ -30,12 +30,12 @@ struct ImageDifference {
     std::vector<float> ciede2000;  ///< size width * height: ciede2000(); NaN where not compared
 };
 
-/// Grey counts as R = G = B; alpha only tells which pixels are compared. Symmetric in `a` and `b`; the
-/// figures are 0 where no pixel is compared. Same result for any number of threads. Throws
-/// Error(kBadArgument) where sizes differ, Error(kUnsupported) for an image without colour.
+/// Compares two images. Grey counts as R = G = B; alpha only decides which pixels are compared. Symmetric in
+/// `a` and `b`; all figures are 0 if no pixel is compared. The result is the same for any number of threads.
+/// Throws Error(kBadArgument) if sizes differ, Error(kUnsupported) for an image without colour.
 ImageDifference compare_images(const Image& a, const Image& b);
 
-/// Whether the image has R, G and B, or Y.
+/// Returns whether the image has R, G and B, or Y.
 bool has_color(const Image& image);
 
 }  // namespace imgmesh

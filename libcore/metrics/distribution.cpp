@@ -23,7 +23,7 @@ void count_bins(const std::vector<float>& values, Distribution& d) {
     }
 }
 
-// Percentiles in rising order, so that each needs to look only at what the last one left above it.
+// Percentiles in rising order, so that each needs to look only at the values above the previous one.
 void find_percentiles(std::vector<float>& values, Distribution& d) {
     auto sorted_to = values.begin();
     const auto last = static_cast<double>(values.size() - 1);

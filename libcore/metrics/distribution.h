@@ -1,4 +1,4 @@
-// Many numbers told in a few: mean, spread, percentiles, and a histogram over fixed bins.
+// Summarises many numbers: mean, deviation, percentiles, and a histogram over fixed bins.
 #pragma once
 
 #include <cstdint>
@@ -6,8 +6,8 @@
 
 namespace imgmesh {
 
-/// `count` bins of one width over [low, high]. A value on an edge between two bins belongs to the upper one,
-/// `high` itself to the last.
+/// `count` bins of equal width over [low, high]. A value on an edge between two bins belongs to the upper
+/// one; `high` itself belongs to the last bin.
 struct Bins {
     double low = 0;
     double high = 1;
@@ -15,11 +15,11 @@ struct Bins {
 };
 
 struct Distribution {
-    std::int64_t count = 0;  ///< values; with none, every figure below but the histogram is NaN
+    std::int64_t count = 0;  ///< number of values; if it is 0, all figures except the histogram are NaN
     double mean = 0;
     double deviation = 0;  ///< standard deviation of the values themselves (divided by count)
     double min = 0;
-    /// Percentiles: linear between the values in order, the least being the 0th and the greatest the 100th.
+    /// Percentiles are linear between the sorted values: the least is the 0th, the greatest the 100th.
     double p5 = 0, p25 = 0, median = 0, p75 = 0, p95 = 0;
     double max = 0;
 
@@ -29,7 +29,7 @@ struct Distribution {
     std::int64_t above = 0;               ///< values above bins.high
 };
 
-/// Values that are NaN are left out; the others must be finite. bins.low < bins.high, bins.count >= 1. O(n).
+/// Leaves out NaNs; other values must be finite. bins.low < bins.high, bins.count >= 1. Takes O(n) time.
 Distribution distribution(std::vector<float> values, const Bins& bins);
 
 }  // namespace imgmesh

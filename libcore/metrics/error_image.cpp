@@ -12,7 +12,7 @@ namespace {
 
 constexpr int kGrainRows = 16;
 
-// Chroma as strong as sRGB allows at each lightness, in hues that follow each other in lightness.
+// Hues with rising lightness, each with as much chroma as sRGB allows there.
 const std::array<Vec3f, 5> kScale = {Vec3f(0, 0, 0), Vec3f(25, 2, -70), Vec3f(50, 95, 0), Vec3f(75, 55, 65),
                                      Vec3f(100, 0, 0)};
 const Vec3f kNoValue(50, -20, 20);

@@ -18,7 +18,7 @@ double area2(const Vec2d& a, const Vec2d& b, const Vec2d& c) {
     return ab.y() * ac.x() - ab.x() * ac.y();  // as signed_area2()
 }
 
-// Where the mesh has a pixel; not a number for one without a face.
+// Returns where the map places a pixel; NaN for one without a face.
 Vec2d mapped_position(const BaseMesh& mesh, const PixelCoord& coord) {
     if (coord.face >= mesh.faces.size()) return Vec2d::Constant(std::numeric_limits<double>::quiet_NaN());
     const auto [a, b, c] = mesh.faces[coord.face];
@@ -43,8 +43,8 @@ struct MappedRows {
     }
 };
 
-// Triangles and steps of the grid row between pixel rows y and y + 1. A position that is not finite makes
-// every comparison with it false, so that its triangles and steps do not count. q.max_jump is squared here.
+// Counts the triangles and steps between the pixel rows y and y + 1. Comparisons with a position that is not
+// finite are false, so its triangles and steps do not count. q.max_jump is squared here.
 void measure_row(const MappedRows& rows, int width, int height, int y, MapQuality& q) {
     const auto at = [&](int x, int row) -> const Vec2d& { return rows.at(x, row); };
     const auto triangle = [&](const Vec2d& a, const Vec2d& b, const Vec2d& c) {
@@ -69,7 +69,7 @@ void measure_row(const MappedRows& rows, int width, int height, int y, MapQualit
     }
 }
 
-// The pixels of row y. q.mean_displacement is a sum here, over `mapped` pixels.
+// Counts the pixels of row y. q.mean_displacement is a sum here, over `mapped` pixels.
 void measure_pixels(const BaseMesh& mesh, const PixelMap& map, const MappedRows& rows, bool has_mask, int y,
                     MapQuality& q, std::int64_t& mapped) {
     for (int x = 0; x < map.width; ++x) {
@@ -80,7 +80,7 @@ void measure_pixels(const BaseMesh& mesh, const PixelMap& map, const MappedRows&
             ++q.unmapped;
             continue;
         }
-        // Infinite weights fail one of the three as well: u + v <= 1 bounds what u, v >= 0 leaves open.
+        // Infinite weights fail one of the three as well: u + v <= 1 is the upper bound.
         if (!(c.u >= 0 && c.v >= 0 && double(c.u) + double(c.v) <= 1)) ++q.outside_simplex;
         const double distance = (rows.at(x, y) - Vec2d(x, y)).norm();
         if (!std::isfinite(distance)) continue;
@@ -139,7 +139,7 @@ MapQuality map_quality(const BaseMesh& mesh, const PixelMap& map, bool has_mask)
 
 namespace {
 
-// map_rms over features [feature_begin, feature_end).
+// Computes map_rms over the features [feature_begin, feature_end).
 double range_rms(const BaseMesh& mesh, const PixelMap& map, const FeatureImage& reference, int feature_begin,
                  int feature_end) {
     if (map.width != reference.width || map.height != reference.height)
@@ -148,7 +148,7 @@ double range_rms(const BaseMesh& mesh, const PixelMap& map, const FeatureImage& 
     if (mesh.channels != reference.channels)
         throw Error(ErrorKind::kBadArgument,
                     cat("base mesh has ", mesh.channels, " channels, reference has ", reference.channels));
-    // One sum a row, added in order: the same result for any number of threads.
+    // One sum for each row, added in order: the result is the same for any number of threads.
     std::vector<double> sums(static_cast<std::size_t>(map.height));
     std::vector<std::int64_t> counts(sums.size());
     parallel_blocks(0, map.height, kGrainRows, [&](int first, int last) {

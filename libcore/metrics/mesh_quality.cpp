@@ -1,4 +1,4 @@
-// Topology: every count follows from the list of half-edges sorted by their two ends.
+// Topology: all counts follow from the list of half-edges, sorted by their two ends.
 #include <algorithm>
 #include <numeric>
 #include <tuple>
@@ -32,7 +32,7 @@ class Sets {
 struct HalfEdge {
     Id low, high;
     std::size_t low_corner, high_corner;
-    bool rising;  // runs from low to high
+    bool rising;  // whether it runs from low to high
 };
 
 std::vector<HalfEdge> sorted_half_edges(const BaseMesh& mesh) {
@@ -53,7 +53,7 @@ std::vector<HalfEdge> sorted_half_edges(const BaseMesh& mesh) {
 
 void measure_topology(const BaseMesh& mesh, MeshQuality& q) {
     const std::vector<HalfEdge> edges = sorted_half_edges(mesh);
-    Sets fans(mesh.faces.size() * 3);  // corners that one can reach from each other across shared edges
+    Sets fans(mesh.faces.size() * 3);  // sets of corners that are connected across shared edges
     Sets components(mesh.faces.size());
     for (std::size_t first = 0, last; first < edges.size(); first = last) {
         last = first + 1;

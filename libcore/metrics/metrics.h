@@ -1,4 +1,4 @@
-// Figures of merit: how good a mesh and a map are. Images against each other: compare_images.h.
+// How good a mesh and a pixel map are. For images against each other see compare_images.h.
 #pragma once
 
 #include <cstdint>
@@ -9,16 +9,16 @@
 
 namespace imgmesh {
 
-/// Shape of the triangles of a mesh (measures as in triangle_shape.h). Means are over the faces of positive
-/// area; the least values take 0 for every other face. All zero for an empty mesh.
+/// Counts and the shape of the triangles of a mesh (measures as in triangle_shape.h). Means are over the
+/// faces of positive area; the least values count every other face as 0. All figures of an empty mesh are 0.
 struct MeshQuality {
-    std::int64_t vertices = 0;  ///< all, also those of no face
+    std::int64_t vertices = 0;  ///< all vertices, also those without a face
     std::int64_t faces = 0;
     std::int64_t edges = 0;
-    std::int64_t boundary_edges = 0;  ///< edges of one face
-    std::int64_t components = 0;      ///< connected components (sharing an edge)
-    std::int64_t euler = 0;           ///< V - E + F over vertices in use
-    /// Edges with more than two faces, or two faces running the same way.
+    std::int64_t boundary_edges = 0;  ///< edges with one face
+    std::int64_t components = 0;      ///< connected components of faces that share edges
+    std::int64_t euler = 0;           ///< V - E + F, counting only vertices in use
+    /// Edges with more than two faces, or with two faces that run the same way.
     std::int64_t nonmanifold_edges = 0;
     std::int64_t nonmanifold_vertices = 0;  ///< vertices whose faces form more than one fan
     std::int64_t flipped_faces = 0;         ///< signed_area2 <= 0
@@ -31,35 +31,35 @@ struct MeshQuality {
     double min_angle_deg = 0;
 };
 
-/// Any mesh whose face corners are < vertex_count(), manifold or not. O(F log F).
+/// Measures any mesh whose face corners are < vertex_count(), manifold or not. Takes O(F log F) time.
 MeshQuality mesh_quality(const BaseMesh& mesh);
 
-/// The pixel map as a mapping of the pixel grid into the plane.
+/// The pixel map as a mapping into the plane. A pixel's image is the place where the map puts it.
 struct MapQuality {
-    std::int64_t pixels = 0;           ///< inside the mask; all without one
-    std::int64_t unmapped = 0;         ///< of these, without a face of the mesh (kNone or out of range)
-    std::int64_t outside_simplex = 0;  ///< a weight below 0, or not finite
-    /// Of the four triangles of each 2x2 cell (both diagonals) whose pixels are mapped, those of area <= 0.
+    std::int64_t pixels = 0;           ///< pixels inside the mask, or all without one
+    std::int64_t unmapped = 0;         ///< those without a face of the mesh (kNone or out of range)
+    std::int64_t outside_simplex = 0;  ///< those with a weight below 0 or not finite
+    /// Triangles with area <= 0, out of the four of each 2 x 2 cell (both diagonals) whose pixels are mapped.
     std::int64_t flipped_triangles = 0;
-    double min_area2 = 0;  ///< least twice-area of those triangles [px^2]; 1 in the source, or if none
+    double min_area2 = 0;  ///< least twice-area of these triangles [px^2]; 1 in the source, or if none
     double max_jump = 0;   ///< largest distance between the images of two 4-neighbours [px]
     double mean_displacement = 0;  ///< mean distance between a mapped pixel and its image [px]
     double max_displacement = 0;
 };
 
-/// Any map, valid or not. has_mask: pixels with face kNone are outside the image, not unmapped.
+/// Measures any map, valid or not. If has_mask, pixels with face kNone are outside the image, not unmapped.
 MapQuality map_quality(const BaseMesh& mesh, const PixelMap& map, bool has_mask = false);
 
-/// Where each pixel lands: positions of map.coords in `mesh`, width * height; NaN where the face is kNone or
-/// out of range.
+/// Returns where each pixel lands: the positions of map.coords in `mesh`, width * height. They are NaN if the
+/// face is kNone or out of range.
 std::vector<Vec2d> mapped_positions(const BaseMesh& mesh, const PixelMap& map);
 
-/// Root mean square over pixels of the Euclidean distance in feature space between the map's interpolated
-/// features and `reference`; pixels with map face kNone are left out (0 if all are). Face ids must be valid.
-/// Throws Error(kBadArgument) where sizes or channels differ.
+/// Returns the root mean square, over the pixels, of the Euclidean distance in feature space between the
+/// map's interpolated features and `reference`. Pixels with face kNone are left out; the result is 0 if all
+/// are. Face ids must be valid. Throws Error(kBadArgument) if sizes or channels differ.
 double map_rms(const BaseMesh& mesh, const PixelMap& map, const FeatureImage& reference);
 
-/// The same of one feature alone.
+/// The same for a single feature.
 double feature_rms(const BaseMesh& mesh, const PixelMap& map, const FeatureImage& reference, int feature);
 
 }  // namespace imgmesh

@@ -9,7 +9,7 @@
 namespace imgmesh {
 namespace {
 
-// Edges at each vertex in use.
+// Counts the edges at each vertex in use.
 std::vector<float> valences(const BaseMesh& mesh) {
     std::vector<float> valence(mesh.vertex_count());
     for (const auto& [p, q] : mesh_edges(mesh)) {
@@ -50,7 +50,7 @@ MeshDistributions mesh_distributions(const BaseMesh& mesh) {
 }
 
 MapDistributions map_distributions(const BaseMesh& mesh, const PixelMap& map) {
-    // Positions of pixels without a face are NaN, and so are distances to them, which do not count.
+    // Positions of pixels without a face are NaN. So are distances to them, which therefore do not count.
     const std::vector<Vec2d> image = mapped_positions(mesh, map);
     const auto width = static_cast<std::size_t>(map.width);
     std::vector<float> jumps, displacements;

@@ -13,7 +13,7 @@ namespace {
 
 constexpr int kGrainRows = 16;
 
-// Weighted sums of a, b, a^2, b^2 and a b, of a column or a window.
+// Weighted sums of a, b, a^2, b^2 and a b over a column or a window.
 using Moments = std::array<double, 5>;
 
 std::array<double, kSsimWindow> gaussian() {
@@ -41,7 +41,7 @@ double mean_ssim(std::span<const float> a, std::span<const float> b, int width, 
     const int rows = height - kSsimWindow + 1, columns = width - kSsimWindow + 1;
     if (rows <= 0 || columns <= 0) return std::numeric_limits<double>::quiet_NaN();
     const auto weights = gaussian();
-    // One sum a row of windows, added in order: the same result for any number of threads.
+    // One sum for each row, added in order: the result is the same for any number of threads.
     std::vector<double> sums(static_cast<std::size_t>(rows));
     std::vector<std::int64_t> counts(sums.size());
     parallel_blocks(0, rows, kGrainRows, [&](int first, int last) {

@@ -1,4 +1,4 @@
-// SSIM, the structural similarity of two images.
+// SSIM, a measure of the structural similarity of two images.
 #pragma once
 
 #include <span>
@@ -12,10 +12,10 @@ inline constexpr double kSsimSigma = 1.5;       ///< of the window's Gaussian we
 inline constexpr double kSsimC1 = 0.01 * 0.01;  ///< (K1 L)^2 with K1 = 0.01, L = 1
 inline constexpr double kSsimC2 = 0.03 * 0.03;  ///< (K2 L)^2 with K2 = 0.03, L = 1
 
-/// Mean SSIM of two grey images of width * height samples in 0..1, rows from top to bottom: the mean of
-/// eq. (13) over all positions of the window inside the image, without downsampling. Windows with a sample
-/// that is NaN in either image are left out. NaN where no window is left, as in an image smaller than the
-/// window. 1 for equal images. Same result for any number of threads.
+/// Returns the mean SSIM of two grey images of width * height samples in 0..1, rows from top to bottom. This
+/// is the mean of eq. (13) over all positions of the window inside the image, without downsampling. Windows
+/// with a sample that is NaN in either image are left out. The result is NaN if no window is left, as in an
+/// image smaller than the window, and 1 for equal images. It is the same for any number of threads.
 double mean_ssim(std::span<const float> a, std::span<const float> b, int width, int height);
 
 }  // namespace imgmesh

@@ -1,4 +1,4 @@
-// How good one triangle is, by several measures. They all agree on the equilateral triangle, which is best.
+// Measures of how good one triangle is. By all of them the equilateral triangle is best.
 #pragma once
 
 #include "libcore/base/types.h"
@@ -16,7 +16,7 @@ struct TriangleShape {
     double min_angle_deg = 0;      ///< smallest angle [degrees]; best 60, falls to 0
 };
 
-/// The triangle (a, b, c), whose signed_area2() must be positive.
+/// Measures the triangle (a, b, c), whose signed_area2() must be positive.
 TriangleShape triangle_shape(const Vec2f& a, const Vec2f& b, const Vec2f& c);
 
 }  // namespace imgmesh

@@ -1,5 +1,5 @@
-// Every drawing is a map of the output's pixels (the level's own, or the mesh rasterised), from which rows of
-// L*u*v* are made and encoded.
+// Every drawing has a map for the output's pixels: the level's own, or the mesh rasterised. Rows of L*u*v*
+// are made from it and encoded.
 #include "libcore/recon/draw.h"
 
 #include <algorithm>
@@ -19,7 +19,7 @@ namespace {
 
 constexpr int kGrainRows = 16;
 
-// Larger drawings are surely a slip of the finger; this one takes 8 GB.
+// Larger drawings are surely a mistake; one of this size takes 8 GB.
 constexpr double kMaxPixels = 1 << 28;
 
 // Fills one row of an output: L*, u*, v* as three planes of `width` values.
@@ -29,8 +29,8 @@ void store(float* planes, int width, std::size_t x, const Vec3f& luv) {
     for (int c = 0; c < 3; ++c) planes[static_cast<std::size_t>(c * width) + x] = luv[c];
 }
 
-// The colours of a row through the map. The map streams through memory once and the rows stay in cache; only
-// the corners' colours are gathered. Face ids are known to be valid or kNone.
+// Fills a row through the map. The map is read from memory once and the rows stay in cache; only the corners'
+// colours are gathered. Face ids are known to be valid or kNone.
 void interpolate_row(const BaseMesh& mesh, const PixelMap& map, int y, float* planes) {
     const std::span<const PixelCoord> row = map.row(y);
     float *l = planes, *u = l + map.width, *v = u + map.width;
@@ -48,7 +48,7 @@ void interpolate_row(const BaseMesh& mesh, const PixelMap& map, int y, float* pl
     }
 }
 
-// One colour a face.
+// One colour for each face.
 void face_row(const std::vector<Vec3f>& colors, const PixelMap& map, int y, float* planes) {
     const std::span<const PixelCoord> row = map.row(y);
     for (std::size_t x = 0; x < row.size(); ++x)
@@ -66,8 +66,8 @@ void darken_borders(const PixelMap& map, int y, float* planes) {
     }
 }
 
-// Lines over a lightened image. The edge nearest to a point is one of its own face's, and its distance
-// follows from the opposite corner's weight: weight * height over that edge.
+// Draws lines over a lightened image. The edge nearest to a point belongs to the point's own face. Its
+// distance is the weight of the opposite corner times the height over the edge.
 class WireRow {
   public:
     WireRow(const BaseMesh& mesh, double scale)
@@ -82,7 +82,7 @@ class WireRow {
             heights_.push_back(Vec3d(area2 / sides[0], area2 / sides[1], area2 / sides[2]).cast<float>() *
                                float(scale));
         }
-        // Lines that would cover more than a third of the image fade.
+        // Lines that would cover more than a third of the image are faded.
         const double covered = length * scale * width_ / std::max(area * scale * scale, 1.0);
         opacity_ = static_cast<float>(std::min(0.9, 0.3 / covered));
     }
@@ -106,8 +106,8 @@ class WireRow {
     }
 
   private:
-    std::vector<Vec3f> heights_;  // of every face over its three sides, opposite its corners [output pixels]
-    float width_;                 // of a line [output pixels]
+    std::vector<Vec3f> heights_;  // of every face over its sides, opposite its corners [output pixels]
+    float width_;                 // width of a line [output pixels]
     float opacity_;
 };
 

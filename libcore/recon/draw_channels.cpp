@@ -13,7 +13,7 @@
 namespace imgmesh {
 namespace {
 
-// Where a channel of the result comes from: a channel of the colour drawing, or a feature of the mesh.
+// The origin of a channel of the result: a channel of the colour drawing, or a feature of the mesh.
 struct Origin {
     std::string name;
     int drawn = -1;

@@ -8,7 +8,7 @@
 namespace imgmesh {
 namespace {
 
-// Each face is stroked in its own colour: without, renderers leave hairline gaps between neighbours.
+// Each face has a stroke in its own colour. Without it, renderers leave hairline gaps between neighbours.
 void append_faces(std::string& out, const BaseMesh& mesh, const std::vector<Vec2d>& points) {
     const std::vector<Vec3f> colors = face_means(mesh);
     out += "<g stroke-width=\".7\" stroke-linejoin=\"round\">\n";

@@ -1,6 +1,6 @@
-// SVG knows no colours at the corners of a triangle. What it does know, a linear gradient, is a colour that
-// changes along one direction; here the one that is nearest, in the sense of least squares over the triangle,
-// to the three corners' affine interpolation.
+// SVG cannot give colours to the corners of a triangle. It has linear gradients, whose colour changes along
+// one direction. The gradient used here is the nearest to the affine interpolation of the three corners'
+// colours, by least squares over the triangle.
 #include <Eigen/LU>
 #include <Eigen/SVD>
 #include <algorithm>
@@ -16,12 +16,12 @@ namespace imgmesh {
 namespace {
 
 struct Gradient {
-    Vec2d from, to;          // where the gradient's ends lie
+    Vec2d from, to;          // ends of the gradient
     Vec3d from_rgb, to_rgb;  // encoded sRGB, as SVG blends
 };
 
-// The colour c(p) = mean + J (p - centre) has a 3 x 2 matrix J. Its best approximation of rank one is s a b^T
-// with the largest singular value s: along b the colour changes by s a, across it not at all.
+// The colour c(p) = mean + J (p - centre) has a 3 x 2 matrix J. The best approximation of J of rank one is s
+// a b^T with the largest singular value s. Along b the colour changes by s a, across b it does not change.
 Gradient fit_gradient(const std::array<Vec2d, 3>& p, const std::array<Vec3d, 3>& rgb) {
     const Vec2d centre = (p[0] + p[1] + p[2]) / 3;
     const Vec3d mean = (rgb[0] + rgb[1] + rgb[2]) / 3;
@@ -90,7 +90,7 @@ std::string draw_svg_gradient(const MeshImage& mesh_image, int level_index) {
             fit_gradient({points[a], points[b], points[c]}, {colors[a], colors[b], colors[c]});
         append_gradient(defs, f, gradient);
         const std::string paint = "url(#g" + std::to_string(f) + ")";
-        // Stroked in its own colours: without, renderers leave hairline gaps between neighbours.
+        // A stroke in the face's own colours: without it, renderers leave hairline gaps between neighbours.
         paths += "<path fill=\"" + paint + "\" stroke=\"" + paint + "\" d=\"";
         append_point(paths, 'M', points[a]);
         append_point(paths, 'L', points[b]);

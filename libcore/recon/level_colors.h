@@ -1,4 +1,4 @@
-// What the raster and the SVG drawings share.
+// What raster drawings and SVG drawings share.
 #pragma once
 
 #include <vector>
@@ -7,12 +7,12 @@
 
 namespace imgmesh {
 
-/// Level `level_index`. Throws Error(kBadArgument) where it is not there.
+/// Returns level `level_index`. Throws Error(kBadArgument) if it does not exist.
 const Level& checked_level(const MeshImage& mesh_image, int level_index);
-/// The same; throws Error(kUnsupported) for a mesh without colour.
+/// The same. Throws Error(kUnsupported) for a mesh without colour.
 const Level& level_to_draw(const MeshImage& mesh_image, int level_index);
 
-/// The mean of the three corners' colours of every face, L*u*v*. mesh.channels >= 3.
+/// Returns the mean colour of every face's three corners, L*u*v*. mesh.channels >= 3.
 std::vector<Vec3f> face_means(const BaseMesh& mesh);
 
 }  // namespace imgmesh

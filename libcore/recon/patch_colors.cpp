@@ -12,7 +12,7 @@ constexpr int kHues = 8;
 constexpr float kChroma = 70;        // of the tint [L*u*v* units]: strong, and within sRGB for mid lightness
 constexpr float kMeanShare = 0.45f;  // of the patch's mean colour in the result; the rest is tint
 
-// Every pair of faces whose patches touch, both ways round, sorted.
+// Returns all pairs of faces whose patches touch, in both orders, sorted.
 std::vector<std::pair<Id, Id>> touching_patches(const PixelMap& map) {
     std::vector<std::pair<Id, Id>> pairs;
     const auto touch = [&](Id a, Id b) {
@@ -31,8 +31,8 @@ std::vector<std::pair<Id, Id>> touching_patches(const PixelMap& map) {
     return pairs;
 }
 
-// Greedy colouring in order of ids: of the hues that the fewest coloured neighbours have, the first after a
-// pseudo-random start, so that all hues are used about equally.
+// Greedy colouring in order of ids. A face gets one of the hues that the fewest of its coloured neighbours
+// have: the first after a pseudo-random start, so that all hues are used about equally.
 std::vector<int> hues(std::size_t faces, const std::vector<std::pair<Id, Id>>& touching) {
     std::vector<int> hue(faces, -1);
     auto pair = touching.begin();
@@ -56,7 +56,7 @@ std::vector<Vec3f> patch_colors(const BaseMesh& mesh, const PixelMap& map) {
     std::vector<int> pixels(mesh.faces.size());
     for (const PixelCoord& c : map.coords) {
         if (c.face == kNone) continue;
-        sum[c.face] += Vec3d(1 - double(c.u) - double(c.v), c.u, c.v);  // of weights first, of colours below
+        sum[c.face] += Vec3d(1 - double(c.u) - double(c.v), c.u, c.v);  // weights first, colours below
         ++pixels[c.face];
     }
     const std::vector<int> hue = hues(mesh.faces.size(), touching_patches(map));
@@ -68,7 +68,7 @@ std::vector<Vec3f> patch_colors(const BaseMesh& mesh, const PixelMap& map) {
         const auto feature = [&](Id v) { return Eigen::Map<const Vec3f>(mesh.feature_of(v)); };
         const Vec3f mean = weight[0] * feature(a) + weight[1] * feature(b) + weight[2] * feature(c);
         const float angle = 2 * std::numbers::pi_v<float> * static_cast<float>(hue[f]) / kHues;
-        // Every second hue is lighter too, so that neighbouring hues differ for the colour-blind.
+        // Every second hue is also lighter, so that neighbouring hues differ for colour-blind people.
         const Vec3f tint(hue[f] % 2 == 0 ? 70.0f : 50.0f, kChroma * std::cos(angle),
                          kChroma * std::sin(angle));
         colors[f] = kMeanShare * mean + (1 - kMeanShare) * tint;

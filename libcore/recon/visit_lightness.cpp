@@ -16,7 +16,7 @@ std::vector<float> visit_lightness(const MeshImage& mesh_image) {
         if (coords[i].face != kNone) sorted.push_back(visits[i]);
     std::vector<float> lightness(visits.size(), 0.0f);
     if (sorted.empty()) return lightness;
-    // Few pixels have several times the visits of most, beside long thin triangles, or hardly any.
+    // A few pixels beside long thin triangles have several times the visits of most; others have hardly any.
     const auto percentile = [&](std::size_t percent) {
         const auto at = static_cast<std::ptrdiff_t>((sorted.size() - 1) * percent / 100);
         std::nth_element(sorted.begin(), sorted.begin() + at, sorted.end());

@@ -7,9 +7,9 @@
 
 namespace imgmesh {
 
-/// L* of every pixel, from 100 for the 2 % least visited to 0 for the 2 % most visited, linear in the number
-/// of visits; 100 where nearly all are visited alike. Pixels outside the mask take no part and get 0. Throws
-/// Error(kUnsupported) where there are no visits.
+/// Returns L* of every pixel: 100 for the 2 % with the fewest visits, 0 for the 2 % with the most, linear in
+/// the number of visits between. If nearly all pixels have the same number, L* is 100. Pixels outside the
+/// mask do not count and get 0. Throws Error(kUnsupported) if there are no visits.
 std::vector<float> visit_lightness(const MeshImage& mesh_image);
 
 }  // namespace imgmesh

@@ -14,7 +14,7 @@ Id root_of(std::vector<Id>& parent, Id i) {
 
 Cells cut_cells(const PixelMap& map) {
     const auto width = static_cast<std::size_t>(map.width);
-    // A forest over the pixels, each root the first pixel of its cell.
+    // A forest over the pixels. Each root is the first pixel of its cell.
     std::vector<Id> parent(map.coords.size());
     std::iota(parent.begin(), parent.end(), Id{0});
     const auto join = [&](std::size_t i, std::size_t j) {

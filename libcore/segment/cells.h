@@ -7,13 +7,13 @@
 
 namespace imgmesh {
 
-/// An image cut into cells: sets of pixels, each 4-connected and inside one patch. A patch is one cell
-/// unless the map tears it into several, so that regions, which are joined cells, are always connected.
+/// An image cut into cells: 4-connected sets of pixels inside one patch. A patch is one cell unless the map
+/// tears it into several. Regions are joined cells, so they are always connected.
 struct Cells {
     int width = 0;
     int height = 0;
-    std::vector<Id> of_pixel;  ///< size width * height: its cell, kNone outside the mask
-    std::vector<Id> face;      ///< of each cell; cells are numbered by their first pixel, row by row
+    std::vector<Id> of_pixel;  ///< each pixel's cell, size width * height; kNone outside the mask
+    std::vector<Id> face;      ///< each cell's face; cells are numbered by their first pixel, row by row
 
     std::size_t count() const { return face.size(); }
 };

@@ -9,8 +9,8 @@ namespace {
 
 constexpr float kNever = std::numeric_limits<float>::infinity();
 
-// When cells become one: a forest in which each merge hangs the smaller tree below the larger one, so that
-// paths are short, and every link knows its merge.
+// Answers at which merge two cells become one. It is a forest in which each merge hangs the smaller tree
+// below the larger one, so paths are short. Every link knows its merge.
 class Joins {
   public:
     explicit Joins(const Hierarchy& hierarchy)
@@ -29,7 +29,7 @@ class Joins {
     }
 
     float height(Id a, Id b) const {
-        // Links on the way up are ever later. The last one on the path from a to b is their merge.
+        // Links further up are later. The last one on the path from a to b is the merge of a and b.
         std::size_t last = merges_.size();
         while (a != b) {
             if (merge_[a] > merge_[b]) std::swap(a, b);
@@ -48,7 +48,7 @@ class Joins {
 
     const std::vector<Merge>& merges_;
     std::vector<Id> parent_;
-    std::vector<std::size_t> merge_;  // of the link to the parent; of roots the number of merges
+    std::vector<std::size_t> merge_;  // of the link to the parent; for roots the number of merges
 };
 
 }  // namespace

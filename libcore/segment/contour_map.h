@@ -1,4 +1,4 @@
-// The ultrametric contour map: one image that holds the segmentations at all thresholds.
+// The ultrametric contour map: one image that holds the segmentations for all thresholds.
 #pragma once
 
 #include <vector>
@@ -7,21 +7,21 @@
 
 namespace imgmesh {
 
-/// Heights of contours on a grid of twice the image's resolution, as Arbelaez et al. (TPAMI 2011) store it:
-/// (2W+1) x (2H+1) values, pixel (x, y) at (2x+1, 2y+1), what is between two 4-neighbours halfway between
-/// them.
+/// Heights of contours on a grid of twice the image's resolution, as Arbelaez et al. (TPAMI 2011) store
+/// them: (2W+1) x (2H+1) values. Pixel (x, y) is at (2x+1, 2y+1), the value between two 4-neighbours
+/// halfway.
 ///
-/// Between two pixels stands the height at which their regions become one, so that for every t > 0 the
-/// regions at threshold t are the connected parts of pixels joined where less than t stands between them.
-/// Infinity between inside and outside of the mask; 0 at pixels, along the frame, and between outside pixels;
-/// where four pixels meet, the largest of the four values around.
+/// The value between two pixels is the threshold at which their regions become one: for every t > 0 the
+/// regions at threshold t are the connected parts of pixels joined across values less than t. The value is
+/// infinity between inside and outside of the mask, and 0 at pixels, along the frame, and between outside
+/// pixels. Where four pixels meet, it is the largest of the four values around.
 struct ContourMap {
     int width = 0;
     int height = 0;
     std::vector<float> values;  ///< size width * height
 };
 
-/// O(pixels + borders log cells).
+/// Takes O(pixels + borders log cells) time.
 ContourMap contour_map(const Cells& cells, const Hierarchy& hierarchy);
 
 }  // namespace imgmesh

@@ -7,13 +7,13 @@
 
 namespace imgmesh {
 
-/// Each region in one colour, L*u*v*, e.g. its mean. RGB in the source's colour space and sample type, and A,
-/// 0 outside the mask, where some pixel is.
+/// Draws each region in one L*u*v* colour, for example its mean. The result has RGB in the source's colour
+/// space and sample type. If some pixel is outside the mask, it also has A, which is 0 there.
 Image draw_flat(const LabelImage& labels, const std::vector<Vec3f>& colors, const SourceInfo& source);
 
-/// `picture` (L*u*v*) with a line one pixel wide along the regions' borders: on pixels whose right or lower
-/// neighbour is of another region, or outside the mask.
-/// Shape as of draw_flat.
+/// Draws `picture` (L*u*v*) with lines one pixel wide along the regions' borders. A line is drawn on pixels
+/// whose right or lower neighbour belongs to another region or is outside the mask. The result has the
+/// channels of draw_flat().
 Image draw_outlines(const LabelImage& labels, const FeatureImage& picture, const SourceInfo& source);
 
 }  // namespace imgmesh

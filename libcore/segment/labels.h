@@ -1,4 +1,4 @@
-// An image cut into regions, and what is to be said about each of them.
+// An image cut into regions, and facts about each of them.
 #pragma once
 
 #include <array>
@@ -22,17 +22,17 @@ struct LabelImage {
     }
 };
 
-/// The regions after the first `merges` merges of the cells' hierarchy.
+/// Returns the regions after the first `merges` merges of the cells' hierarchy.
 LabelImage labels_after(const Cells& cells, const Hierarchy& hierarchy, std::size_t merges);
 
 struct RegionFacts {
     std::int64_t pixels = 0;
     Vec3f color = Vec3f::Zero();                         ///< mean, L*u*v*
-    std::array<int, 4> box = {0, 0, 0, 0};               ///< least x, least y, largest x, largest y
-    std::vector<std::pair<Id, std::int64_t>> neighbors;  ///< region, pairs of pixels across; by region
+    std::array<int, 4> box = {0, 0, 0, 0};               ///< smallest x, smallest y, largest x, largest y
+    std::vector<std::pair<Id, std::int64_t>> neighbors;  ///< sorted: region, pixel pairs across
 };
 
-/// Of every region. image: L*u*v*, of the labels' size.
+/// Returns the facts of every region. The image is L*u*v*, of the labels' size.
 std::vector<RegionFacts> region_facts(const LabelImage& labels, const FeatureImage& picture);
 
 }  // namespace imgmesh

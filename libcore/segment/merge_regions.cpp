@@ -8,13 +8,13 @@ namespace imgmesh {
 namespace {
 
 struct Candidate {
-    bool waits;  // for the merges that min_size asks for
+    bool waits;  // until the merges forced by min_size are done
     float distance;
     Id a, b;  // as in Border
     Id border;
     std::uint32_t version;
 
-    // The queue's top is the greatest.
+    // The queue's top is the greatest candidate.
     bool operator<(const Candidate& other) const {
         if (waits != other.waits) return waits;
         if (distance != other.distance) return distance > other.distance;
@@ -45,7 +45,7 @@ class Merger {
             const Candidate next = queue_.top();
             queue_.pop();
             if (next.version != version_[next.border]) continue;
-            // Regions only grow: once a merge need not come first, none does.
+            // Regions only grow: once no merge is forced, none will be.
             if (next.waits)
                 height = std::max(height, next.distance);
             else
@@ -67,7 +67,7 @@ class Merger {
             {std::min(a.pixels, b.pixels) >= min_size_, distance, border.a, border.b, e, version_[e]});
     }
 
-    // b becomes part of a, a < b.
+    // Region b becomes part of a; a < b.
     void merge(Id a, Id b, Id common) {
         graph_.regions[a] += graph_.regions[b];
         version_[common] = kDead;
@@ -104,9 +104,9 @@ class Merger {
     RegionGraph graph_;
     const RegionDistance& distance_;
     double min_size_;
-    std::vector<std::uint32_t> version_;  // of each border; candidates of an older one are stale
+    std::vector<std::uint32_t> version_;  // of each border; candidates with an older version are stale
     std::vector<std::vector<Id>> borders_of_;
-    std::vector<Id> found_;  // during a merge: the border that leads to a region
+    std::vector<Id> found_;  // during a merge: the border that leads to each region
     std::priority_queue<Candidate> queue_;
 };
 
@@ -123,7 +123,7 @@ std::size_t merges_below(const Hierarchy& hierarchy, double threshold) {
 }
 
 std::vector<Id> regions_after(const Hierarchy& hierarchy, std::size_t merges) {
-    // Every merge's a and b are the first cells of their regions, a < b.
+    // The a and b of every merge are the first cells of their regions, and a < b.
     std::vector<Id> region(hierarchy.cells);
     std::iota(region.begin(), region.end(), Id{0});
     for (std::size_t k = 0; k < merges; ++k) region[hierarchy.merges[k].b] = hierarchy.merges[k].a;

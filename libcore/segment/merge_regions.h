@@ -1,4 +1,4 @@
-// Merging of regions, closest first, and what it leaves: a hierarchy.
+// Merging of regions, closest first, and the resulting hierarchy.
 #pragma once
 
 #include <cstdint>
@@ -11,34 +11,34 @@ namespace imgmesh {
 
 /// One merge: the regions that hold cells a and b become one.
 struct Merge {
-    Id a = kNone;      ///< a cell of the one region
-    Id b = kNone;      ///< a cell of the other
-    float height = 0;  ///< threshold above which the two are one: the largest distance merged so far
+    Id a = kNone;      ///< a cell of one region
+    Id b = kNone;      ///< a cell of the other region
+    float height = 0;  ///< the threshold above which the two are one: the largest distance merged so far
 };
 
-/// All merges of an image's cells, in order; heights never fall. Cells are connected where the image is,
-/// so a mask of k islands leaves k regions in the end.
+/// All merges of an image's cells, in order. Heights never fall. Cells on different islands of a mask never
+/// merge, so k islands leave k regions in the end.
 struct Hierarchy {
     std::size_t cells = 0;
     std::vector<Merge> merges;
-    std::size_t forced = 0;  ///< the first so many are those that min_size asked for, at height 0
+    std::size_t forced = 0;  ///< this many merges come first, at height 0, because of min_size
 };
 
-/// How far two regions with a common border are apart: finite, >= 0, the same whichever comes first.
+/// The distance of two regions with a common border: finite, >= 0, and symmetric.
 using RegionDistance = std::function<double(const RegionSums&, const RegionSums&, const Border&)>;
 
-/// Merges the two closest neighbours until none are left, the distances of the new region computed anew
-/// (paper sec. 4.1, "repeatedly"). Ties: the border of the lower regions, a region being called by its first
-/// cell. Where `min_size` > 1, merges of regions with fewer pixels come first, closest first, at height 0: so
-/// that no region is smaller at any threshold, but for islands that are smaller as a whole.
+/// Merges the two closest neighbours until none are left, and computes the distances of the new region anew
+/// (paper sec. 4.1, "repeatedly"). In a tie the border of the lower regions comes first; the number of a
+/// region is that of its first cell. If `min_size` > 1, regions with fewer pixels merge first, closest first,
+/// at height 0, so no region is smaller at any threshold, except islands that are smaller as a whole.
 ///
-/// O(borders log borders) times the mean number of neighbours of a region at its merges.
+/// Takes O(borders log borders) time, times the mean number of neighbours of a region when it merges.
 Hierarchy merge_regions(RegionGraph graph, const RegionDistance& distance, std::int64_t min_size = 1);
 
-/// The number of merges whose height is below `threshold`.
+/// Returns the number of merges whose height is below `threshold`.
 std::size_t merges_below(const Hierarchy& hierarchy, double threshold);
 
-/// The region of every cell after the first `merges` merges. Regions are numbered by their first cell.
+/// Returns each cell's region after `merges` merges. Regions are numbered by their first cell.
 std::vector<Id> regions_after(const Hierarchy& hierarchy, std::size_t merges);
 
 }  // namespace imgmesh

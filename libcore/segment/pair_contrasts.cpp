@@ -11,11 +11,11 @@ namespace {
 
 constexpr int kGrain = 16;  // rows or columns a block
 
-// Contours are sharp or soft, and texture has a size: small squares place a contour, large ones tell it from
-// texture. No single one of them does as well (docs/decisions/0009-segmentation.md).
+// Contours are sharp or soft, and texture has a size. Small squares locate a contour; large ones distinguish
+// it from texture. No single size does as well (docs/decisions/0009-segmentation.md).
 constexpr int kRadii[] = {2, 4, 8};
 
-// What a square of pixels holds: its pixels inside the mask, sums of colours and of their squares.
+// Sums over a square of pixels: the pixels inside the mask, their colours, and the squares of their colours.
 constexpr int kSums = 7;
 using Sums = std::array<float, kSums>;
 
@@ -28,8 +28,8 @@ struct Squares {
     }
 };
 
-// Sliding sums of 2 radius + 1 values each along a line of `count`. In double, so that what leaves the sum is
-// what entered it up to a rounding that does not show.
+// Sliding sums of 2 radius + 1 values each along a line of `count` values. They are doubles, so a value that
+// leaves the sum cancels what it added, up to a negligible rounding.
 void slide(Sums* first, std::ptrdiff_t step, int count, int radius, std::vector<Sums>& copy) {
     copy.resize(static_cast<std::size_t>(count));
     for (int i = 0; i < count; ++i) copy[static_cast<std::size_t>(i)] = first[i * step];

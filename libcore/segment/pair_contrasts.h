@@ -1,4 +1,4 @@
-// How much the image changes between neighbouring pixels, seen at several sizes: the evidence for a
+// How much the image changes between neighbouring pixels, measured at several sizes: the evidence for a
 // contour.
 #pragma once
 
@@ -6,23 +6,23 @@
 
 namespace imgmesh {
 
-/// The spread that colours have without any meaning: noise, shading, compression [L*u*v*]. What a texture
-/// spreads beyond it counts against a contrast of means. Chosen on photographs, docs/decisions/0009-segmentation.md.
+/// The standard deviation of uniform colours, from noise, shading and compression [L*u*v*]. Texture is above
+/// it and lowers contrasts. Chosen on photographs: docs/decisions/0009-segmentation.md.
 inline constexpr double kPlainSpread = 6.0;
 
-/// Bhattacharyya's distance of two colour populations with independent channels, each a normal distribution
-/// of that mean and variance (plus kPlainSpread^2): grows with the difference of means as far as it stands
-/// out from the spreads, and with the ratio of spreads. 0 for equal ones.
+/// Bhattacharyya's distance of two colour populations. Each is a normal distribution with independent
+/// channels, of the given mean and variance plus kPlainSpread^2. The distance grows with the difference of
+/// means relative to the deviations, and with the ratio of deviations. It is 0 for equal populations.
 double population_distance(const Vec3d& mean_a, const Vec3d& variance_a, const Vec3d& mean_b,
                            const Vec3d& variance_b);
 
-/// A population distance as the L*u*v* distance of two plain colours that are as far apart: for populations
-/// without spread of their own it is the distance of their means.
+/// Converts a population distance to the L*u*v* distance of two uniform colours that are equally far apart.
+/// For populations without deviation of their own this is the distance of their means.
 double color_equivalent(double population_distance);
 
-/// The contrast of every pair of neighbours in different cells: the population distances of the two squares
-/// of (2r+1)^2 pixels that meet between them, as far as they are inside the mask, mapped to 1 - exp(-d), mean
-/// over r = 2, 4 and 8. In [0, 1). Same result for any number of threads.
+/// Returns the contrast of every pair of neighbours in different cells: 1 - exp(-d), mean over r = 2, 4, 8. d
+/// is the population distance of the two squares of (2r+1)^2 pixels that meet between them, as far as they
+/// are inside the mask. In [0, 1). The result is the same for any number of threads.
 PairContrasts pair_contrasts(const FeatureImage& picture, const Cells& cells);
 
 }  // namespace imgmesh

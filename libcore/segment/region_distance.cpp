@@ -8,13 +8,13 @@
 namespace imgmesh {
 namespace {
 
-// Chosen on ten images, and within noise of the best there and on ten others; each may change by a third
-// without harm (docs/decisions/0009-segmentation.md has the figures).
-constexpr double kBorderShare = 0.7;    // of the contrast along the border, against what the regions are
-constexpr double kSizeExponent = 0.2;   // small regions are details of what surrounds them
-constexpr double kShapeExponent = 0.2;  // what is joined along most of its outline belongs together
+// Chosen on ten images. On these and on ten others they are within noise of the best values. Each may change
+// by a third without harm (docs/decisions/0009-segmentation.md has the figures).
+constexpr double kBorderShare = 0.7;    // of the contrast along the border, against the populations
+constexpr double kSizeExponent = 0.2;   // small regions are details of their surroundings
+constexpr double kShapeExponent = 0.2;  // regions joined along most of their boundary belong together
 
-// 1 - m where m is as large as can be: keeps the logarithm finite.
+// The smallest value of 1 - m: keeps the logarithm finite.
 constexpr double kLeastLikeness = 1e-9;
 
 double harmonic(double a, double b) {

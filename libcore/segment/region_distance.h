@@ -1,27 +1,27 @@
-// How far two neighbouring regions are apart: what decides which of them become one.
+// The distances between neighbouring regions that decide which of them merge.
 #pragma once
 
 #include "libcore/segment/merge_regions.h"
 
 namespace imgmesh {
 
-/// The paper's (sec. 4.1): the distance of the regions' colours in L*u*v*, each the mean of its pixels'
-/// weighted by the least of their three weights.
+/// The paper's distance (sec. 4.1): that of the regions' colours in L*u*v*. A region's colour is the mean of
+/// its pixels' colours, each weighted by the smallest of the pixel's three weights.
 RegionDistance paper_distance();
 
-/// Colours and texture of the regions, contrast along their border, size and shape, in L*u*v* units:
+/// Combines colours and texture of the regions, contrast along their border, size and shape, in L*u*v* units:
 ///
 ///     color_equivalent(-ln(1 - m)) * (4 h / pixels)^0.2 * (l / sqrt(2 s))^-0.2
 ///     m = 0.7 (mean contrast of the border) + 0.3 (1 - exp(-population distance of the regions))
 ///
-/// with h = a b / (a + b) of the regions' pixels a and b, s the lesser of them, and l the border's length.
-/// `pixels` is the number of pixels in all. Two plain halves of a square image are as far apart as their
-/// colours are; small regions and long borders count less. Figures: docs/decisions/0009-segmentation.md.
+/// with h = a b / (a + b) for regions of a and b pixels, s the smaller of a and b, and l the border's length.
+/// `pixels` is the number of pixels in all. For two uniform halves of a square image the distance is that of
+/// their colours. Small regions and long borders count less. Figures: docs/decisions/0009-segmentation.md.
 RegionDistance contour_distance(double pixels);
 
 /// Ward's criterion: what a merge adds to the sum of squares about the regions' means, of colours and of
-/// places, a place being compactness / spacing times its pixels; as SLIC weighs them (Achanta et al. 2012).
-/// compactness in L*u*v* units, spacing [pixels] as of superpixels on a square grid.
+/// places times compactness / spacing, as in SLIC (Achanta et al. 2012). `compactness` is in L*u*v* units,
+/// `spacing` is that of superpixels on a square grid [pixels].
 RegionDistance superpixel_distance(double compactness, double spacing);
 
 }  // namespace imgmesh

@@ -6,7 +6,7 @@
 namespace imgmesh {
 namespace {
 
-// Faces across each edge: (edge's lower vertex, its higher vertex, face), sorted.
+// Faces at each edge as sorted triples: the edge's lower vertex, its higher vertex, a face.
 using EdgeFaces = std::vector<std::tuple<Id, Id, Id>>;
 
 EdgeFaces edge_faces(const BaseMesh& mesh) {
@@ -20,7 +20,7 @@ EdgeFaces edge_faces(const BaseMesh& mesh) {
     return all;
 }
 
-// Pairs of faces with a common edge, both ways round, sorted.
+// Returns all pairs of faces with a common edge, in both orders, sorted.
 std::vector<std::pair<Id, Id>> face_neighbors(const BaseMesh& mesh) {
     const EdgeFaces edges = edge_faces(mesh);
     std::vector<std::pair<Id, Id>> pairs;
@@ -38,7 +38,7 @@ std::vector<std::pair<Id, Id>> face_neighbors(const BaseMesh& mesh) {
 }  // namespace
 
 std::vector<Id> region_of_faces(const BaseMesh& mesh, const PixelMap& map, const LabelImage& labels) {
-    std::vector<std::pair<Id, Id>> owned;  // face, region: one a pixel
+    std::vector<std::pair<Id, Id>> owned;  // one pair (face, region) for each pixel
     for (std::size_t i = 0; i < map.coords.size(); ++i)
         if (map.coords[i].face != kNone) owned.emplace_back(map.coords[i].face, labels.labels[i]);
     std::sort(owned.begin(), owned.end());
@@ -51,7 +51,7 @@ std::vector<Id> region_of_faces(const BaseMesh& mesh, const PixelMap& map, const
         most[face] = end - i;
         region[face] = label;
     }
-    // Round by round outwards, so that ties go to the lowest region whatever the faces' order.
+    // Works outwards in rounds, so that ties go to the lowest region whatever the order of the faces.
     const std::vector<std::pair<Id, Id>> neighbors = face_neighbors(mesh);
     for (bool changed = true; changed;) {
         changed = false;

@@ -7,9 +7,9 @@
 
 namespace imgmesh {
 
-/// The region of every face: the one that most of its patch's pixels belong to, of several the lowest. A face
-/// without pixels follows a neighbour across an edge, the nearest that has some; kNone where there is none.
-/// A region all of whose pixels are few of their patches has no face.
+/// Returns the region of every face: the one that most of its patch's pixels belong to, and the lowest of
+/// equal ones. A face without pixels takes the region of the nearest neighbour across edges that has some;
+/// kNone if there is none. A region has no face if it has the majority in no patch.
 std::vector<Id> region_of_faces(const BaseMesh& mesh, const PixelMap& map, const LabelImage& labels);
 
 }  // namespace imgmesh

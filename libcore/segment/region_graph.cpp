@@ -10,7 +10,7 @@ struct Crossing {
     float contrast;
 };
 
-// Pairs of neighbours in different cells, in the order of the pixels.
+// Pairs of neighbours in different cells, in the order of their pixels.
 std::vector<Crossing> crossings(const Cells& cells, const PairContrasts& contrasts) {
     std::vector<Crossing> all;
     const auto width = static_cast<std::size_t>(cells.width);

@@ -1,4 +1,4 @@
-// Cells and their borders as a graph: what distances between regions are computed from.
+// Cells and their borders as a graph, with the sums from which distances between regions are computed.
 #pragma once
 
 #include <vector>
@@ -8,25 +8,25 @@
 
 namespace imgmesh {
 
-/// Sums over the pixels of a region; those of two regions add up.
+/// Sums over the pixels of a region. The sums of two regions add up.
 struct RegionSums {
     double pixels = 0;
-    Vec3d color = Vec3d::Zero();           ///< of L*u*v*
-    Vec3d square = Vec3d::Zero();          ///< of its squares, channel by channel
-    double weight = 0;                     ///< of the least of the three weights of each pixel
-    Vec3d weighted_color = Vec3d::Zero();  ///< of weight times L*u*v*
-    Vec2d place = Vec2d::Zero();           ///< of x, y [pixels]
+    Vec3d color = Vec3d::Zero();           ///< sum of L*u*v*
+    Vec3d square = Vec3d::Zero();          ///< sum of the squares of L*, u* and v*
+    double weight = 0;                     ///< sum of the smallest of each pixel's three weights
+    Vec3d weighted_color = Vec3d::Zero();  ///< sum of that weight times L*u*v*
+    Vec2d place = Vec2d::Zero();           ///< sum of x and of y [pixels]
 
     RegionSums& operator+=(const RegionSums& other);
-    /// The paper's colour of a patch (sec. 4.1): the mean weighted by the least weight. Where all weights are
-    /// zero, as in splinters along a patch's rim, the plain mean.
+    /// The paper's colour of a patch (sec. 4.1): the mean weighted by each pixel's smallest weight. If all
+    /// weights are zero, as in splinters along a patch's rim, the unweighted mean.
     Vec3d paper_color() const { return weight > 0 ? Vec3d(weighted_color / weight) : mean_color(); }
     Vec3d mean_color() const { return color / pixels; }
     Vec2d mean_place() const { return place / pixels; }
     Vec3d variance() const;  ///< of each channel
 };
 
-/// Where two regions touch; borders add up.
+/// The line along which two regions touch. The borders of merged regions add up.
 struct Border {
     Id a = kNone;  ///< the lower of the two
     Id b = kNone;
@@ -41,14 +41,14 @@ struct RegionGraph {
     std::vector<Border> borders;  ///< sorted by (a, b)
 };
 
-/// The contrasts of pixel pairs: those of (x, y) with its right and with its lower neighbour, each of size
-/// width * height (what has no such neighbour is not read), or empty: all zero.
+/// The contrasts of (x, y) with its right and with its lower neighbour. Each vector has size width * height,
+/// and pixels without such a neighbour are not read. An empty vector means that all contrasts are zero.
 struct PairContrasts {
     std::vector<float> right;
     std::vector<float> down;
 };
 
-/// Sums of every cell and border. image: L*u*v*, of the cells' size.
+/// Returns the sums of every cell and every border. The image is L*u*v*, of the cells' size.
 RegionGraph region_graph(const Cells& cells, const PixelMap& map, const FeatureImage& picture,
                          const PairContrasts& contrasts);
 

@@ -1,7 +1,7 @@
-// Source: Sorkine, Alexa, "As-Rigid-As-Possible Surface Modeling", SGP 2007. Minimise over places q and
-// rotations R the energy
+// Source: Sorkine, Alexa, "As-Rigid-As-Possible Surface Modeling", SGP 2007. Minimises over q and R energy
 //     sum over edges ij of w_ij ( |q_i - q_j - R_i (p_i - p_j)|^2 + |q_j - q_i - R_j (p_j - p_i)|^2 )
-// by turns: the best R for given q (in the plane an angle), then the best q for given R (a Laplace equation).
+// alternately: the best rotations R for given places q (in the plane, angles), then the best places for given
+// rotations (a Laplace equation).
 #include "libcore/warp/arap.h"
 
 #include <Eigen/SparseCholesky>
@@ -12,8 +12,8 @@
 namespace imgmesh {
 namespace {
 
-// Cotangent weights are negative across two obtuse angles; the energy would have no minimum then. Any
-// positive weights leave rigid motions free, so a small one in their place only makes such an edge soft. The
+// Cotangent weights are negative across two obtuse angles, and then the energy may have no minimum. Any
+// positive weights leave rigid motions free, so a small positive weight only makes such an edge soft. The
 // weight of an edge between equilateral triangles is 0.58.
 constexpr double kLeastWeight = 0.01;
 
@@ -43,7 +43,7 @@ Vec2d turned(const Vec2d& rotation, const Vec2d& v) {
     return {rotation.x() * v.x() - rotation.y() * v.y(), rotation.y() * v.x() + rotation.x() * v.y()};
 }
 
-// The rotation (cos, sin) that a sum of dot products and cross products stands for.
+// The rotation (cos, sin) from a sum of dot products and a sum of cross products.
 Vec2d rotation_of(double dot, double cross) {
     const double length = std::hypot(dot, cross);
     return length > 0 ? Vec2d(dot / length, cross / length) : Vec2d(1, 0);
@@ -54,9 +54,9 @@ Vec2d rotation_of(double dot, double cross) {
 struct ArapSolver::State {
     std::vector<Vec2d> rest;
     std::vector<Id> fixed;
-    std::vector<std::size_t> first;  // vertex v has the neighbors [first[v], first[v + 1])
+    std::vector<std::size_t> first;  // vertex v has the neighbours [first[v], first[v + 1])
     std::vector<Neighbor> neighbors;
-    std::vector<Id> part, parts_fixed;  // connected part of each vertex; of each fixed one
+    std::vector<Id> part, parts_fixed;  // connected part of each vertex, and of each fixed vertex
     Id part_count = 0;
     std::vector<Id> free;     // the vertices to solve for, ascending
     std::vector<Id> unknown;  // index in `free`, or kNone
@@ -120,7 +120,7 @@ void ArapSolver::State::factorise() {
     factor.compute(matrix);
 }
 
-// Every part moved rigidly, so that its fixed vertices come nearest to their places; these in their places.
+// Moves every part rigidly, so that its fixed vertices are nearest to their places, then puts these there.
 std::vector<Vec2d> ArapSolver::State::rigid_guess(const std::vector<Vec2d>& moves) const {
     struct Sums {
         double count = 0, dot = 0, cross = 0;
@@ -163,7 +163,7 @@ std::vector<Vec2d> ArapSolver::State::rotations(const std::vector<Vec2d>& place)
     return rotation;
 }
 
-// The best places of the free vertices for given rotations.
+// Finds the best places of the free vertices for given rotations.
 Eigen::MatrixX2d ArapSolver::State::places(const std::vector<Vec2d>& place,
                                            const std::vector<Vec2d>& rotation) const {
     Eigen::MatrixX2d right(static_cast<Eigen::Index>(free.size()), 2);

@@ -8,15 +8,15 @@
 
 namespace imgmesh {
 
-/// Moves a mesh so that given vertices reach given places and every one-ring is turned, hardly stretched:
-/// the local/global iteration of Sorkine and Alexa 2007 in the plane, where the best rotation of a one-ring
-/// is one arc tangent. The matrix depends on the mesh and on *which* vertices are fixed; it is factorised
-/// once and serves every solve(), so that dragging a handle costs iterations alone.
+/// Moves a mesh so that given vertices reach given places, and every one-ring is turned but hardly stretched.
+/// It is the local/global iteration of Sorkine and Alexa 2007 in the plane, where the best rotation of a
+/// one-ring is one arc tangent. The matrix depends on the mesh and on *which* vertices are fixed. It is
+/// factorised once for all calls of solve(), so dragging a handle costs only the iterations.
 ///
 /// Connected parts of the mesh without a fixed vertex stay where they are.
 class ArapSolver {
   public:
-    /// fixed  the vertices whose places are given, ascending, each once; handles and pins alike
+    /// fixed  the vertices whose places are given, ascending, each once: handles and pins alike
     ArapSolver(const BaseMesh& mesh, const std::vector<Id>& fixed);
     ~ArapSolver();
     ArapSolver(ArapSolver&&) noexcept;
@@ -27,9 +27,9 @@ class ArapSolver {
         int iterations = 0;
     };
     /// moves  of the fixed vertices, in their order [pixels]
-    /// Iterates until no vertex moves by more than `tolerance` [pixels] in an iteration, or
-    /// `max_iterations`. The same result each time, whatever was solved before. Where all moves are equal
-    /// the mesh is moved as a whole, exactly.
+    /// Iterates until no vertex moves by more than `tolerance` [pixels] in an iteration, or for
+    /// `max_iterations`. The result does not depend on earlier calls. If all moves are equal, the whole mesh
+    /// moves by exactly that.
     Result solve(const std::vector<Vec2d>& moves, double tolerance = 1e-3, int max_iterations = 200) const;
 
   private:

@@ -12,8 +12,8 @@ namespace {
 
 constexpr int kGrainRows = 64;
 
-// The nearest whole number, ties to even, |value| < 2^31. Adding 1.5 * 2^52 leaves it in the low bits; unlike
-// std::lrint this is done for several values at once.
+// Rounds to the nearest whole number, ties to even, for |value| < 2^31. Adding 1.5 * 2^52 leaves the number
+// in the low bits. Unlike std::lrint this works on several values at once.
 std::int32_t rounded(double value) {
     return static_cast<std::int32_t>(std::bit_cast<std::int64_t>(value + 6755399441055744.0));
 }

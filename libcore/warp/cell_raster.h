@@ -1,10 +1,10 @@
-// Which point of a warped image each output pixel shows: the cells between four pixels drawn at their new
-// places, two triangles each. Internal to warp/: a template over what becomes of the points.
+// Finds the point of a warped image that each output pixel shows. The cells between four pixels are drawn at
+// their new places, two triangles each. Internal to warp/: a template over what happens to the points.
 //
-// Places are whole multiples of 1/4096 output pixel, so which triangle covers an output pixel's centre is
-// decided exactly: every centre inside the warped image by one triangle, where nothing folds, and never by
-// none. A centre on an edge belongs to the triangle that has the point a hair to the right of it (then
-// below).
+// Places are whole multiples of 1/4096 output pixel, so the triangle that covers an output pixel's centre is
+// decided exactly. Where nothing folds, exactly one triangle covers each centre inside the warped image. A
+// centre on an edge belongs to the triangle that contains the points just to the right of it (or just below,
+// for a horizontal edge).
 #pragma once
 
 #include <algorithm>
@@ -19,19 +19,19 @@ namespace imgmesh {
 struct CellPoint {
     int x, y;      ///< the cell's top left pixel; -1 on the rim that surrounds the image
     float fx, fy;  ///< the point is (x + fx, y + fy); in [0, 1]
-    /// How the point changes per output pixel to the right (dx) and down (dy) [source pixels].
+    /// How the point changes with a step of one output pixel to the right (dx) and down (dy) [source pixels].
     Vec2f dx, dy;
 };
 
-/// Where several triangles cover a centre, the highest of these wins, of equal ones the later row and column.
+/// If several triangles cover a centre, the highest priority wins, then the later row, then the later column.
 enum class Cover : std::uint8_t { kNothing, kTurnedBoundary, kBoundary, kTurned, kSolid };
 
-/// Draws cells into rows [first_row, last_row) of a `width` wide output.
+/// Draws cells into the rows [first_row, last_row) of an output that is `width` pixels wide.
 ///
 /// sink.copy(X, Y, x, y): output pixel (X, Y) shows source pixel (x, y) itself.
-/// sink.plain(X, Y, x, y, fx, fy): it shows the point (x + fx, y + fy) of a solid cell that is hardly
-/// distorted. sink.sample(X, Y, point): it shows a point of any other cell. Later calls for one (X, Y)
-/// replace earlier ones.
+/// sink.plain(X, Y, x, y, fx, fy): it shows the point (x + fx, y + fy) of a hardly distorted solid cell.
+/// sink.sample(X, Y, point): it shows a point of any other cell.
+/// Later calls for one (X, Y) replace earlier ones.
 template <typename Sink>
 class CellRaster {
   public:
@@ -46,7 +46,7 @@ class CellRaster {
 
     void draw() {
         PlaceRow above, below;
-        int have = -2;  // the row that `below` holds
+        int have = -2;  // the row that `below` holds now
         for (int y = -1; y < places_.height(); ++y) {
             if (!places_.reaches(y, first_row_, last_row_)) continue;
             if (have == y)
@@ -77,7 +77,7 @@ class CellRaster {
     static std::int64_t cross(const Point& p, const Point& q, const Point& r) {
         return std::int64_t{q.x - p.x} * (r.y - p.y) - std::int64_t{q.y - p.y} * (r.x - p.x);
     }
-    // What a value of cross(p, q, centre) is at least for centres inside: see the top of the file.
+    // The least value of cross(p, q, centre) for centres inside; see the top of the file.
     static std::int64_t least(const Point& p, const Point& q) {
         return q.y < p.y || (q.y == p.y && q.x > p.x) ? 0 : 1;
     }
@@ -85,7 +85,7 @@ class CellRaster {
     void draw_cell(int x, int y, const PlaceRow& above, const PlaceRow& below) {
         const Point a = point(above, x), b = point(above, x + 1), c = point(below, x),
                     d = point(below, x + 1);
-        // Undistorted: the first corner lies on a centre, and is all that the cell draws.
+        // Undistorted: the first corner lies on a centre, and the cell draws nothing else.
         if (((a.x | a.y) & (kOne - 1)) == 0 && b.x - a.x == kOne && b.y == a.y && c.x == a.x &&
             c.y - a.y == kOne && d.x == b.x && d.y == c.y) {
             const int column = a.x / kOne, row = a.y / kOne;
@@ -108,7 +108,7 @@ class CellRaster {
         const Cover cover = places_.cover(x, y);
         if (cover == Cover::kNothing) return;
         const Corner ca{a, 0, 0}, cb{b, 1, 0}, cc{c, 0, 1}, cd{d, 1, 1};
-        // Cut from top left to bottom right, but the other way where only that leaves no half turned over.
+        // Cut from top left to bottom right, or the other way if only that leaves no half turned over.
         const bool turned = cross(a, b, d) <= 0 || cross(a, d, c) <= 0;
         if (turned && cross(a, b, c) > 0 && cross(b, d, c) > 0) {
             draw_triangle(x, y, cover, ca, cb, cc);
@@ -119,8 +119,8 @@ class CellRaster {
         }
     }
 
-    // Whether every side differs from an undistorted one's by less than an eighth of a pixel either way: no
-    // triangle is turned over then, products fit 32 bits, and a step of one output pixel is less than 1.34
+    // Whether every side differs from an undistorted one by less than an eighth of a pixel in x and in y.
+    // Then no triangle is turned over, products fit 32 bits, and a step of one output pixel is less than 1.34
     // source pixels.
     static bool is_mild(const Point& a, const Point& b, const Point& c, const Point& d) {
         constexpr std::uint32_t kReach = kOne / 8;
@@ -131,8 +131,8 @@ class CellRaster {
                near(d.x - c.x - kOne) & near(d.y - c.y) & near(d.x - b.x) & near(d.y - b.y - kOne);
     }
 
-    // As draw_cell and draw_triangle, in a third of the time, for what most cells are: the diagonal decides
-    // in which of the two triangles a centre can be.
+    // Does the same as draw_cell and draw_triangle in a third of the time, for slightly distorted cells,
+    // which most are: the diagonal decides which of the two triangles contains a centre.
     void draw_mild(int x, int y, const Point& a, const Point& b, const Point& c, const Point& d) {
         const int left = std::max((std::min(a.x, c.x) + kOne - 1) >> CellPlaces::kBits, 0),
                   right = std::min(std::max(b.x, d.x) >> CellPlaces::kBits, width_ - 1),
@@ -176,7 +176,7 @@ class CellRaster {
                   bottom = std::min(std::max({a.y, b.y, c.y}) >> CellPlaces::kBits, last_row_ - 1);
         if (left > right || top > bottom) return;
         const Point start{left * kOne, top * kOne};
-        // Twice the areas opposite the corners a, b, c, less what they must be at least.
+        // Twice the areas opposite the corners a, b, c, minus their least values.
         const std::int64_t least_a = least(b, c), least_b = least(c, a), least_c = least(a, b);
         std::int64_t row_a = cross(b, c, start) - least_a, row_b = cross(c, a, start) - least_b,
                      row_c = cross(a, b, start) - least_c;
@@ -193,7 +193,7 @@ class CellRaster {
                         derivatives(p, q, r, inverse, point);
                         ready = true;
                     }
-                    // Sums of whole numbers: a centre on a corner gives exactly 0 and 1.
+                    // These are sums of whole numbers, so a centre on a corner gives exactly 0 and 1.
                     const std::int64_t wa = ea + least_a, wb = eb + least_b, wc = ec + least_c;
                     point.fx =
                         static_cast<float>(static_cast<double>(wa * p.sx + wb * q.sx + wc * r.sx) * inverse);
@@ -238,12 +238,12 @@ class CellRaster {
     Sink& sink_;
 };
 
-/// Draws all cells into a width x height output, in bands of rows of their own; `sink` is shared by them and
-/// gets each output pixel in one band only. Same calls for a pixel, in the same order, for any number of
+/// Draws all cells into a width x height output, in bands of rows. The bands share `sink`, and each output
+/// pixel belongs to one band only. The calls for a pixel and their order are the same for any number of
 /// threads.
 template <typename Sink>
 void raster_cells(const CellPlaces& places, int width, int height, Sink& sink) {
-    // Few enough to share work well, many enough that few source rows lie in two bands.
+    // This share of rows spreads the work well, and few source rows lie in two bands.
     constexpr int kBandRows = 64;
     parallel_blocks(0, height, kBandRows,
                     [&](int first, int last) { CellRaster<Sink>(places, width, first, last, sink).draw(); });

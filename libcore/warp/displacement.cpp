@@ -9,12 +9,12 @@ namespace {
 
 constexpr int kGrainRows = 64;
 
-// The moves of a face's corners: the first's, and how far the others' differ from it.
+// The moves of a face's corners: that of the first, and the differences of the other two from it.
 struct FaceMove {
     float x = 0, y = 0, ux = 0, uy = 0, vx = 0, vy = 0;
 };
 
-// What a level adds: faces that move, and for the rest one look at a byte.
+// What a level adds. Only faces that move cost more than a look at a byte.
 struct LevelMove {
     std::vector<FaceMove> face;
     std::vector<std::uint8_t> moves;
@@ -30,8 +30,8 @@ LevelMove level_move(const BaseMesh& mesh, const VertexMoves& moves) {
     return level;
 }
 
-// A weight of exactly 1 for a corner must give exactly its move, and so must equal corners: where a move
-// differs from the first corner's only by rounding, the difference below is a rounding of that difference.
+// A weight of 1 for a corner must give exactly its move, and so must three equal corners. If moves differ
+// only by rounding, the difference below is a rounding of that difference.
 void add_row(const LevelMove& level, std::span<const PixelCoord> coords, Vec2f* out) {
     for (std::size_t x = 0; x < coords.size(); ++x) {
         const PixelCoord& c = coords[x];
@@ -42,7 +42,7 @@ void add_row(const LevelMove& level, std::span<const PixelCoord> coords, Vec2f* 
     }
 }
 
-// Calls visit(index of neighbour) for the neighbours of pixel i, in order of index.
+// Calls visit(neighbour) for the neighbours of pixel i, in ascending order.
 template <typename Visit>
 void for_neighbors(const DisplacementField& field, std::size_t i, const Visit& visit) {
     const int x = static_cast<int>(i % static_cast<std::size_t>(field.width)),
@@ -52,7 +52,7 @@ void for_neighbors(const DisplacementField& field, std::size_t i, const Visit& v
             if (nx != x || ny != y) visit(field.index(nx, ny));
 }
 
-// The outside pixels beside any of `sources`, ascending.
+// Returns the outside pixels beside any of `sources`, ascending.
 std::vector<std::size_t> outside_beside(const DisplacementField& field,
                                         const std::vector<std::size_t>& sources) {
     std::vector<std::size_t> found;

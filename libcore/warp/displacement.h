@@ -11,7 +11,7 @@ namespace imgmesh {
 
 enum class PixelRole : std::uint8_t {
     kOutside,  ///< not drawn
-    kGhost,    ///< beside the image's boundary: moves along with it, so that it has a soft edge
+    kGhost,    ///< beside the image's boundary: moves along with it, so the boundary is soft
     kInside    ///< drawn
 };
 
@@ -22,27 +22,27 @@ struct DisplacementField {
     std::vector<Vec2f> move;      ///< size W * H [pixels]; 0 outside
     std::vector<PixelRole> role;  ///< size W * H
 
-    bool has_mask = false;  ///< some pixels are not kInside
+    bool has_mask = false;  ///< whether some pixels are not kInside
 
     std::size_t index(int x, int y) const {
         return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
     }
 };
 
-/// A pixel moves as the corners of its face do, weighted by the pixel's three weights, summed over the levels
-/// (paper sec. 4.2). Pixels that no level maps to moved vertices have exactly 0, and corners that all move
-/// alike move the pixel exactly so. kInside where level 0 has a face.
+/// Moves each pixel as the corners of its face move, weighted by the pixel's three weights, summed over the
+/// levels (paper sec. 4.2). Pixels whose corners do not move have exactly 0. If all three corners move alike,
+/// the pixel has exactly their move. Pixels with a face in level 0 are kInside.
 ///
-/// moves  one a level of `mesh_image`, as solve_edits() gives them
+/// moves  one for each level of `mesh_image`, as solve_edits() returns them
 DisplacementField displacement_field(const MeshImage& mesh_image, const std::vector<VertexMoves>& moves);
 
-/// Gives pixels outside a way to go, ring by ring from the inside outwards: each the mean of its (up to
-/// eight) neighbours that have one. One ring are ghosts; a pixel outside that the image's own alpha `alpha`
-/// (size W * H, or empty) makes neither clear nor opaque belongs to a soft boundary, becomes kInside, and the
-/// ring goes around it. The alpha of pixels becomes 0 where they stay outside. No effect without a mask.
+/// Gives pixels outside the mask a move, ring by ring outwards: the mean of their (up to eight) neighbours
+/// that have one. The first ring becomes kGhost. A pixel outside whose own alpha is neither 0 nor 1 is a soft
+/// boundary: it becomes kInside, and the ring goes around it. `alpha` (size W * H, or empty) becomes 0 for
+/// pixels that stay outside. Without a mask nothing changes.
 void extend_outside(DisplacementField& field, std::vector<float>& alpha);
 
-/// How many cells of four drawn pixels are turned over or lose their area somewhere.
+/// Returns how many cells of four drawn pixels are turned over or have no area in some part.
 std::int64_t folded_cells(const DisplacementField& field);
 
 }  // namespace imgmesh

@@ -1,4 +1,4 @@
-// Which points of the source, with which weights, a pixel of a drawing is the mean of. Internal to warp/.
+// The points of the source whose weighted mean a pixel of a drawing is. Internal to warp/.
 #pragma once
 
 #include <algorithm>
@@ -9,24 +9,24 @@
 
 namespace imgmesh {
 
-// How many source pixels a step of one output pixel goes.
+// How many source pixels one step of an output pixel covers.
 inline int taps_of(const Vec2f& step) {
     constexpr float kMostTaps = 64;
     return static_cast<int>(std::lround(std::clamp(step.norm(), 1.0f, kMostTaps)));
 }
-// Whether a point alone stands for its pixel: both taps are 1.
+// Whether a single point stands for its pixel: both numbers of taps are 1.
 inline bool is_plain(const CellPoint& p) {
     constexpr float kShort = 1.5f * 1.5f;
     return p.dx.squaredNorm() < kShort && p.dy.squaredNorm() < kShort;
 }
 
-// Places are rounded, so a share this close to the whole is the whole.
+// Places are rounded, so a share this close to the whole counts as the whole.
 inline constexpr float kWhole = 1 - 1.0f / 1024;
 
-// The share of an output pixel around the point that lies inside the image's sides: 1 inside of sides that
-// do not move across themselves; exact for sides along the output's axes. `scale` is output pixels per source
-// pixel: what the rim, which moves as the pixels beside it do, measures across, however the cells inside of
-// it are distorted.
+// The share of the output pixel around the point that lies inside the image's sides. It is 1 inside of sides
+// that do not move across themselves, and exact for sides along the output's axes. `scale` is in output
+// pixels per source pixel. It is the distance across the rim, which moves as the pixels beside it do, however
+// distorted the cells inside are.
 inline float side_coverage(const DisplacementField& field, const Vec2f& scale, const CellPoint& p) {
     constexpr float kStill = 1.0f / CellPlaces::kOne;
     const int nearest[2] = {std::clamp(p.x, 0, field.width - 1), std::clamp(p.y, 0, field.height - 1)};
@@ -55,7 +55,7 @@ inline bool on_rim(const DisplacementField& field, const CellPoint& p) {
     return p.x < 0 || p.y < 0 || p.x + 1 >= field.width || p.y + 1 >= field.height;
 }
 
-// Four source pixels and their weights, for the point (x + fx, y + fy); the rim shows the pixel beside it.
+// Four source pixels and their weights for the point (x + fx, y + fy). The rim shows the pixel beside it.
 struct Taps {
     Taps(const DisplacementField& field, int x, int y, float fx, float fy) {
         const int x0 = std::clamp(x, 0, field.width - 1), x1 = std::clamp(x + 1, 0, field.width - 1),
@@ -73,7 +73,7 @@ struct Taps {
     float weight[4];
 };
 
-// Calls visit(taps, share) for every point that an output pixel is the mean of.
+// Calls visit(taps, share) for every point whose mean is the output pixel.
 template <typename Visit>
 void for_points(const DisplacementField& field, const CellPoint& p, const Visit& visit) {
     if (is_plain(p)) {
@@ -85,7 +85,7 @@ void for_points(const DisplacementField& field, const CellPoint& p, const Visit&
     const Vec2f high(static_cast<float>(field.width), static_cast<float>(field.height));
     for (int j = 0; j < m; ++j)
         for (int i = 0; i < n; ++i) {
-            // From the cell, so that coordinates keep their precision in large images.
+            // Relative to the cell, so that coordinates keep their precision in large images.
             const Vec2f at = Vec2f(p.fx, p.fy) +
                              ((static_cast<float>(i) + 0.5f) / static_cast<float>(n) - 0.5f) * p.dx +
                              ((static_cast<float>(j) + 0.5f) / static_cast<float>(m) - 0.5f) * p.dy;

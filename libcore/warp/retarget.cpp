@@ -10,15 +10,15 @@
 namespace imgmesh {
 namespace {
 
-// Of one face: gradients of its corners' hat functions [1 / pixel], and area times weight.
+// For one face: the gradients of its corners' hat functions [1 / pixel], and its area times its weight.
 struct FaceEnergy {
     std::array<Vec2d, 3> gradient;
     double weight;
 };
 
-// How much more a face counts than an average one, by how much smaller it is; smoothed over the corners so
-// that single large faces inside of detail do not give way. Bounded: the collapse leaves some slivers
-// anywhere.
+// How much more a face counts than an average one: the smaller it is, the more. Weights are averaged over the
+// corners, so that single large faces inside detail do not give way. They are bounded, because the collapse
+// leaves some slivers anywhere.
 std::vector<double> importance(const BaseMesh& mesh, const std::vector<double>& area) {
     constexpr double kLeast = 0.02, kMost = 50;
     double total = 0;
@@ -51,7 +51,7 @@ std::vector<FaceEnergy> energies(const BaseMesh& mesh) {
         for (std::size_t k = 0; k < 3; ++k) {
             const Vec2d p = mesh.position[mesh.faces[f][(k + 1) % 3]].cast<double>(),
                         q = mesh.position[mesh.faces[f][(k + 2) % 3]].cast<double>();
-            // Across the side opposite, of length 1 / height; y grows down and faces run counter-clockwise.
+            // Across the opposite side, of length 1 / height; y grows down and faces run counter-clockwise.
             e.gradient[k] = Vec2d(q.y() - p.y(), p.x() - q.x()) / (2 * area[f]);
         }
         e.weight = weight[f] * area[f];
@@ -60,10 +60,10 @@ std::vector<FaceEnergy> energies(const BaseMesh& mesh) {
     return all;
 }
 
-// One coordinate of the places: some are given, the rest are solved for.
+// One coordinate of the places. Some are given, the rest are solved for.
 class Axis {
   public:
-    // given[v]: its place, or NaN
+    // given[v] is its place, or NaN.
     Axis(const BaseMesh& mesh, const std::vector<FaceEnergy>& energy, std::vector<double> given)
         : mesh_(mesh), energy_(energy), place(std::move(given)), unknown_(mesh.vertex_count(), -1) {
         for (Id v = 0; v < place.size(); ++v)
@@ -81,7 +81,7 @@ class Axis {
         });
     }
 
-    // The best places where the gradient in each face should be scale[f] along `axis`.
+    // Finds the best places if the gradient in each face should be scale[f] along `axis`.
     void solve(const std::vector<double>& scale, int axis) {
         if (count_ == 0) return;
         Eigen::VectorXd right = fixed_;
@@ -123,7 +123,7 @@ class Axis {
     Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor_;
 };
 
-// Where positions in an image's side lie in the drawing's.
+// Where positions along an image's side lie on the drawing's.
 double drawn(double at, int side, int size) {
     return (at + 0.5) * size / side - 0.5;
 }
@@ -140,7 +140,7 @@ std::vector<double> side_places(const BaseMesh& mesh, int axis, int side, int si
 
 VertexMoves retarget_moves(const BaseMesh& mesh, int width, int height, const OutputSize& size) {
     constexpr int kTurns = 30;
-    // Faces smaller than this share of their size under plain scaling are as good as removed.
+    // Faces below this share of their size under uniform scaling are as good as removed.
     constexpr double kLeastShare = 0.02;
     const std::vector<FaceEnergy> energy = energies(mesh);
     Axis x(mesh, energy, side_places(mesh, 0, width, size.width)),
@@ -153,7 +153,7 @@ VertexMoves retarget_moves(const BaseMesh& mesh, int width, int height, const Ou
         for (std::size_t f = 0; f < scale.size(); ++f)
             scale[f] = std::max(0.5 * (x.gradient(f).x() + y.gradient(f).y()), 0.05 * std::min(sx, sy));
     }
-    // Back towards plain scaling until every face keeps an area.
+    // Shrinks the moves towards uniform scaling until every face keeps an area.
     for (double share = 1;; share *= 0.8) {
         VertexMoves moves;
         for (Id v = 0; v < mesh.vertex_count(); ++v) {

@@ -32,7 +32,7 @@ void add_within(const BaseMesh& mesh, const Inside& inside, std::vector<Id>& ver
         if (inside(mesh.position[v].cast<double>())) vertices.push_back(v);
 }
 
-// The ends of edges that belong to one face only.
+// Returns the ends of edges with one face only.
 std::vector<Id> border_vertices(const BaseMesh& mesh) {
     std::vector<std::pair<Id, Id>> edges;
     for (const auto& [a, b, c] : mesh.faces)
@@ -47,7 +47,7 @@ std::vector<Id> border_vertices(const BaseMesh& mesh) {
     return border;
 }
 
-// The vertices selected, ascending, each once; at least one.
+// Returns the selected vertices, ascending, each once; at least one.
 std::vector<Id> selected(const BaseMesh& mesh, int level, const VertexSelection& s) {
     std::vector<Id> vertices = s.vertices;
     for (const Id v : vertices)
@@ -83,7 +83,7 @@ std::vector<Id> selected(const BaseMesh& mesh, int level, const VertexSelection&
     return vertices;
 }
 
-// Adds to `moves` what the handle does to its vertices, and to `fixed` the vertices.
+// Adds the handle's moves of its vertices to `moves`, and the vertices to `fixed`.
 void apply_handle(const BaseMesh& mesh, int level, const WarpHandle& handle, std::vector<Vec2d>& moves,
                   std::vector<char>& fixed) {
     const std::vector<Id> vertices = selected(mesh, level, handle.vertices);
@@ -95,9 +95,9 @@ void apply_handle(const BaseMesh& mesh, int level, const WarpHandle& handle, std
     for (const Id v : vertices) {
         const Vec2d from = mesh.position[v].cast<double>() - center;
         const Vec2d scaled = from.cwiseProduct(handle.scale);
-        // y grows down, so counter-clockwise on screen takes x to -y.
+        // y grows down, so a counter-clockwise turn on screen takes x to -y.
         const Vec2d to(cosine * scaled.x() + sine * scaled.y(), cosine * scaled.y() - sine * scaled.x());
-        // Angle 0 and scale 1 must leave exactly the move.
+        // Angle 0 and scale 1 must give exactly the move.
         moves[v] += to == from ? handle.move : Vec2d(to - from + handle.move);
         fixed[v] = 1;
         if (!moves[v].allFinite())

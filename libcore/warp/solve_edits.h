@@ -1,4 +1,4 @@
-// From edits to how far every vertex of every level moves.
+// From edits to the moves of every vertex of every level.
 #pragma once
 
 #include <vector>
@@ -8,15 +8,15 @@
 
 namespace imgmesh {
 
-/// How far each vertex of a level moves [pixels]: size vertex_count(), or empty where none does.
+/// How far each vertex of a level moves [pixels]. Size vertex_count(), or empty if none moves.
 using VertexMoves = std::vector<Vec2f>;
 
-/// One VertexMoves for each level: the sums of what its edits ask for (paper sec. 4.2). Vertices that no
-/// edit moves have exactly 0.
+/// Returns one VertexMoves for each level: the sums of what its edits ask for (paper sec. 4.2). Vertices that
+/// no edit moves have exactly 0.
 ///
-/// Throws Error(kBadFile) for a level or vertex that is not there, a circle or box without a vertex, a vertex
-/// both in a handle and pinned, and moves that are not finite; the text begins with the `where` of the
-/// culprit.
+/// Throws Error(kBadFile) for a level or vertex that does not exist, a circle or box without a vertex, a
+/// vertex that is both pinned and in a handle, and moves that are not finite. The text begins with the
+/// `where` of the faulty edit or selection.
 std::vector<VertexMoves> solve_edits(const MeshImage& mesh_image, const WarpEdits& edits);
 
 }  // namespace imgmesh

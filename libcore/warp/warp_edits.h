@@ -1,4 +1,4 @@
-// What a user asks a warp to do, as values: which vertices of which level go where.
+// Edits of a warp as values: which vertices of which level move where.
 #pragma once
 
 #include <array>
@@ -10,16 +10,16 @@
 
 namespace imgmesh {
 
-/// Some vertices of one level; every member that is given adds to them. Points are in pixels (image.h), and
-/// "nearest" is nearest in the unedited mesh, of equal ones the lowest number.
+/// Some vertices of one level. Every member that is given adds vertices. Points are in pixels (image.h).
+/// "Nearest" means nearest in the unedited mesh; of equal ones the lowest number counts.
 struct VertexSelection {
-    std::vector<Id> vertices;                     ///< by number, as in the container
+    std::vector<Id> vertices;                     ///< by number in the container
     std::optional<Vec2d> near;                    ///< the vertex nearest to this point
-    std::optional<std::array<double, 3>> circle;  ///< all within: centre x, y and radius
-    std::optional<std::array<double, 3>> beyond;  ///< all outside of a circle
-    std::optional<std::array<double, 4>> box;     ///< all within: left, top, right, bottom
+    std::optional<std::array<double, 3>> circle;  ///< all inside a circle: centre x, y and radius
+    std::optional<std::array<double, 3>> beyond;  ///< all outside a circle
+    std::optional<std::array<double, 4>> box;     ///< all inside a box: left, top, right, bottom
     bool border = false;                          ///< all on the mesh's boundaries
-    std::string where;  ///< how messages call it, e.g. "edits.json: /edits/0/pins/1"
+    std::string where;  ///< its name in messages, e.g. "edits.json: /edits/0/pins/1"
 };
 
 /// Moves a set of vertices together: first scaled about `center`, then turned about it, then moved.
@@ -33,7 +33,7 @@ struct WarpHandle {
 
 enum class WarpSolver {
     kDirect,  ///< only the vertices of the handles move
-    kArap     ///< all vertices move but the pins, so that the mesh stays as rigid as possible
+    kArap     ///< all vertices except the pins move, so that the mesh stays as rigid as possible
 };
 
 /// One edit of one level. Handles that share a vertex add up.
@@ -42,7 +42,7 @@ struct WarpEdit {
     WarpSolver solver = WarpSolver::kDirect;
     std::vector<WarpHandle> handles;
     std::vector<VertexSelection> pins;  ///< vertices that stay; none of them may be in a handle
-    std::string where;                  ///< how messages call it, e.g. "edits.json: /edits/0"
+    std::string where;                  ///< its name in messages, e.g. "edits.json: /edits/0"
 };
 
 /// All edits count from the unedited image and add up, whatever their levels and their order.

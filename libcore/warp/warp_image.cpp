@@ -23,7 +23,7 @@ OutputSize checked_size(const DisplacementField& field, OutputSize size) {
     return size;
 }
 
-// Draws into rows of pixels of kChannels (0: as many as the image has).
+// Draws into rows of pixels with kChannels channels (0: as many as the image has).
 template <int kChannels>
 class ImageSink {
   public:
@@ -152,7 +152,7 @@ class MapSink {
     Vec2f scale_;
 };
 
-// `image` with `alpha` as its A, which it gets where it has none and something is clear.
+// Returns `image` with `alpha` as its A. An A channel is added if there is none and something is transparent.
 void set_alpha(Image& image, const std::vector<float>& alpha) {
     const int channel = image.channel("A");
     if (channel >= 0) {
@@ -182,7 +182,7 @@ void draw(const Image& image, const DisplacementField& field, const std::vector<
     raster_cells(CellPlaces(field, out.width, out.height), out.width, out.height, sink);
 }
 
-// The image as it is; what its own alpha leaves opaque outside the mask becomes clear.
+// Returns the image unchanged, except that opaque pixels outside the mask become transparent.
 Image cut_out(const Image& image, const DisplacementField& field) {
     Image out = image;
     if (!field.has_mask) return out;

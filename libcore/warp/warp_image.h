@@ -1,4 +1,4 @@
-// Draws an image whose pixels have moved; and the same as a map from the drawing back to the image.
+// Draws an image whose pixels have moved, and the map from the drawing back to the image.
 #pragma once
 
 #include "libcore/image/image.h"
@@ -6,36 +6,36 @@
 
 namespace imgmesh {
 
-/// Size of a drawing [pixels]; 0: the image's. Pixel i of a side of n shows what lies at
-/// (i + 0.5) N / n - 0.5 of the image's side N, before pixels move.
+/// Size of a drawing [pixels]; 0 means the image's. Pixel i of a side of n pixels shows the place (i + 0.5) N
+/// / n - 0.5 on the image's side of N pixels, before pixels move.
 struct OutputSize {
     int width = 0;
     int height = 0;
 };
 
-/// The image drawn with every pixel at its own place plus its move, by forward mapping of the pixel grid:
-/// the cell between four pixels is two triangles (cut from top left to bottom right, the other way only where
-/// that alone avoids a fold), so nothing tears. A point of the drawing shows the point (x, y) of its cell,
-/// bilinearly between the four pixels, samples as encoded, all channels alike.
+/// Draws the image with every pixel at its own place plus its move, by forward mapping of the pixel grid. The
+/// cell between four pixels is two triangles, so nothing tears. It is cut from top left to bottom right, or
+/// the other way if only that avoids a fold. A point of the drawing shows the point (x, y) of its cell,
+/// interpolated bilinearly between the four pixels, samples as encoded, all channels alike.
 ///
-/// - Shrinking: where a step of one output pixel to the right goes n source pixels far and one down m, both
-///   rounded and at least 1, the pixel is the mean of n x m such points, evenly over its footprint. A
+/// - Shrinking: let a step of one output pixel cover n source pixels to the right and m down, both rounded
+///   and at least 1. Then the pixel is the mean of n x m points, evenly spread over its footprint. A
 ///   footprint longer than 64 is sampled 64 times.
-/// - Folds: of several triangles over one point those with four drawn pixels win against the boundary's, then
+/// - Folds: of several triangles over one point, those with four drawn pixels win over the boundary's, then
 ///   those not turned over, then the later row, then the later column.
-/// - Alpha is a weight in all means. The image's sides, half a pixel outside the outermost centres, and
-///   pixels outside the mask are clear; sides that move get the share of the pixel that the image covers.
-///   The drawing has the image's channels, and A as well where something is clear.
-/// - An output pixel whose centre is that of a source pixel in an unstretched cell is that pixel to the bit:
-///   without any move the drawing is the image (outside the mask its colours too, clear), and where all
-///   pixels move by whole numbers it is the image shifted.
+/// - Alpha is a weight in all means. Transparent are the area more than half a pixel outside the outermost
+///   centres, and pixels outside the mask. Sides that move get the share of the pixel that the image covers.
+///   The drawing has the image's channels, and also A if something is transparent.
+/// - If the centre of an output pixel is that of a source pixel in an unstretched cell, it is that pixel to
+///   the bit. Without any move the drawing is the image; outside the mask it keeps its colours but is
+///   transparent. If all pixels move by the same whole numbers, the drawing is the image shifted.
 ///
-/// image  of the field's size. Same result for any number of threads.
-/// Throws Error(kBadFile) for an image of another size, Error(kBadArgument) for an output size below 1 or
-/// with more than 2^28 pixels or 65535 a side.
+/// image  of the field's size
+/// The result is the same for any number of threads. Throws Error(kBadFile) for an image of another size,
+/// Error(kBadArgument) for an output size below 1, above 2^28 pixels, or above 65535 on a side.
 Image warp_image(const Image& image, const DisplacementField& field, const OutputSize& size = {});
 
-/// The image's own alpha, size width * height; empty without one.
+/// Returns the image's own alpha, of size width * height, or empty if it has none.
 std::vector<float> alpha_of(const Image& image);
 
 /// Which point of the image each pixel of the drawing shows.
@@ -46,7 +46,7 @@ struct InverseMap {
     std::vector<float> coverage;  ///< share of the pixel that the image covers; 0 outside the mask
 };
 
-/// As warp_image() draws it; `alpha` is alpha_of() the image.
+/// Returns the map of the drawing that warp_image() makes. `alpha` is alpha_of() the image.
 InverseMap inverse_map(const DisplacementField& field, std::vector<float> alpha, const OutputSize& size = {});
 
 }  // namespace imgmesh

@@ -6,14 +6,14 @@
 
 namespace imgmesh {
 
-/// Channels displacement.x, displacement.y: how far each pixel of the image moves [pixels, x right, y
-/// down]; 0 outside the mask. Names that nothing takes for colour.
+/// Returns the channels displacement.x and displacement.y: how far each pixel of the image moves [pixels, x
+/// right, y down], 0 outside the mask. No program takes these names for colour.
 Image forward_map_image(const DisplacementField& field);
 
-/// Channels R, G, A as an STMap: R = (x + 0.5) / W and G = 1 - (y + 0.5) / H of the point (x, y) of the
-/// image, W x H pixels, that each pixel of the drawing shows. So both run from 0 to 1 over the image from
-/// side to side, G upwards, and the centre of the bottom left pixel is (0.5 / W, 0.5 / H). A: the share of
-/// the pixel that the image covers; where it is 0, R and G are 0.
+/// Returns the channels R, G, A of an STMap. For each pixel of the drawing that shows the point (x, y) of the
+/// W x H image, R = (x + 0.5) / W and G = 1 - (y + 0.5) / H. So both run from 0 to 1 across the image, G
+/// upwards, and the centre of the bottom left pixel is (0.5 / W, 0.5 / H). A is the share of the pixel that
+/// the image covers; where it is 0, R and G are 0.
 Image st_map_image(const InverseMap& map, int image_width, int image_height);
 
 }  // namespace imgmesh

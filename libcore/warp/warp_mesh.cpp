@@ -9,10 +9,10 @@
 namespace imgmesh {
 namespace {
 
-// What docs/format.md allows.
+// The range that docs/format.md allows.
 constexpr float kFarthest = 131072;
 
-// The pixel with a face nearest to a point, searched in growing squares; of equal ones the first.
+// Returns the pixel with a face nearest to a point, searched in growing squares; of equal ones the first.
 std::size_t nearest_pixel(const PixelMap& map, const Vec2f& p) {
     const int cx = std::clamp(static_cast<int>(std::lround(p.x())), 0, map.width - 1),
               cy = std::clamp(static_cast<int>(std::lround(p.y())), 0, map.height - 1);
@@ -31,10 +31,10 @@ std::size_t nearest_pixel(const PixelMap& map, const Vec2f& p) {
     return best;
 }
 
-// Adds what moving the vertices of `level` does at the places `at`: linear over each of its faces, in the
-// face that covers the pixel nearest to the place. (Through the pixel map it would be what pixels do, which
-// follow edges of the image closely and so change too fast for vertices: fine faces would turn over where
-// coarse ones are merely stretched.)
+// Adds the moves that the mesh of `level` has at the places `at`. They are linear over each of its faces, in
+// the face that covers the pixel nearest to the place. The pixel map is not used: it follows edges of the
+// image closely and so changes too fast for vertices. Fine faces would turn over where coarse ones are merely
+// stretched.
 void add_moves(const Level& level, const VertexMoves& moves, const std::vector<Vec2f>& at,
                std::vector<Vec2f>& sum) {
     const PixelMap cover = trivial_map(level.mesh, level.map.width, level.map.height);
