@@ -8,50 +8,50 @@
 
 namespace imgmesh {
 
-/// No ring has more vertices (libcore/mesh/ring_mesh.h).
+/// The largest number of vertices in a ring (libcore/mesh/ring_mesh.h).
 inline constexpr std::size_t kMaxFlatRing = 12;
 
-/// Where the vertices of a ring lie when its pivot is at the origin, counter-clockwise (x right, y *up*).
+/// The places of a ring's vertices with its pivot at the origin, counter-clockwise (x right, y *up*).
 struct FlatRing {
     std::array<Vec2d, kMaxFlatRing> at;
     double exponent = 1;  ///< alpha
     double mean = 1;      ///< of the distances to the pivot; one such distance has length 1
 };
 
-/// Lays the ring of a pivot out flat: angles at the pivot are scaled by alpha so that they fill 2 pi, or pi
-/// where the ring is open (the pivot is on a border, which becomes the axis y = 0, exactly); a distance r
+/// Lays the ring of a pivot out flat. Angles at the pivot are scaled by alpha so that they fill 2 pi, or pi
+/// if the ring is open (then the pivot is on a border, which becomes exactly the axis y = 0). A distance r
 /// becomes (r / mean)^alpha. Angles and distances are those of points in `dimensions` dimensions, by inner
 /// products.
 ///
 /// ring   counter-clockwise, at most kMaxFlatRing points; an open one starts on the border at the angle 0
-/// return false where a ring point falls onto the pivot or all angles are 0: there is no such layout
+/// return false if a ring point coincides with the pivot or all angles are 0: no layout exists
 bool flatten_ring(const float* pivot, std::span<const float* const> ring, int dimensions, bool open,
                   FlatRing& flat);
 
-/// A point of a fan (center, ring[k], ring[k + 1]): its triangle and its weights there, which sum to 1.
+/// A point of a fan (center, ring[k], ring[k + 1]): its triangle and its weights, which sum to 1.
 struct FanPoint {
     int triangle = 0;
     std::array<double, 3> weight{};  ///< of the center, of ring[triangle] and of the next one
 };
 
-/// A fan of triangles in the plane in which points are looked up.
+/// A fan of triangles in the plane that locates points.
 class FlatFan {
   public:
-    /// The triangles (center, ring[k], ring[k + 1]) of an open ring, and the one from last to first of a
-    /// closed one. Returns false where one of them is not positively oriented, or nearly degenerate: 2 area
-    /// <= kLeastFlatness longest^2. At most kMaxFlatRing ring points.
+    /// Takes the triangles (center, ring[k], ring[k + 1]) of an open ring, and for a closed one also the
+    /// last. Returns false if a triangle is not positively oriented or nearly degenerate: 2 area <=
+    /// kLeastFlatness longest^2. At most kMaxFlatRing ring points.
     bool set(const Vec2d& center, std::span<const Vec2d> ring, bool closed);
-    /// The triangle that holds p best, with weights clamped to it. The fan has a triangle.
+    /// Returns the triangle nearest to p, with weights clamped to it. The fan has a triangle.
     FanPoint locate(const Vec2d& p) const;
     int size() const { return size_; }
 
-    /// Thinner triangles are not stable to look points up in. Larger values reject more collapses and make
-    /// the map worse (docs/decisions/0007-tracked-map.md).
+    /// Locating points in thinner triangles is not stable. Larger values reject more collapses and make the
+    /// map worse (docs/decisions/0007-tracked-map.md).
     static constexpr double kLeastFlatness = 1e-6;
 
   private:
     struct Triangle {
-        double rx, ry, sx, sy;  // ring points less the center
+        double rx, ry, sx, sy;  // ring points minus the center
         double inverse;         // 1 / (2 area)
     };
     Vec2d center_ = Vec2d::Zero();

@@ -12,9 +12,9 @@ namespace imgmesh {
 namespace {
 
 // Source: projected block Gauss-Seidel. The features of one vertex share one weight, so its best colour is
-// the one in gamut that is nearest to its unconstrained best. in_gamut() finds one close by, not the nearest:
-// where that is farther away than the colour at hand, the colour stays, and the error never rises.
-// Other features have no gamut.
+// the one in the gamut nearest to its unconstrained best. in_gamut() finds a close one, not the nearest. If
+// that is farther away than the present colour, the colour stays, so the error never rises. Other features
+// have no gamut.
 
 Vec3f limited(const Vec3f& color, const FeatureSpace& space) {
     if (space.color_weight == 1) return in_gamut(color, space.gamut);
@@ -24,8 +24,8 @@ void set_color(BaseMesh& mesh, Id v, const Vec3f& color) {
     std::copy(color.data(), color.data() + 3, mesh.feature_of(v));
 }
 
-// What the pixels of one face say about its three corners: for each a row of sums of w w' and, behind them,
-// of w feature'. Room for C features.
+// What the pixels of one face contribute to its three corners: for each corner the sums of w w', then those
+// of w feature'. There is room for C features.
 template <int C>
 struct FaceSums {
     double row[3][3 + C] = {};
@@ -38,13 +38,13 @@ struct FaceSums {
     }
 };
 
-// Of C features exactly where C is 3, so that the usual case has loops of fixed length; else of up to C.
+// Exactly C features if C is 3, so that the usual case has loops of fixed length; otherwise at most C.
 template <int C>
 int feature_count(int channels) {
     return C == 3 ? 3 : channels;
 }
 
-// The sums over some of the pixels, of the faces from `first` on.
+// The sums over some of the pixels, for the faces from `first` on.
 template <int C>
 struct PartialSums {
     Id first = 0;
@@ -84,7 +84,7 @@ struct PartialSums {
 template <int C>
 std::vector<FaceSums<C>> sum_over_pixels(const BaseMesh& mesh, const FeatureImage& feature,
                                          const std::vector<FitTerm>& terms) {
-    // Each part has sums of its own, of at most all faces, so there are only as many parts as pay in memory.
+    // Each part has sums for up to all faces, so the number of parts is limited by the memory they take.
     constexpr std::size_t kParts = 8;
     const std::size_t pixels = feature.pixel_count();
     PartialSums<C> parts[kParts];
@@ -101,8 +101,8 @@ std::vector<FaceSums<C>> sum_over_pixels(const BaseMesh& mesh, const FeatureImag
     return sums;
 }
 
-// For every vertex the corners of faces that it is, as face * 3 + corner: those of v from first[v] to first[v
-// + 1].
+// For every vertex v the face corners that it is, as face * 3 + corner, from index first[v] to first[v +
+// 1].
 struct CornersOfVertices {
     std::vector<std::size_t> first, corner;
 };
@@ -133,7 +133,7 @@ struct Link {
     float weight;
 };
 
-// The equations of some vertices, in the order of `members`, so that each pass reads them from begin to end.
+// The equations of some vertices, in the order of `members`, so that each pass reads them in sequence.
 template <int C>
 struct ClassSystem {
     std::vector<VertexSystem<C>> vertices;
@@ -164,7 +164,7 @@ void fit(BaseMesh& mesh, const FeatureImage& feature, const std::vector<FitTerm>
          const FeatureSpace& space) {
     const int features = feature_count<C>(mesh.channels);
     constexpr int kGrain = 512;
-    // Class by class, as no two of a class share a face: each sees the same neighbours from any thread.
+    // Class by class: no two vertices of a class share a face, so no thread sees another's change.
     const std::vector<std::vector<Id>> classes = vertex_coloring(mesh.faces, mesh.vertex_count());
     std::vector<std::optional<ClassSystem<C>>> systems(classes.size());
     {
@@ -175,11 +175,11 @@ void fit(BaseMesh& mesh, const FeatureImage& feature, const std::vector<FitTerm>
             systems[k].emplace(mesh, sums, corners, classes[k]);
         });
     }
-    // A vertex that only pixels with tiny weights touch would be free to run away: pull it weakly to where it
-    // is.
+    // A vertex that only pixels with tiny weights touch is hardly determined. Pull it weakly to its present
+    // value.
     constexpr double kPull = 1e-3;
-    // The normal equations are those of a mass matrix: each pass shrinks an error to a third or less. More
-    // than 6 passes change the RMS in the fourth digit.
+    // The normal equations have a mass matrix: each pass shrinks an error to a third or less. More than 6
+    // passes change the RMS in the fourth digit.
     constexpr int kPasses = 6;
     if (space.color)
         parallel_blocks(0, static_cast<int>(mesh.vertex_count()), kGrain, [&](int begin, int end) {

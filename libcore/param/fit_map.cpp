@@ -15,8 +15,8 @@
 namespace imgmesh {
 namespace {
 
-// Makes `map` say where pixels lie, weights not yet rounded: what the colours are fitted to between the
-// rounds.
+// Sets `map` to the places of pixels with weights that are not rounded yet: colours are fitted to it between
+// the rounds.
 void set_unrounded(const PixelEmbedding& pixels, const std::vector<FaceField>& fields, PixelMap& map) {
     parallel_blocks(0, map.height, 16, [&](int first, int last) {
         for (int y = first; y < last; ++y)
@@ -55,7 +55,7 @@ float longest_edge(const BaseMesh& mesh) {
     return longest;
 }
 
-// Fits the colours to both a map and the drawing without it, and ends on what a container holds.
+// Fits the colours to a map and to the drawing without it, and rounds them to what a container holds.
 class ColorFit {
   public:
     ColorFit(BaseMesh& mesh, const FeatureImage& feature, const FitParams& params, const PixelMap& trivial)
@@ -86,7 +86,7 @@ PixelMap fit_map(BaseMesh& mesh, const FeatureImage& feature, const FitParams& p
     const std::vector<Face> neighbors = face_neighbors(mesh);
     PixelEmbedding pixels = resting_pixels(trivial, mask);
     colors.fit(trivial);
-    // A strip of one pixel has no cell whose fold could be watched; its map stays trivial.
+    // A strip of one pixel has no cells that could fold; its map stays trivial.
     const int rounds = params.color_weight > 0 && feature.width > 1 && feature.height > 1 ? params.rounds : 0;
     PixelMap between;
     if (rounds > 1) between = {pixels.width, pixels.height, parallel_copy(trivial.coords)};

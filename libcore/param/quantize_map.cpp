@@ -18,7 +18,7 @@ double area2(const Vec2d& p, const Vec2d& q, const Vec2d& r) {
     return (q.x() - p.x()) * (r.y() - p.y()) - (q.y() - p.y()) * (r.x() - p.x());
 }
 
-// The least of the four triangles of a cell. Those with a corner outside a mask are not-a-number and do not
+// The least of the four triangles of a cell. Triangles with a corner outside a mask are NaN and do not
 // count.
 double cell_area2(const Vec2d& tl, const Vec2d& tr, const Vec2d& bl, const Vec2d& br) {
     double least = std::numeric_limits<double>::infinity();
@@ -50,11 +50,11 @@ class Storing {
                         map_.row(y)[static_cast<std::size_t>(x)] =
                             rounded(face, pixels_.image_of(x, y).cast<double>());
         });
-        // Mending is for the odd cell: photographs have one in a thousand at a few vertices, none at 1 %.
-        // Where whole regions fold, the faces are too large, and trying each cell would take minutes.
+        // Few cells need repair: one in a thousand in photographs with few vertices, none at 1 %. Where whole
+        // regions fold, the faces are too large, and trying each cell would take minutes.
         const std::size_t mendable = 64 + map_.coords.size() / 64;
         constexpr int kPasses = 40;
-        int idle = 0;  // passes that moved nothing; odd and even ones try different places
+        int idle = 0;  // passes without a move; odd and even ones try different places
         for (int pass = 0; pass < kPasses && idle < 2; ++pass) {
             const std::vector<std::pair<int, int>> cells = bad_cells();
             if (cells.empty()) return std::move(map_);
@@ -76,8 +76,8 @@ class Storing {
     }
     Vec2d position(int x, int y) const { return position(map_.coords[pixels_.index(x, y)]); }
 
-    // The grid point nearest to p in `face`, by largest remainders, so that the three weights sum to one
-    // exactly.
+    // Returns the grid point of `face` nearest to p, by largest remainders, so that the three weights sum to
+    // one exactly.
     PixelCoord rounded(Id face, const Vec2d& p) const {
         const auto [a, b, c] = mesh_.faces[face];
         const Vec2d pa = mesh_.position[a].cast<double>(), ab = mesh_.position[b].cast<double>() - pa,
@@ -110,7 +110,7 @@ class Storing {
         return all;
     }
 
-    // The least triangle of the up to four cells around pixel (x, y).
+    // Returns the least triangle of the up to four cells around pixel (x, y).
     double area_around(int x, int y) const {
         double least = std::numeric_limits<double>::infinity();
         for (int cy = std::max(0, y - 1); cy <= std::min(y, map_.height - 2); ++cy)
@@ -120,8 +120,8 @@ class Storing {
         return least;
     }
 
-    // Moves each pixel of a cell to the candidate, near where it should be, that leaves the fattest triangles
-    // around it. Returns whether any moved.
+    // Moves each pixel of a cell to the candidate near its place that leaves the fattest triangles around it.
+    // Returns whether any pixel moved.
     bool repair(int cell_x, int cell_y, int pass) {
         bool moved = false;
         for (int corner = 0; corner < 4; ++corner) {
@@ -131,7 +131,7 @@ class Storing {
             PixelCoord best = coord;
             double best_area = area_around(x, y);
             const Vec2d center = pass % 2 ? position(coord) : pixels_.image_of(x, y).cast<double>();
-            // From a fraction of the rounding error up to most of a pixel.
+            // Candidates reach from a fraction of the rounding error up to most of a pixel.
             for (double radius = 0.01; radius < 1.0; radius *= 2)
                 for (int direction = 0; direction < 8 && best_area < 2 * kLeastStoredArea; ++direction) {
                     const double angle = direction * 0.78539816339744831;

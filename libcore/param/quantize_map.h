@@ -1,4 +1,4 @@
-// From where pixels lie to weights that a container can hold, still without a fold.
+// Turns the places of pixels into weights that a container can hold, without a fold.
 #pragma once
 
 #include <optional>
@@ -9,14 +9,14 @@
 
 namespace imgmesh {
 
-/// The least twice-area of a stored pixel triangle [px^2]: far above what evaluation in single precision
-/// loses.
+/// The least twice-area of a stored pixel triangle [px^2]: far above the rounding errors of single
+/// precision.
 inline constexpr double kLeastStoredArea = 0.01;
 
-/// Weights of every pixel inside, rounded to the grid of `precision` so that they sum to one, and the pixel
-/// triangles (both diagonals of each 2x2 cell) kept at kLeastStoredArea: pixels of a cell that rounding would
-/// fold are moved to other nearby grid points. Nothing where that fails: some face is too large for weights
-/// so coarse.
+/// Returns the weights of every pixel inside, rounded to the grid of `precision` so that they sum to one. All
+/// pixel triangles (both diagonals of each 2x2 cell) keep kLeastStoredArea: where rounding would fold a cell,
+/// its pixels move to other nearby grid points. Returns nothing if that fails: some face is too large for
+/// such coarse weights.
 std::optional<PixelMap> quantize_map(const BaseMesh& mesh, const PixelEmbedding& pixels,
                                      const std::vector<FaceField>& fields, const std::vector<Face>& neighbors,
                                      WeightPrecision precision);

@@ -1,7 +1,7 @@
-// Source: docs/decisions/0002-relaxed-map.md. The paper tracks pixels through every collapse instead
-// (sec. 3.3).
+// Source: docs/decisions/0002-relaxed-map.md. The paper tracks pixels through every collapse instead (sec.
+// 3.3).
 //
-// A pixel's step is written twice: move_pixel() says what happens, move_eight() does the same for eight
+// A pixel's step is written twice. move_pixel() is the clear form; move_eight() does the same for eight
 // pixels side by side, bit for bit (a test compares them).
 #include "libcore/param/relax.h"
 
@@ -22,10 +22,10 @@ namespace {
 constexpr float kLongestStep = 0.5f;
 constexpr int kHalvings = 2;
 
-// A pixel that slides along a boundary lies on the edge of a face, up to the rounding of its weights.
+// A pixel that slides along a boundary lies on an edge of a face, up to the rounding of its weights.
 constexpr float kWeightSlack = 1e-4f;
 
-// The eight pixels around one, from the east over the south. Straight neighbours are the even ones.
+// The eight pixels around one, from the east over the south. Even indices are straight neighbours.
 constexpr int kStepX[8] = {1, 1, 0, -1, -1, -1, 0, 1};
 constexpr int kStepY[8] = {0, 1, 1, 1, 0, -1, -1, -1};
 
@@ -37,12 +37,12 @@ IMGMESH_INLINE T area2(T px, T py, T ax, T ay, T bx, T by) {
     return (ax - px) * (by - py) - (ay - py) * (bx - px);
 }
 
-// The lesser one; `a` where b is not a number.
+// The lesser of two; `a` if b is NaN.
 template <typename T>
 IMGMESH_INLINE T lesser(T a, T b) {
     return b < a ? b : a;
 }
-// `low` where x is not a number.
+// `low` if x is NaN.
 template <typename T>
 IMGMESH_INLINE T clamped(T x, float low, float high) {
     const T floor = T{} + low, ceiling = T{} + high;
@@ -50,7 +50,7 @@ IMGMESH_INLINE T clamped(T x, float low, float high) {
     return x < ceiling ? x : ceiling;
 }
 
-// The Gauss-Newton step at (px, py) towards the face's features there being the pixel's, and towards (tx,
+// The Gauss-Newton step at (px, py): it makes the face's features there the pixel's, and pulls towards (tx,
 // ty).
 template <typename T>
 struct NewtonStep {
@@ -60,7 +60,7 @@ struct NewtonStep {
     IMGMESH_INLINE NewtonStep(T px, T py, T tx, T ty, float smoothness)
         : mu(smoothness), bx(mu * (tx - px)), by(mu * (ty - py)) {}
 
-    // A feature of gradient (gx, gy) that the face has too much of by e.
+    // Adds a feature with gradient (gx, gy) of which the face has e too much.
     IMGMESH_INLINE void add(T gx, T gy, T e) {
         gxx += gx * gx;
         gxy += gx * gy;
@@ -68,7 +68,7 @@ struct NewtonStep {
         bx -= gx * e;
         by -= gy * e;
     }
-    // The first features, of which `field` holds the values of a FaceField.
+    // Adds the first features, whose values are in the FaceField `field`.
     IMGMESH_INLINE void add_fields(const T* field, const T* color, int features, T px, T py) {
         const T dx = px - field[0], dy = py - field[1];
         for (int c = 0; c < features; ++c) {
@@ -77,8 +77,8 @@ struct NewtonStep {
         }
     }
     IMGMESH_INLINE void solve(T& sx, T& sy) const {
-        // Sums of what is never negative. (Of J'J + mu I as one matrix, J'J steep and singular, only rounding
-        // would be left.)
+        // Sums of terms that are never negative. (In J'J + mu I as one matrix, with J'J steep and singular,
+        // only rounding would be left.)
         T minor = gxx * gyy - gxy * gxy;
         minor = minor > T{} ? minor : T{};
         const T inverse = 1 / (mu * (mu + gxx + gyy) + minor);
@@ -87,7 +87,7 @@ struct NewtonStep {
     }
 };
 
-// The least of the twelve triangles at (x, y) whose other corners are among the eight neighbours.
+// Returns the least of the twelve triangles at (x, y) with other corners among the eight neighbours.
 template <typename T>
 IMGMESH_INLINE T least_area(T x, T y, const T* nx, const T* ny) {
     T least = T{} + std::numeric_limits<float>::max();
@@ -110,7 +110,7 @@ struct Sweep {
         const int w = pixels.width, h = pixels.height;
         const std::size_t index = pixels.index(x, y);
         if (pixels.outside(index)) return;
-        // Pixels that do not exist, or are outside, are not-a-number, which is never the lesser.
+        // Pixels that do not exist, or are outside, are NaN, which is never the lesser.
         float nx[8], ny[8], mean_x = 0, mean_y = 0, count = 0;
         for (int k = 0; k < 8; ++k) {
             const int i = x + kStepX[k], j = y + kStepY[k];
@@ -153,15 +153,15 @@ struct Sweep {
         pixels.face[index] = face;
     }
 
-    // Whether the walk to (x, y) ended there, and not at a boundary in between. A rectangle has none.
+    // Whether locating (x, y) ended there and not at a boundary in between. A rectangle has none between.
     bool may_lie_in(Id face, float x, float y) const {
         if (pixels.freedom.empty()) return true;
         const float u = fields[face].u(x, y), v = fields[face].v(x, y);
         return std::min({u, v, 1 - u - v}) >= -kWeightSlack;
     }
 
-    // move_pixel() for (x, y), (x + 2, y), ... (x + 14, y), none of them on a side or a boundary; three
-    // features.
+    // Does what move_pixel() does for (x, y), (x + 2, y), ... (x + 14, y), none of them on a side or a
+    // boundary, with three features.
     IMGMESH_INLINE void move_eight(int x, int y) const {
         const std::size_t index = pixels.index(x, y);
         Float8 field[2][8];
@@ -255,7 +255,7 @@ struct Sweep {
 };
 
 std::uint8_t freedom_of(const Mask& mask, int x, int y) {
-    // Where a boundary begins and ends at a pixel does not depend on diagonals.
+    // The places where a boundary begins and ends at a pixel do not depend on diagonals.
     const PixelFans fans = fans_at(mask, x, y, [](int) { return false; });
     if (fans.count != 1) return kPinnedX | kPinnedY;
     const Fan& fan = fans.fan[0];

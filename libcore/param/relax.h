@@ -1,5 +1,5 @@
-// The relaxed pixel map: every pixel moves a little to where the base mesh has its colour, while the pixel
-// grid stays a grid without a fold.
+// The relaxed pixel map: every pixel moves a little to where the base mesh has its colour. The pixel grid
+// stays without a fold.
 #pragma once
 
 #include <vector>
@@ -12,19 +12,19 @@
 
 namespace imgmesh {
 
-/// What a pixel of a masked image may do, as bits.
+/// How a pixel of a masked image may move, as bits.
 enum Freedom : std::uint8_t {
     kPinnedX = 1,  ///< x stays
     kPinnedY = 2,  ///< y stays
     kFree = 4      ///< inside the boundary, with triangles all around: its straight neighbours are inside too
 };
 
-/// Where each pixel of a W x H image lies on the base mesh, while it is being moved.
+/// The place of each pixel of a W x H image on the base mesh while it is being moved.
 struct PixelEmbedding {
     int width = 0;
     int height = 0;
-    std::vector<float> dx, dy;  ///< image of the pixel less the pixel [pixels]; NaN outside a mask
-    std::vector<Id> face;       ///< the face that the image lies in; kNone outside a mask
+    std::vector<float> dx, dy;  ///< place on the mesh minus the pixel [pixels]; NaN outside a mask
+    std::vector<Id> face;       ///< the face that holds the place; kNone outside a mask
     std::vector<std::uint8_t> freedom =
         {};  ///< of a masked image's pixels, Freedom bits; empty without a mask
 
@@ -45,26 +45,26 @@ struct PixelEmbedding {
     }
 };
 
-/// Every pixel inside the mask at its own place, in its face of `trivial`, which knows that mask. Pixels on a
-/// straight horizontal or vertical part of the mask's boundary may slide along it; where it bends or pinches,
-/// and in strips one pixel wide, they rest. So the map takes the dense mesh onto itself.
+/// Puts every pixel inside the mask at its own place, in its face of `trivial`, which has the same mask.
+/// Pixels on a straight horizontal or vertical part of the mask's boundary may slide along it. Where it bends
+/// or pinches, and in strips one pixel wide, they rest. So the map takes the dense mesh onto itself.
 PixelEmbedding resting_pixels(const PixelMap& trivial, const Mask& mask = {});
 
-/// The least twice-area of a pixel triangle that moving keeps [px^2]; at rest it is 1.
+/// The least twice-area that a pixel triangle keeps during moves [px^2]; at rest it is 1.
 inline constexpr float kLeastMovingArea = 0.05f;
 
-/// `sweeps` of Gauss-Newton steps on sum |c(P) - c|^2 + mu |P - t|^2, c(P) the base mesh's colour at P, c the
-/// pixel's, t the pixel displaced like the mean of its four neighbours. Steps are at most half a pixel and
-/// are halved until all four triangles (both diagonals) of each 2x2 cell around the pixel keep
-/// kLeastMovingArea, so the map stays a bijection. Pixels of the image's sides slide along them, corners
-/// rest; of a masked image they do as `pixels.freedom` says, its triangles are those that have no pixel
-/// outside, and a pixel that would leave the mesh waits.
+/// Takes `sweeps` of Gauss-Newton steps on the sum of |c(P) - c|^2 + mu |P - t|^2. c(P) is the base mesh's
+/// colour at P, c the pixel's, and t the pixel displaced like the mean of its four neighbours. A step is at
+/// most half a pixel. It is halved until all four triangles (both diagonals) of each 2x2 cell around the
+/// pixel keep kLeastMovingArea, so the map stays a bijection. Pixels of the image's sides slide along them,
+/// corners rest. In a masked image `pixels.freedom` decides that, triangles with a pixel outside do not
+/// count, and a pixel that would leave the mesh waits.
 ///
 /// feature    the image, size of `pixels`; both sides at least 2
-/// further    auxiliary_fields() where it has more than three features
+/// further    auxiliary_fields() if it has more than three features
 /// smoothness mu [feature^2 / px^2], > 0
-/// Pixels of one parity of (x, y) move at once and do not see each other: same result for any number of
-/// threads.
+/// Pixels of one parity of (x, y) move at once and do not depend on each other, so the result is the same for
+/// any number of threads.
 void relax(PixelEmbedding& pixels, const std::vector<FaceField>& fields, const std::vector<Face>& neighbors,
            const FeatureImage& feature, float smoothness, int sweeps, const AuxiliaryFields& further = {});
 

@@ -1,7 +1,7 @@
-// Source: Sorkine, Alexa, "As-Rigid-As-Possible Surface Modeling", SGP 2007. Minimises over q and R energy
+// Source: Sorkine, Alexa, "As-Rigid-As-Possible Surface Modeling", SGP 2007. Minimises over places q and
+// rotations R the energy
 //     sum over edges ij of w_ij ( |q_i - q_j - R_i (p_i - p_j)|^2 + |q_j - q_i - R_j (p_j - p_i)|^2 )
-// alternately: the best rotations R for given places q (in the plane, angles), then the best places for given
-// rotations (a Laplace equation).
+// alternately: the best R for given q (in the plane, angles), then the best q for given R (Laplace equation).
 #include "libcore/warp/arap.h"
 
 #include <Eigen/SparseCholesky>
