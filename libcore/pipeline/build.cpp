@@ -24,7 +24,7 @@
 namespace imgmesh {
 namespace {
 
-// The channels that the mesh is made from, as the file has them.
+// Returns the channels of the mesh under their names in the file.
 std::vector<std::string> used_channels(const Image& image, const std::vector<ChannelChoice>& choices) {
     if (choices.empty()) return split_names(image.channel_names).color;
     std::vector<std::string> names;
@@ -32,8 +32,8 @@ std::vector<std::string> used_channels(const Image& image, const std::vector<Cha
     return names;
 }
 
-// Features as a reader gets them: colours without their weight on the colours' grid, other channels in their
-// own unit.
+// Returns features as a reader gets them: colours without their weight and on the colours' grid, other
+// channels in their own unit.
 void take_weights_out(BaseMesh& mesh, const FeatureSpace& space) {
     for (Id v = 0; v < mesh.vertex_count(); ++v) {
         float* f = mesh.feature_of(v);
@@ -44,7 +44,7 @@ void take_weights_out(BaseMesh& mesh, const FeatureSpace& space) {
     }
 }
 
-// A part [begin, end] of the whole, as a progress of its own.
+// Maps the progress of a part to [begin, end] of the whole.
 Progress part_of(const Progress& whole, double begin, double end) {
     if (!whole) return {};
     return [=](double f, std::string_view stage) { whole(begin + f * (end - begin), stage); };
@@ -57,7 +57,7 @@ std::int64_t largest_patch(const Level& level) {
     return *std::max_element(pixels.begin(), pixels.end());
 }
 
-// Empty where all pixels are inside.
+// Returns an empty mask if all pixels are inside.
 Mask checked(Mask mask, const Image& image) {
     if (mask.empty()) return mask;
     if (mask.width != image.width || mask.height != image.height)
@@ -69,7 +69,7 @@ Mask checked(Mask mask, const Image& image) {
     return mask;
 }
 
-// What makes levels of collapsed meshes.
+// Turns collapsed meshes into levels.
 struct Pipeline {
     const FeatureImage& feature;
     const FeatureSpace& space;
@@ -93,8 +93,8 @@ struct Pipeline {
         return collapsed;
     }
 
-    // Refinement, pixel map (`tracked` where there is one) and colours. Takes the share [begin, end] of the
-    // progress.
+    // Refines, makes the pixel map (unless `tracked` has one) and fits colours. Takes the share [begin, end]
+    // of the progress.
     Level finish(SimplifyResult&& collapsed, const SimplifyParams& limits, std::optional<PixelMap> tracked,
                  LevelReport& figures, double begin, double end) const {
         Stopwatch watch;
@@ -126,7 +126,7 @@ struct Pipeline {
         return level;
     }
 
-    // Of the map of a mesh that is not refined, after one round.
+    // Estimates the error of the map of an unrefined mesh after one round.
     double estimated_rms(SimplifyResult&& collapsed) const {
         Stopwatch watch;
         FitParams fit;
@@ -141,7 +141,7 @@ struct Pipeline {
     }
 };
 
-// Collapse and maps with the collapse's limits as they stand.
+// Collapses and makes maps with the present limits of the collapse.
 void build_levels(const Pipeline& pipeline, const SimplifyParams& limits,
                   std::span<const SimplifyTarget> targets, MeshImage& mesh_image) {
     Stopwatch watch;
@@ -165,11 +165,11 @@ void build_levels(const Pipeline& pipeline, const SimplifyParams& limits,
     }
 }
 
-// The share of the final error of an estimate, a mesh without refinement whose pixels have moved for one
-// round. 0.75 to 0.9 on photographs with the usual refinement; what it is off costs a finished mesh at worst.
+// Final error / error of an estimate: a mesh without refinement whose pixels have moved for one round. 0.75
+// to 0.9 on photographs with the usual refinement. A wrong value costs at worst one more finished mesh.
 constexpr double kEstimateShare = 0.85;
 
-// Meshes for the search of a wanted error.
+// Meshes for the search by a wanted error.
 class RmsMeshes : public MeasuredMeshes {
   public:
     RmsMeshes(const Pipeline& pipeline, const GridMesh& grid, SimplifyParams& limits, MeshImage& mesh_image)
@@ -217,7 +217,7 @@ class RmsMeshes : public MeasuredMeshes {
 
     const Pipeline& pipeline_;
     SimplifyParams& limits_;
-    int smoothing_ = 0;  // of the run at hand
+    int smoothing_ = 0;  // of the present run
     Progress collapsing_;
     LodMeshes lods_;
     MeshImage& mesh_image_;
@@ -227,16 +227,16 @@ class RmsMeshes : public MeasuredMeshes {
     double least_ = std::numeric_limits<double>::infinity();
 };
 
-// The level that StopParams::rms asks for. limits.smoothing becomes what its collapse had.
+// Returns the level that StopParams::rms asks for. Sets limits.smoothing to that of its collapse.
 void build_to_rms(const Pipeline& pipeline, SimplifyParams& limits, MeshImage& mesh_image) {
     const GridMesh grid = pipeline.grid();
     const double rms = *pipeline.params.stop.rms;
     mesh_image.levels.clear();
-    // All of the dense mesh: strips of one pixel have more vertices than pixels.
+    // All vertices of the dense mesh: strips of one pixel have more vertices than pixels.
     const auto vertices = grid.mask.empty()
                               ? static_cast<std::int64_t>(grid.vertex_count())
                               : pipeline.report.pixels + static_cast<std::int64_t>(grid.copies.size());
-    // Photographs reach an RMS of 3.8 with 1 % of their pixels, and the search begins with more than most
+    // Photographs reach an RMS of 3.8 with 1 % of their pixels. The search starts with more than most
     // need.
     constexpr double kUsualRms = 3.8, kUsualShare = 0.01, kAhead = 5, kPower = 2.6, kMost = 1.0 / 8;
     const double share = kAhead * kUsualShare * std::pow(kUsualRms / std::max(rms, 1e-3), kPower);
@@ -258,8 +258,8 @@ BuildResult build_mesh_image(const Image& image, const BuildParams& asked, const
             throw Error(ErrorKind::kUnsupported, "the image has samples that are not finite");
     mask = checked(std::move(mask), image);
     Stopwatch watch;
-    // What lies outside of the colours that a container holds could only mislead the fit: L*u*v* of negative
-    // light has no bound.
+    // Values outside the colours that a container holds would mislead the fit: L*u*v* of negative linear RGB
+    // has no bound.
     const FeatureSpace space = feature_space(image, asked.channels, mask);
     const bool refinable =
         space.color && space.features() == 3 && space.color_weight == 1 && space.gamut == Gamut::kDisplay;
@@ -286,7 +286,7 @@ BuildResult build_mesh_image(const Image& image, const BuildParams& asked, const
         else
             build_levels(pipeline, collapse, targets, result.mesh_image);
         if (!params.max_cluster) break;
-        // The collapse bounds a face's area; the map decides how many pixels that becomes.
+        // The collapse bounds a face's area. The map decides how many pixels that is.
         std::int64_t largest = 0;
         for (const Level& level : levels) largest = std::max(largest, largest_patch(level));
         if (largest <= *params.max_cluster) break;

@@ -7,8 +7,8 @@
 namespace imgmesh {
 namespace {
 
-// Rungs are 1.5 % apart, up to a third more than what is asked for: what a prediction may be off. Of meshes
-// that are not small beside the image they would take too much memory.
+// Kept meshes are 1.5 % apart, up to a third finer than requested: predictions may be that far off. If meshes
+// are not small compared with the image, keeping them would take too much memory.
 constexpr double kStep = 0.015, kReach = 1.35, kSmall = 1.0 / 16;
 
 std::int64_t count_of(const SimplifyResult& level) {
@@ -26,9 +26,9 @@ SimplifyResult LodMeshes::mesh(std::int64_t vertices, bool lods) {
         if (count_of(level) <= vertices &&
             static_cast<double>(count_of(level)) >= (1 - kStep) * static_cast<double>(vertices) - 1)
             return level;
-    // A run that has come to an end early has nothing coarser.
+    // A run that has ended early has nothing coarser.
     if (!run_ || reached_ < vertices) {
-        run_.reset();  // before the next one takes its memory
+        run_.reset();  // frees its memory before the next run starts
         kept_.clear();
         run_.emplace(grid_, params_(vertices));
         reached_ = std::numeric_limits<std::int64_t>::max();

@@ -1,4 +1,4 @@
-// Meshes of a collapse at numbers of vertices that are not known beforehand.
+// Meshes of one collapse at numbers of vertices that are not known beforehand.
 #pragma once
 
 #include <cstdint>
@@ -11,20 +11,20 @@
 
 namespace imgmesh {
 
-/// One collapse, which leaves copies of the meshes just above each that was asked for, so that the next can
-/// be a little finer as well. For a much finer one it begins anew.
+/// One collapse. It keeps meshes just above each requested number of vertices, so that a later request may be
+/// a little finer. For a much finer one it starts again.
 class LodMeshes {
   public:
-    /// params  of a collapse that begins, for the number of vertices that it is to reach
-    /// Both grid and progress must live as long.
+    /// params  of a new collapse, for the number of vertices that it is to reach
+    /// Both grid and progress must outlive this object.
     LodMeshes(const GridMesh& grid, std::function<SimplifyParams(std::int64_t)> params,
               const Progress& progress);
 
-    /// The mesh with at most `vertices` (>= 4) and about 1.5 % fewer at the least, or the coarsest there is;
-    /// further ones up to a third larger are kept. Without `lods` exactly as many, and none is kept.
+    /// Returns the mesh with at most `vertices` (>= 4), at least 1.5 % fewer, or the coarsest possible; keeps
+    /// up to a third finer ones. Without `lods` it has exactly as many, and none is kept.
     SimplifyResult mesh(std::int64_t vertices, bool lods);
 
-    /// How often the collapse has begun.
+    /// Returns how often the collapse has started.
     int runs() const { return runs_; }
 
   private:
@@ -32,7 +32,7 @@ class LodMeshes {
     std::function<SimplifyParams(std::int64_t)> params_;
     const Progress& progress_;
     std::optional<SimplifyRun> run_;
-    std::int64_t reached_ = 0;          // vertices at which the run stands
+    std::int64_t reached_ = 0;          // vertices that the present run has reached
     std::vector<SimplifyResult> kept_;  // finest first
     int runs_ = 0;
 };

@@ -1,4 +1,4 @@
-// Refinement of one level in the space whose error counts.
+// Refinement of one level in the colour space of its objective.
 #pragma once
 
 #include "libcore/pipeline/build.h"
@@ -6,9 +6,9 @@
 
 namespace imgmesh {
 
-/// `params.rounds` of refine() on a mesh and an image in L*u*v*. For Objective::kRgb both are taken to sRGB,
-/// encoded, and the mesh back: the error is that of colours interpolated linearly in encoded sRGB. The mesh's
-/// colours end as what the objective wants.
+/// Runs `params.rounds` of refine() on a mesh and an image in L*u*v*. For Objective::kRgb both are converted
+/// to encoded sRGB, and the mesh back. The error is then that of colours interpolated linearly in encoded
+/// sRGB. The mesh gets the colours that are best for the objective.
 RefineReport refine_level(BaseMesh& mesh, const FeatureImage& feature, const Mask& mask, Objective objective,
                           RefineParams params, const Progress& progress);
 

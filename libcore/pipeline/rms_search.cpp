@@ -11,14 +11,14 @@ using Probe = MeasuredMeshes::Probe;
 
 // RMS ~ vertices^-slope: 0.3 on photographs with few vertices to 0.7 with many.
 constexpr double kUsualSlope = 0.45, kLeastSlope = 0.2, kMostSlope = 1.2;
-// The share of the wanted error that is aimed for, and from which on it is reached: 1.5 % of the error are 4
-// % of the vertices.
+// The share of the wanted error to aim for, and the share that is close enough: 1.5 % of the error are 4 % of
+// the vertices.
 constexpr double kAim = 0.9925, kReached = 0.985;
-// With few vertices errors jump by a percent from one mesh to the next: after two meshes less will do.
+// With few vertices errors jump by a percent between meshes, so precision is relaxed after two meshes.
 constexpr double kYield = 0.01;
 constexpr std::int64_t kLeast = 4;
 
-// How many vertices have the error `aim`, if `probe` is on the power law.
+// Returns how many vertices have the error `aim`, if `probe` is on the power law.
 double predicted(const Probe& probe, double aim, double slope) {
     if (probe.rms <= 0) return 0;
     return static_cast<double>(probe.vertices) * std::pow(probe.rms / std::max(aim, 1e-12), 1 / slope);
@@ -26,7 +26,7 @@ double predicted(const Probe& probe, double aim, double slope) {
 
 double slope_between(const Probe& a, const Probe& b) {
     const double steps = std::log(static_cast<double>(a.vertices) / static_cast<double>(b.vertices));
-    // What is too close together, or not finite, tells nothing.
+    // Values that are too close together, or not finite, give no slope.
     if (!(std::abs(steps) > 0.01) || !(a.rms > 0) || !(b.rms > 0)) return kUsualSlope;
     return std::clamp(std::log(b.rms / a.rms) / steps, kLeastSlope, kMostSlope);
 }
@@ -39,8 +39,8 @@ bool search_rms(std::int64_t vertices, std::int64_t guess, double rms, MeasuredM
         return static_cast<std::int64_t>(
             std::clamp(n, static_cast<double>(kLeast), static_cast<double>(vertices)));
     };
-    // Estimates first, at the guess and where the goal seems to be or, if that is above, a little below:
-    // there is no way back. They tell the slope as well.
+    // Start with estimates: one at the guess, one where the goal seems to be or, if that is above, a little
+    // below the guess, because a collapse cannot go back. They also give the slope.
     double slope = kUsualSlope;
     const Probe first = meshes.estimated(std::clamp(guess, kLeast, vertices));
     const double there = predicted(first, aim, slope);
@@ -52,11 +52,11 @@ bool search_rms(std::int64_t vertices, std::int64_t guess, double rms, MeasuredM
         next = limited(predicted(second, aim, slope));
     }
     std::optional<Probe> enough, too_few, last;
-    // Predictions soon give way to halving on a logarithmic scale, which always ends.
+    // Predictions soon give way to bisection on a logarithmic scale, which always ends.
     constexpr int kPredictions = 6;
     for (int step = 0;; ++step) {
         const Probe probe = meshes.finished(next);
-        const bool coarsest = probe.vertices > next;  // there is none of fewer vertices
+        const bool coarsest = probe.vertices > next;  // no mesh has fewer vertices
         if (probe.rms <= rms) {
             if (!enough || probe.vertices < enough->vertices) {
                 enough = probe;

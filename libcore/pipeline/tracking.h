@@ -1,4 +1,4 @@
-// A tracker beside the collapse, where the map or the visits need one.
+// A tracker that follows the collapse, if the map or the visits need one.
 #pragma once
 
 #include <optional>
@@ -10,8 +10,8 @@
 
 namespace imgmesh {
 
-/// For one run of simplify. Visits alone must not change the mesh: pixels then stay where they are in
-/// the image, which forbids no collapse, and are counted wherever a collapse changes the face they lie in.
+/// For one run of simplify. Visits alone must not change the mesh. Then pixels stay at their places in the
+/// image, which forbids no collapse, and are counted when a collapse changes their face.
 class Tracking {
   public:
     /// grid  the dense mesh of an image of width x height pixels
@@ -20,10 +20,10 @@ class Tracking {
     Tracking& operator=(const Tracking&) = delete;
 
     const SimplifyHooks& hooks() const { return hooks_; }
-    /// Whether the maps are the tracker's.
+    /// Returns whether the maps are the tracker's.
     bool tracked() const { return tracked_; }
     PixelMap take_map(std::size_t level) { return std::move(maps_[level]); }
-    /// Down to the finest level; empty where not asked for.
+    /// Returns the visits down to the finest level; empty if not requested.
     std::vector<Id> take_visits() { return std::move(visits_); }
     std::int64_t rejected() const { return tracker_ ? tracker_->rejected() : 0; }
 
