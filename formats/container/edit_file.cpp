@@ -16,11 +16,11 @@ namespace {
 
 using nlohmann::json;
 
-// Far outside any image, and far from where numbers lose their fractions.
+// Far outside any image, and far below the numbers that lose their fractions.
 constexpr double kFarthest = 1e6;
 constexpr double kSmallestScale = 1e-3, kLargestScale = 1e3;
 
-// A value and where it is.
+// A value and its place.
 class Node {
   public:
     Node(const json& value, std::string place) : value_(value), place_(std::move(place)) {}
@@ -44,7 +44,7 @@ class Node {
     }
     std::vector<Node> items() const { return items(0, std::numeric_limits<std::size_t>::max()); }
 
-    // An object without other members than these.
+    // Checks that this is an object with no other members than these.
     void check_members(std::initializer_list<const char*> names) const {
         if (!value_.is_object()) refuse(cat("expected an object, found ", value_.type_name()));
         for (const auto& [name, ignored] : value_.items())
@@ -62,7 +62,7 @@ class Node {
     std::int64_t whole(std::int64_t most) const {
         if (!value_.is_number()) refuse(cat("expected a whole number, found ", value_.type_name()));
         const auto number = value_.get<double>();
-        // A schema counts 2.0 as whole, so this does too.
+        // A schema counts 2.0 as a whole number, and so does this.
         if (!(number >= 0 && number <= double(most)) || number != std::floor(number))
             refuse(cat("expected a whole number from 0 to ", most, ", found ", value_.dump()));
         return static_cast<std::int64_t>(number);
@@ -179,7 +179,7 @@ json parse(std::string_view text, const std::string& name, const EditLimits& lim
     std::string refusal;
     try {
         document = parse_json(text, limits.max_json_depth, findings);
-        // A member that is there twice warns of a container; here one of the two would be lost.
+        // In a container a duplicate member is a warning; here one of the two would be lost.
         for (const Issue& issue : findings.issues())
             if (issue.finding->code == std::string_view("json.duplicate")) refusal = issue.text;
     } catch (const FindingError& error) {

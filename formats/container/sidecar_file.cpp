@@ -13,7 +13,7 @@ namespace fs = std::filesystem;
 namespace imgmesh {
 namespace {
 
-constexpr std::size_t kHashDigits = 16;  // 64 bits: no two contents of one container meet by chance
+constexpr std::size_t kHashDigits = 16;  // 64 bits: two contents of one container never collide by chance
 
 bool is_taken(const fs::path& path) {
     std::error_code error;
@@ -28,11 +28,11 @@ bool has_content(const fs::path& path, std::span<const std::uint8_t> bytes) {
         const std::vector<std::uint8_t> found = read_file(path.string(), bytes.size());
         return std::equal(found.begin(), found.end(), bytes.begin(), bytes.end());
     } catch (const Error&) {
-        return false;  // it cannot be read, or grows: somebody else's
+        return false;  // it cannot be read, or is growing: somebody else's
     }
 }
 
-// Whether a SidecarFile of `path` could be called that.
+// Returns whether a SidecarFile of `path` could have that name.
 bool is_sidecar_name(const fs::path& path, const fs::path& name) {
     const std::string stem = path.stem().string(), found = name.stem().string();
     if (name.extension() != ".bin" && name.extension() != ".exr") return false;
@@ -77,7 +77,7 @@ std::vector<std::string> sidecars_of(const std::string& path) {
             if (!name.empty() && is_sidecar_name(path, name))
                 files.push_back((fs::path(path).parent_path() / name).string());
     } catch (const std::exception&) {
-        // Absent, or no container that a reader accepts.
+        // There is no file, or no container that a reader accepts.
     }
     return files;
 }

@@ -1,4 +1,4 @@
-// All that can be said against a container, not only the first thing.
+// Reports everything that is wrong with a container, not only the first error.
 #pragma once
 
 #include <string>
@@ -9,10 +9,10 @@
 
 namespace imgmesh {
 
-/// Runs the checks of read_container to their end, inside the Draco meshes and the EXR and across all three,
-/// and those for warnings and infos. What a finding makes meaningless is not looked at: without a size no
-/// pixels. The first error is the one with which read_container refuses the file; no errors mean that it
-/// reads the file. Throws Error(kIo) where a file cannot be read.
+/// Runs all checks of read_container() to their end, inside the Draco meshes and the EXR and across all
+/// three, and the checks for warnings and infos. It skips checks that a finding makes meaningless: no pixels
+/// without a size. The first error is the one with which read_container() refuses the file; without errors it
+/// reads the file. Throws Error(kIo) if a file cannot be read.
 std::vector<Issue> validate_container(const std::string& path, const ContainerLimits& limits = {});
 
 }  // namespace imgmesh

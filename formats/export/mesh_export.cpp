@@ -21,14 +21,14 @@ Vec3f srgb_of(const BaseMesh& mesh, Id v) {
         .cwiseMin(1.0f);
 }
 
-// The shortest text that reads back as the same float, whatever the locale; no negative zero.
+// Returns the shortest text that reads back as the same float, in any locale; no negative zero.
 std::string number(float value) {
     char text[64];
     const auto end = std::to_chars(text, text + sizeof text, value + 0.0f).ptr;
     return {text, end};
 }
 
-// Pixels from the top-left corner of the image, x and y, along one axis.
+// Returns a coordinate in pixels from the top-left corner of the image, along one axis.
 float from_corner(float x, int side) {
     if (side == 1) return x + 0.5f;  // a strip from -0.5 to 0.5
     if (x <= 0) return 0;

@@ -1,4 +1,4 @@
-// A look at an EXR's headers before OpenEXR sees them.
+// Checks an EXR's headers before OpenEXR reads them.
 #pragma once
 
 #include <cstdint>
@@ -6,10 +6,10 @@
 
 namespace imgmesh {
 
-/// Walks the headers and refuses what would make OpenEXR take memory or run code that a container never
-/// needs: attributes longer than 64 kB or than the file, or of other types than strings, the channel list and
-/// a few of fixed size (a preview, an id manifest or a string vector has sizes of its own inside), deep data,
-/// more than `max_parts` parts. Throws FindingError.
+/// Refuses headers that would make OpenEXR take memory or run code that a container never needs: attributes
+/// longer than 64 kB or than the file; attributes of other types than strings, the channel list and a few of
+/// fixed size (a preview, an id manifest or a string vector has inner sizes of its own); deep data; more than
+/// `max_parts` parts. Throws FindingError.
 void check_exr_header(std::span<const std::uint8_t> bytes, int max_parts);
 
 }  // namespace imgmesh

@@ -28,7 +28,7 @@ void check(exr_result_t result) {
                     cat("OpenEXR cannot encode the layers: ", exr_get_default_error_message(result)));
 }
 
-// OpenEXR's errors come back as results as well; it would print them.
+// OpenEXR also returns its errors as results; its handler would print them.
 void say_nothing(exr_const_context_t, exr_result_t, const char*) {}
 
 std::int64_t write_to_memory(exr_const_context_t context, void* target, const void* data, std::uint64_t size,
@@ -95,7 +95,7 @@ void put(std::uint8_t*& out, T value) {
     out += sizeof value;
 }
 
-// The rows [first, last) as a block has them: row by row, in each row channel after channel, by their names.
+// Puts the rows [first, last) in a block's order: row by row, in each row channel by channel, sorted by name.
 void fill_block(const LayerPart& part, int first, int last, Bytes& block) {
     const bool halves = has_halves(part);
     const auto width = static_cast<std::size_t>(part.map.width);

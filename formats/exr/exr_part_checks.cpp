@@ -74,12 +74,12 @@ void check_part_header(const Imf::Header& header, const std::string& name, const
 
 namespace {
 
-// What a quick look at all pixels finds.
+// What a quick check of all pixels finds.
 struct Glance {
     bool sound = true, half_grid = true, any_outside = false;
 };
 
-// Looks at the rows [first, last); makes negative zeros positive, and changes nothing else.
+// Checks the rows [first, last). Makes negative zeros positive, and changes nothing else.
 Glance glance(PixelMap& map, int first, int last, std::uint64_t faces, bool has_mask) {
     bool sound = true, half_grid = true, any_outside = false;
     for (int y = first; y < last; ++y)
@@ -112,8 +112,8 @@ Glance glance(PixelMap& map, std::uint64_t faces, bool has_mask) {
 
 }  // namespace
 
-// Checks what was read, and puts weights of any origin on the grid. Nearly all maps are sound: only where a
-// glance says otherwise, pixel after pixel is looked at for what is wrong with it.
+// Checks the pixels and rounds weights of any origin to the grid. Nearly all maps are sound, so pixels are
+// examined one by one only if the quick check has found something.
 void finish_part(LayerPart& part, bool stored_as_half, std::uint64_t faces, bool has_mask,
                  Findings& findings) {
     const Glance first = glance(part.map, faces, has_mask);
@@ -152,7 +152,7 @@ void finish_part(LayerPart& part, bool stored_as_half, std::uint64_t faces, bool
             });
         }
         const PixelCoord stored = c;
-        // Nothing changes for weights on the grid, but for negative zeros.
+        // For weights on the grid this changes nothing except negative zeros.
         c.u = std::floor(c.u / kFloatWeightStep) * kFloatWeightStep + 0.0f;
         c.v = std::floor(c.v / kFloatWeightStep) * kFloatWeightStep + 0.0f;
         if (c != stored)

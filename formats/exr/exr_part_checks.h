@@ -1,4 +1,4 @@
-// What a part of the layers must be: its header and its pixels. Internal to exr_layers.
+// Checks the header and the pixels of a part of the layers. Internal to exr_layers.
 #pragma once
 
 #include <ImfHeader.h>
@@ -21,15 +21,15 @@ inline bool on_grid(const PixelCoord& c, float step) {
 }
 
 inline bool in_simplex(const PixelCoord& c) {
-    // In double, where the sum of two floats in [0, 1] that are 1 together is never rounded to 1 from above.
+    // In double, because the sum of two floats in [0, 1] that exceeds 1 is then never rounded down to 1.
     return c.u >= 0 && c.v >= 0 && double(c.u) + double(c.v) <= 1;
 }
 
-/// Compares the header of part `name` with what is expected.
+/// Compares the header of part `name` with the expected one.
 void check_part_header(const Imf::Header& header, const std::string& name, const ExpectedLayers& expected,
                        Findings& findings);
 
-/// Checks what was read, puts weights of any origin on the grid, and sets the precision.
+/// Checks the pixels, rounds weights of any origin to the grid, and sets the precision.
 void finish_part(LayerPart& part, bool stored_as_half, std::uint64_t faces, bool has_mask,
                  Findings& findings);
 

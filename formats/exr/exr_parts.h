@@ -1,4 +1,4 @@
-// Several images of floats as the parts of one EXR file. Target imgmesh_pictures.
+// Several float images as the parts of one EXR file. Target imgmesh_pictures.
 #pragma once
 
 #include <string>
@@ -13,10 +13,10 @@ struct NamedImage {
     Image image;
 };
 
-/// Writes the images as parts of these names, in this order, atomically: scanlines, ZIP, FLOAT channels as
-/// named, numbers as they are (no colour space, no alpha multiplied in). An image is its part's data window;
-/// the display window of all is the first image, as OpenEXR wants it. At least one; names differ. Throws
-/// Error(kIo) where the file cannot be written.
+/// Writes the images as parts with these names, in this order, atomically: scanlines, ZIP, FLOAT channels
+/// under their names, unchanged numbers (no colour space, no premultiplied alpha). Each image is its part's
+/// data window. The display window of all parts is the first image, as OpenEXR requires. There is at least
+/// one image; names differ. Throws Error(kIo) if the file cannot be written.
 void write_exr_parts(const std::string& path, const std::vector<NamedImage>& parts, bool overwrite);
 
 }  // namespace imgmesh

@@ -9,14 +9,14 @@
 namespace imgmesh {
 namespace {
 
-// docs/decisions/0016-fast-files.md: slower levels shrink pixel maps by a percent or two, faster ones gain
-// nothing.
+// docs/decisions/0016-fast-files.md: slower levels shrink pixel maps by a percent or two, faster ones save no
+// time.
 constexpr int kLevel = 4;
 
 using Byte16 = std::uint8_t __attribute__((vector_size(16)));
 
-// bytes[i] becomes the sum of bytes[0 ... i], less 128 each but for the first. Sixteen at a time: in a
-// vector, sums of 2, 4, 8 and 16 neighbours in turn.
+// bytes[i] becomes the sum of bytes[0 ... i], minus 128 for each except the first. It works on sixteen bytes
+// at a time: in a vector, sums of 2, 4, 8 and 16 neighbours in turn.
 void add_up(std::span<std::uint8_t> bytes) {
     constexpr Byte16 kZero = {};
     std::uint8_t sum = 128;
@@ -53,10 +53,10 @@ std::vector<std::uint8_t> ZipPacker::pack(std::span<const std::uint8_t> samples)
         sorted_[evens + i] = samples[2 * i + 1];
     }
     if (size % 2) sorted_[evens - 1] = samples[size - 1];
-    // Backwards, so that the byte before is still what it was.
+    // Backwards, so that the previous byte is still unchanged.
     for (std::size_t i = size; i-- > 1;)
         sorted_[i] = static_cast<std::uint8_t>(sorted_[i] - sorted_[i - 1] + 128);
-    // Without room for as many bytes it gives up at once.
+    // Without room for that many bytes it gives up at once.
     std::vector<std::uint8_t> packed(size);
     const std::size_t length =
         size < 2 ? 0 : libdeflate_zlib_compress(deflate_, sorted_.data(), size, packed.data(), size - 1);
@@ -79,7 +79,7 @@ bool ZipUnpacker::unpack(std::span<const std::uint8_t> packed, std::span<std::ui
         return true;
     }
     sorted_.resize(size);
-    // Fails where the bytes make fewer or more than `size`.
+    // Fails if the bytes give fewer or more than `size`.
     if (libdeflate_zlib_decompress(inflate_, packed.data(), packed.size(), sorted_.data(), size, nullptr) !=
         LIBDEFLATE_SUCCESS)
         return false;

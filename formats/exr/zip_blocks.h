@@ -11,9 +11,9 @@ struct libdeflate_decompressor;
 
 namespace imgmesh {
 
-/// Packs blocks, one after the other; no object may be used by two threads at a time. Source: "OpenEXR File
-/// Layout" and Technical Introduction: bytes at even places before those at odd ones, each as its difference
-/// from the one before, deflated.
+/// Packs one block after the other. Two threads must not use one object at a time. Source: "OpenEXR File
+/// Layout" and Technical Introduction: bytes at even places come before those at odd ones, each as its
+/// difference from the one before, deflated.
 class ZipPacker {
   public:
     ZipPacker();
@@ -21,8 +21,8 @@ class ZipPacker {
     ZipPacker(const ZipPacker&) = delete;
     ZipPacker& operator=(const ZipPacker&) = delete;
 
-    /// What the file holds of the block: `samples` themselves where they do not shrink. The same bytes for
-    /// the same samples.
+    /// Returns what the file holds for the block: `samples` themselves if they do not shrink. The same
+    /// samples give the same bytes.
     std::vector<std::uint8_t> pack(std::span<const std::uint8_t> samples);
 
   private:
@@ -38,7 +38,7 @@ class ZipUnpacker {
     ZipUnpacker(const ZipUnpacker&) = delete;
     ZipUnpacker& operator=(const ZipUnpacker&) = delete;
 
-    /// Fills `samples`; false where `packed` does not make as many. Safe for any bytes.
+    /// Fills `samples`; returns false if `packed` does not give exactly that many. Safe for any bytes.
     bool unpack(std::span<const std::uint8_t> packed, std::span<std::uint8_t> samples);
 
   private:

@@ -35,7 +35,7 @@ struct Descriptor {
 };
 
 // ---- Temporary names that a signal handler removes -------------------------------------------------------
-// More files than slots at one time is no error: those beyond are removed by their destructor alone.
+// More files than slots at one time are no error: only their destructors remove the others.
 std::array<std::atomic<const char*>, 256> g_temporaries;
 std::atomic<bool> g_ending = false;
 std::atomic<int> g_switches = 0;  // living SignalBlockers
@@ -53,16 +53,16 @@ void forget_temporary(const char* path) {
         const char* expected = path;
         if (slot.compare_exchange_strong(expected, nullptr)) return;
     }
-    // Taken by a signal handler on another thread: the process is ending, and the string must live until
+    // A signal handler on another thread has taken it: the process is ending, and the string must live until
     // then.
     while (g_ending) ::pause();
 }
 
 // Async-signal-safe: lock-free atomics, nanosleep, unlink, sigaction, pthread_sigmask, raise.
 extern "C" void remove_temporaries_and_end(int signal) {
-    if (g_ending.exchange(true)) return;  // one more signal must not cut the work for the first one short
-    // A thread that switches over holds signals off, so whoever is waited for here is another thread. Not for
-    // ever: it may want what this one has locked.
+    if (g_ending.exchange(true)) return;  // a second signal must not cut short the work for the first one
+    // A thread with a SignalBlocker blocks signals, so this waits for another thread. It does not wait
+    // forever: that thread may want something that this one has locked.
     constexpr timespec kMillisecond = {0, 1'000'000};
     for (int n = 0; n < 10'000 && g_switches > 0; ++n) ::nanosleep(&kMillisecond, nullptr);
     for (std::atomic<const char*>& slot : g_temporaries)
@@ -80,7 +80,7 @@ extern "C" void remove_temporaries_and_end(int signal) {
 constexpr std::array kEndingSignals = {SIGINT, SIGTERM, SIGHUP};
 
 // ---- Targets ---------------------------------------------------------------------------------------------
-// Renaming over a device would replace it by a regular file, and over a link would cut it off.
+// Renaming over a device would replace it by a regular file; over a link it would replace the link.
 std::string resolve_target(const std::string& path, bool overwrite) {
     struct stat info = {};
     if (::lstat(path.c_str(), &info) != 0) {
@@ -101,16 +101,16 @@ std::string resolve_target(const std::string& path, bool overwrite) {
     return target.string();
 }
 
-// A rename reaches the disk with the folder. Some file systems cannot flush folders; the file is complete
-// under its name all the same, so a failure here is none of ours.
+// A rename reaches the disk with the folder. Some file systems cannot flush folders. The file is complete
+// under its name all the same, so a failure here is not an error.
 void flush_folder(const std::string& target) {
     const std::filesystem::path folder = std::filesystem::path(target).parent_path();
     const Descriptor dir(::open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
     if (dir.fd >= 0) ::fsync(dir.fd);
 }
 
-// Not mkstemp(), which makes files that nobody else can read whatever the umask says. The descriptor is the
-// claim to the file, and to be kept as long as its name is a temporary one.
+// Not mkstemp(), whose files nobody else can read whatever the umask says. The descriptor is the claim to the
+// file, and must be kept while its name is a temporary one.
 int create_temporary(const std::string& target, std::string& name) {
     static std::atomic<unsigned> counter = 0;
     const std::filesystem::path path(target);
@@ -118,7 +118,7 @@ int create_temporary(const std::string& target, std::string& name) {
         const std::string base =
             cat(kTemporaryPrefix, ::getpid(), "-", counter.fetch_add(1), path.extension().string());
         name = (path.parent_path() / base).string();
-        register_temporary(name.c_str());  // before it exists, so that a signal finds it whenever it does
+        register_temporary(name.c_str());  // before it exists, so that a signal finds it at any time
         const int fd = ::open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
         if (fd >= 0 && claim_temporary(fd, name)) return fd;
         const int error = fd >= 0 ? EEXIST : errno;
@@ -184,7 +184,7 @@ void AtomicFile::flush_and_rename() {
         status = ::rename(temporary_path_.c_str(), target_.c_str());
     } else {
         status = ::renameat2(AT_FDCWD, temporary_path_.c_str(), AT_FDCWD, target_.c_str(), RENAME_NOREPLACE);
-        // File systems without that flag say EINVAL; there, look first.
+        // File systems without that flag return EINVAL; then check first.
         if (status != 0 && errno == EINVAL) {
             if (::access(target_.c_str(), F_OK) == 0) fail(path_, "not overwritten", EEXIST);
             status = ::rename(temporary_path_.c_str(), target_.c_str());
@@ -200,7 +200,7 @@ SignalBlocker::SignalBlocker() {
     ::pthread_sigmask(SIG_BLOCK, &ending, &before_);
     ++g_switches;
     if (!g_ending) return;
-    --g_switches;  // the handler of another thread is at work, or waits for this one
+    --g_switches;  // the handler on another thread is at work, or waits for this one
     for (;;) ::pause();
 }
 
@@ -229,7 +229,7 @@ std::vector<std::uint8_t> read_file(const std::string& path, std::uint64_t max_b
     if (S_ISDIR(info.st_mode)) fail(path, "cannot read", EISDIR);
     if (S_ISREG(info.st_mode) && static_cast<std::uint64_t>(info.st_size) > max_bytes) throw too_long();
 
-    // One byte more than the size lets the last read() see the end without another round; pipes have size 0.
+    // With one byte more than the size, the last read() sees the end without another call; pipes have size 0.
     std::vector<std::uint8_t> bytes(static_cast<std::size_t>(info.st_size) + 1);
     std::size_t size = 0;
     for (;;) {

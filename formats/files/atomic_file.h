@@ -1,4 +1,4 @@
-// Files that appear whole or not at all.
+// Files that appear complete or not at all.
 #pragma once
 
 #include <csignal>
@@ -9,29 +9,29 @@
 
 namespace imgmesh {
 
-/// A file being written under a temporary name in the target's folder. commit() flushes it to disk and
+/// A file that is written under a temporary name in the target's folder. commit() flushes it to disk and
 /// renames it to `path`; destruction without commit() removes it. A run that is killed leaves at most the
 /// temporary file, never a partial `path`; a later run that writes to the folder removes it
-/// (stale_temporaries.h). Throws Error(kIo) with the system's reason when the folder cannot be written or the
-/// disk is full, and where `path` is something else than a regular file (a device, a folder). A symbolic link
-/// is followed: the file behind it is replaced, not the link.
+/// (stale_temporaries.h). Throws Error(kIo) with the system's reason if the folder cannot be written or the
+/// disk is full, and if `path` is not a regular file (but a device, a folder). Symbolic links are followed:
+/// the file behind a link is replaced, not the link.
 class AtomicFile {
   public:
-    /// `overwrite` false: throws Error(kIo) where `path` exists, here and again at commit().
+    /// Without `overwrite`, throws Error(kIo) if `path` exists, here and again at commit().
     AtomicFile(std::string path, bool overwrite);
     ~AtomicFile();
     AtomicFile(const AtomicFile&) = delete;
     AtomicFile& operator=(const AtomicFile&) = delete;
 
-    /// Where to write. Libraries that want a file name get this one; it ends with the extension of `path`.
+    /// The file to write, for libraries that want a file name; it ends with the extension of `path`.
     const std::string& temporary_path() const { return temporary_path_; }
     /// Replaces the temporary file's content.
     void write(std::span<const std::uint8_t> bytes) { write_parts({&bytes, 1}); }
-    /// The same, one part behind the other.
+    /// The same for several parts, one after the other.
     void write_parts(std::span<const std::span<const std::uint8_t>> parts);
     void commit();
-    /// As commit(), but until keep() destruction removes the file, now under its own name: for a file that is
-    /// of no use without another. Only where there was none of this name, and in a SignalBlocker.
+    /// Like commit(), but until keep() destruction removes the file, which has its own name already: for a
+    /// file that is useless without another. Only if no file has this name, and in a SignalBlocker.
     void place();
     void keep();
 
@@ -39,14 +39,14 @@ class AtomicFile {
     void flush_and_rename();
 
     std::string path_;    ///< as given: for messages
-    std::string target_;  ///< what is renamed to: `path_` with symbolic links followed
+    std::string target_;  ///< the target of the rename: `path_` with symbolic links followed
     std::string temporary_path_;
     int claim_ = -1;  ///< a descriptor that holds the claim to the temporary file
     bool overwrite_;
     bool kept_ = false;
 };
 
-/// As long as one lives, the signals of remove_temporaries_on_signals() wait: for a change of several files
+/// While one lives, the signals of remove_temporaries_on_signals() wait. It is for a change of several files
 /// that must happen as a whole.
 class SignalBlocker {
   public:
@@ -59,11 +59,11 @@ class SignalBlocker {
     sigset_t before_;
 };
 
-/// From now on SIGINT, SIGTERM and SIGHUP remove the temporary files of living AtomicFiles before they end
-/// the process as they would have. Signals that the process ignores or handles already are left alone.
+/// From now on SIGINT, SIGTERM and SIGHUP remove the temporary files of living AtomicFiles and then end the
+/// process as usual. Signals that the process already ignores or handles are left alone.
 void remove_temporaries_on_signals();
 
-/// The whole file. Throws Error(kIo) when it cannot be read, Error(kBadFile) when longer than `max_bytes`.
+/// Reads a whole file. Throws Error(kIo) if it cannot be read, Error(kBadFile) if longer than `max_bytes`.
 std::vector<std::uint8_t> read_file(const std::string& path, std::uint64_t max_bytes);
 
 }  // namespace imgmesh

@@ -8,7 +8,7 @@
 
 namespace imgmesh {
 
-/// Of the pieces one after the other, in lower-case hex.
+/// Returns the hash of the pieces, one after the other, in lower-case hex.
 std::string sha256_hex(std::initializer_list<std::span<const std::uint8_t>> pieces);
 inline std::string sha256_hex(std::span<const std::uint8_t> bytes) {
     return sha256_hex({bytes});

@@ -46,14 +46,14 @@ void remove_if_stale(int folder, const char* name) {
     const int fd = ::openat(folder, name, O_WRONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
     if (fd < 0) return;
     struct stat opened = {};
-    // Under the lock, so that a run that has just made the file finds it gone when it claims it.
+    // Under the lock, so that a run that has just made the file notices when it claims it.
     if (::flock(fd, LOCK_EX | LOCK_NB) == 0 && ::fstat(fd, &opened) == 0 &&
         ::fstatat(folder, name, &named, AT_SYMLINK_NOFOLLOW) == 0 && same_file(opened, named))
         ::unlinkat(folder, name, 0);
     ::close(fd);
 }
 
-// Whether this process comes to the folder for the first time.
+// Returns whether this is the process's first time in the folder.
 bool is_new(const struct stat& folder) {
     static std::mutex mutex;
     static std::set<std::pair<dev_t, ino_t>> seen;
@@ -65,7 +65,7 @@ bool is_new(const struct stat& folder) {
 
 bool claim_temporary(int fd, const std::string& path) {
     while (::flock(fd, LOCK_EX) != 0)
-        if (errno != EINTR) return true;  // no locks here, so nobody else gets one either
+        if (errno != EINTR) return true;  // there are no locks here, so nobody else gets one either
     struct stat opened = {}, named = {};
     return ::fstat(fd, &opened) == 0 && ::lstat(path.c_str(), &named) == 0 && same_file(opened, named);
 }

@@ -1,4 +1,4 @@
-// Where checks tell what they find: a reader stops at the first error, a validator collects everything.
+// Collects the findings of checks: a reader stops at the first error, a validator continues.
 #pragma once
 
 #include <string>
@@ -13,19 +13,19 @@ class Findings {
   public:
     /// Throws a FindingError at the first error and ignores warnings and infos.
     static Findings strict() { return Findings(false); }
-    /// Keeps everything.
+    /// Keeps all findings.
     static Findings collecting() { return Findings(true); }
 
-    /// Whether warnings and infos are wanted: else a check for them need not run.
+    /// Returns whether warnings and infos are wanted; otherwise their checks need not run.
     bool collects() const { return collects_; }
-    /// Index of the issue among issues().
+    /// Returns the issue's index in issues().
     std::size_t add(FindingCode code, const std::string& text, Place place = {});
-    /// The number of errors so far.
+    /// Returns the number of errors so far.
     std::size_t errors() const { return errors_; }
     std::vector<Issue>& issues() { return issues_; }
 
-    /// Runs `check`; its places are relative to `pointer`. A FindingError passes on to a reader; a validator
-    /// keeps it and goes on. Whether the check came to its end.
+    /// Runs `check`, whose places are relative to `pointer`. A FindingError is passed on for a reader; a
+    /// validator keeps it and continues. Returns whether the check came to its end.
     template <typename Check>
     bool attempt(const std::string& pointer, Check&& check) {
         const std::string outer = std::exchange(base_, pointer);
@@ -53,12 +53,12 @@ class Findings {
     std::vector<Issue> issues_;
 };
 
-/// One defect that may occur at every pixel or vertex: told once, with its first place, and counted.
+/// A defect that may occur at every pixel or vertex: reported once, with its first place and its count.
 class Repeated {
   public:
     Repeated(Findings& findings, FindingCode code) : findings_(findings), code_(code) {}
 
-    /// `describe` gives the text and the place, and is called the first time alone.
+    /// `describe` gives the text and the place, and is called only the first time.
     template <typename Describe>
     void hit(Describe&& describe) {
         if (count_++ == 0) {

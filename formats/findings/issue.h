@@ -1,4 +1,4 @@
-// One thing that is wrong with a file, and where.
+// One finding in a file, and its place.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@ namespace imgmesh {
 struct Issue {
     const Finding* finding;  ///< of kFindings
     std::string text;        ///< one line: what was found
-    Place place;             ///< the first, where it occurs `count` times
+    Place place;             ///< the first of `count` places
     std::uint64_t count = 1;
 };
 

@@ -1,4 +1,4 @@
-// Members of JSON objects that must be there and have a type; internal to the reader.
+// Members of JSON objects that must exist and have a type; internal to the reader.
 #pragma once
 
 #include <cstdint>
@@ -34,7 +34,7 @@ inline std::string string_member(const nlohmann::json& object, const char* name,
     return value.get<std::string>();
 }
 
-/// A member's name as a token of a JSON pointer.
+/// Returns a member's name as a token of a JSON pointer.
 inline std::string pointer_token(const std::string& name) {
     std::string token;
     for (const char c : name) token += c == '~' ? "~0" : c == '/' ? "~1" : std::string(1, c);

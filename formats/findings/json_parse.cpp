@@ -15,7 +15,7 @@ using nlohmann::json;
 // A container's JSON has some kilobytes; a DOM of other content takes twenty times its text.
 constexpr std::size_t kMaxJsonBytes = std::size_t{64} << 20;
 
-// Tells of members that an object has twice, of which the parser keeps the last.
+// Reports duplicate members of an object, of which the parser keeps the last.
 class DuplicateFinder {
   public:
     explicit DuplicateFinder(Findings& findings) : duplicates_(findings, "json.duplicate") {}
@@ -43,7 +43,7 @@ json parse_json(std::string_view text, int max_depth, Findings& findings) {
     if (text.size() > kMaxJsonBytes)
         refuse("limits.json", cat("JSON of ", text.size(), " bytes, at most ", kMaxJsonBytes));
     if (text.starts_with("\xEF\xBB\xBF")) findings.add("json.bom", "the JSON starts with a byte order mark");
-    // The parser takes it for the end, so that what follows would be read by others alone.
+    // The parser would stop here, and only other programs would read the rest.
     if (text.find('\0') != std::string_view::npos) refuse("json.syntax", "a byte of value 0");
     DuplicateFinder duplicates(findings);
     const auto guard = [&](int depth, json::parse_event_t event, json& parsed) {

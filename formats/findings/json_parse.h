@@ -1,4 +1,4 @@
-// JSON of any origin as a document, within limits.
+// Parses JSON of any origin, within limits.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -8,9 +8,9 @@ namespace imgmesh {
 
 class Findings;
 
-/// Throws FindingError for text that is too long, no JSON, no UTF-8, or nested deeper than `max_depth`. Where
-/// `findings` collects, it tells of members that an object has twice (json.duplicate), of which the last
-/// stays.
+/// Throws FindingError for text that is too long, not JSON, not UTF-8, or nested deeper than `max_depth`. If
+/// `findings` collects, it also reports duplicate members of an object (json.duplicate); the last one is
+/// kept.
 nlohmann::json parse_json(std::string_view text, int max_depth, Findings& findings);
 
 }  // namespace imgmesh

@@ -1,4 +1,4 @@
-// Where in a container something was found.
+// The place of a finding in a container.
 #pragma once
 
 #include <cstdint>
@@ -8,10 +8,10 @@
 
 namespace imgmesh {
 
-/// Members are empty where they do not apply.
+/// Members that do not apply are empty.
 struct Place {
     /// JSON pointer into the glTF document (RFC 6901). In a FindingError, one without a leading / is relative
-    /// to what Findings::attempt was told.
+    /// to the pointer given to Findings::attempt().
     std::string pointer;
     std::string part;                                              ///< of the EXR
     std::string channel;                                           ///< of that part

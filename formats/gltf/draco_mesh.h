@@ -21,27 +21,27 @@ struct DracoAttributeIds {
     std::optional<std::uint32_t> texcoord = {};
     bool operator==(const DracoAttributeIds&) const = default;
 };
-/// Those that encode_draco_mesh gives to the attributes of such a mesh.
+/// Returns the ids that encode_draco_mesh() gives to the attributes of such a mesh.
 DracoAttributeIds draco_ids(const StoredLayout& layout);
 
-/// A bitstream, and the mesh that every decoder gets from it: the one that counts.
+/// A bitstream, and the mesh that every decoder gets from it. That mesh counts.
 struct DracoMesh {
     std::vector<std::uint8_t> bytes;
     StoredMesh decoded;
 };
 
-/// `mesh` has faces, attributes without holes, without area 0, and positions on kPositionStep with z = 0;
-/// `mode` is not kOff. kSequential keeps all order; kEdgebreaker is about half the size, but orders vertices
-/// and faces anew, rotates corners, splits non-manifold vertices and drops vertices without a face. Nothing
-/// else is lost. Throws Error(kInternal) where Draco fails.
+/// Encodes a mesh with faces, attributes without holes, no face of area 0, and positions on kPositionStep
+/// with z = 0. `mode` is not kOff. kSequential keeps all order. kEdgebreaker gives about half the size, but
+/// reorders vertices and faces, rotates corners, splits non-manifold vertices and drops vertices without a
+/// face. Nothing else is lost. Throws Error(kInternal) if Draco fails.
 DracoMesh encode_draco_mesh(const StoredMesh& mesh, DracoMode mode);
 
-/// How the bitstream was made. Throws FindingError for anything but a mesh of the current bitstream version.
+/// Returns how it was made. Throws FindingError unless it is a mesh of the current bitstream version.
 DracoMode draco_mode(std::span<const std::uint8_t> bytes);
 
-/// Decodes a mesh of which vertices, faces and attributes are known. Safe for any bytes: the sizes in the
-/// bitstream are compared with `vertices` and `faces` before memory is taken. Indices are in range; positions
-/// and colours are whatever is stored. Throws FindingError.
+/// Decodes a mesh with known numbers of vertices and faces and known attributes. Safe for any bytes: the
+/// sizes in the bitstream are compared with `vertices` and `faces` before memory is taken. Indices are in
+/// range; positions and colours are not checked. Throws FindingError.
 StoredMesh decode_draco_mesh(std::span<const std::uint8_t> bytes, const DracoAttributeIds& ids,
                              std::uint64_t vertices, std::uint64_t faces, Findings& findings);
 StoredMesh decode_draco_mesh(std::span<const std::uint8_t> bytes, const DracoAttributeIds& ids,

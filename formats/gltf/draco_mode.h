@@ -3,7 +3,7 @@
 
 namespace imgmesh {
 
-/// kSequential keeps the order of vertices and faces; kEdgebreaker is about half the size and reorders both.
+/// kSequential keeps the order of vertices and faces; kEdgebreaker changes it and halves the size.
 enum class DracoMode { kEdgebreaker, kSequential, kOff };
 
 }  // namespace imgmesh

@@ -93,7 +93,7 @@ AssetLevel read_level_member(const json& extension, const SourceInfo& source, co
     AssetLevel level;
     level.vertices = unsigned_member(extension, "vertices", "ext.member");
     level.faces = unsigned_member(extension, "faces", "ext.member");
-    // A pixel has at most two faces: the finest mesh has its vertices at the pixels' centres.
+    // There are at most two faces for each pixel: the finest mesh has its vertices at the pixels' centres.
     const auto most = std::min<std::uint64_t>(
         static_cast<std::uint64_t>(limits.max_faces),
         2 * static_cast<std::uint64_t>(source.width) * static_cast<std::uint64_t>(source.height));

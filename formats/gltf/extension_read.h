@@ -1,4 +1,4 @@
-// The members of IMGMESH_pixel_map; internal to the reader. All throw FindingError.
+// Reads the members of IMGMESH_pixel_map; internal to the reader. All functions throw FindingError.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -7,13 +7,13 @@
 
 namespace imgmesh {
 
-/// The root's "image"; its size is within the limits.
+/// Reads the root's "image"; its size is within the limits.
 SourceInfo read_image_member(const nlohmann::json& image, const ContainerLimits& limits);
 
-/// The root's "build": fills in generator and parameters.
+/// Reads the root's "build" into generator and parameters.
 void read_build_member(const nlohmann::json& build, Asset& asset);
 
-/// A node's extension: counts within the limits, error, topology.
+/// Reads a node's extension: counts within the limits, error, topology.
 AssetLevel read_level_member(const nlohmann::json& extension, const SourceInfo& source,
                              const ContainerLimits& limits);
 

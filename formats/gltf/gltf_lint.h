@@ -1,4 +1,4 @@
-// The warnings and infos about a container's JSON; internal to the validator.
+// Warnings and infos about a container's JSON; internal to the validator.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -9,8 +9,8 @@ namespace imgmesh {
 
 class Findings;
 
-/// What a viewer will stumble over, and what imgmesh ignores. `asset` is what could be read of `document`, an
-/// object of any content.
+/// Reports what will go wrong in viewers, and what imgmesh ignores. `asset` is what could be read of
+/// `document`, an object of any content.
 void lint_gltf(const nlohmann::json& document, const Asset& asset, Findings& findings);
 
 }  // namespace imgmesh

@@ -1,4 +1,4 @@
-// Names that the writer and the reader of the JSON side share.
+// Names that writer and reader of the JSON share.
 #pragma once
 
 namespace imgmesh {
@@ -7,10 +7,10 @@ inline constexpr const char* kPixelMap = "IMGMESH_pixel_map";
 inline constexpr const char* kDraco = "KHR_draco_mesh_compression";
 inline constexpr const char* kUnlit = "KHR_materials_unlit";
 inline constexpr const char* kLod = "MSFT_lod";
-/// The vertices' colours where viewers show a texture instead, which they would multiply by COLOR_0.
+/// The vertices' colours in a container with a texture, which viewers would multiply by COLOR_0.
 inline constexpr const char* kHiddenColor = "_COLOR";
 inline constexpr const char* kTexcoord = "TEXCOORD_0";
-/// The attribute of linear RGB where light above 1 counts.
+/// The attribute of linear RGB in HDR meshes.
 inline constexpr const char* kHdr = "_LIGHT";
 inline constexpr const char* kLayersMimeType = "image/x-exr";
 inline constexpr const char* kGenerator = "generator";

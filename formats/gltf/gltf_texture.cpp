@@ -17,10 +17,10 @@ using nlohmann::json;
 
 constexpr const char* kPng = "image/png";
 constexpr const char* kJpeg = "image/jpeg";
-// OpenGL's numbers. At the sides the image's own pixels go on: the other side's do not mix in.
+// OpenGL's numbers. At the sides the image's own pixels continue: the opposite side's do not mix in.
 constexpr int kClampToEdge = 33071, kLinear = 9729, kLinearMipmapLinear = 9987;
 
-// An object of the document and where it stands.
+// An object of the document and its place.
 struct Object {
     const json& value;
     std::string pointer;
@@ -35,7 +35,7 @@ struct Object {
     static inline const json kNothing;
 };
 
-// Which one of the list `name` an index means.
+// Returns the object of the list `name` that an index means.
 Object referred(const json& document, const char* name, const Object& index) {
     if (!index.value.is_number_unsigned())
         refuse("gltf.structure", cat("an index of ", name, " is not a whole number >= 0"),
@@ -47,12 +47,12 @@ Object referred(const json& document, const char* name, const Object& index) {
     return {(*list)[i], cat('/', name, '/', i)};
 }
 
-// That of a sound level.
+// The primitive of a sound level.
 Object first_primitive(const json& document, std::uint64_t mesh) {
     return {document["meshes"][mesh]["primitives"][0], cat("/meshes/", mesh, "/primitives/0")};
 }
 
-// The baseColorTexture of a primitive's material; null for none.
+// Returns the baseColorTexture of a primitive's material; null if there is none.
 Object base_texture(const json& document, const Object& primitive) {
     const Object material = primitive.member("material");
     if (!material) return material;

@@ -1,4 +1,4 @@
-// The warnings and infos about a decoded mesh; internal to the validator.
+// Warnings and infos about a decoded mesh; internal to the validator.
 #pragma once
 
 #include "formats/gltf/gltf_asset.h"
@@ -8,7 +8,7 @@ namespace imgmesh {
 
 class Findings;
 
-/// `mesh` is without errors (base_from_stored). O(F log F).
+/// `mesh` has no errors (base_from_stored). Takes O(F log F) time.
 void lint_mesh(const StoredMesh& mesh, const AssetLevel& level, const SourceInfo& source, Findings& findings);
 
 }  // namespace imgmesh

@@ -1,4 +1,4 @@
-// EXIF metadata, as far as it says how an image stands.
+// Reads the orientation of an image from EXIF metadata.
 #pragma once
 
 #include <cstdint>
@@ -6,8 +6,8 @@
 
 namespace imgmesh {
 
-/// The orientation, 1 to 8, of EXIF bytes (a TIFF header and its directories, perhaps behind "Exif\0\0"); 1
-/// where there is none. Safe for any bytes. Source: EXIF 2.3, 4.6, tag 0x0112 of the first directory.
+/// Returns the orientation, 1 to 8, of EXIF bytes (a TIFF header and its directories, perhaps after
+/// "Exif\0\0"), else 1. Safe for any bytes. Source: EXIF 2.3, 4.6, tag 0x0112 of the first directory.
 int exif_orientation(std::span<const std::uint8_t> exif);
 
 }  // namespace imgmesh

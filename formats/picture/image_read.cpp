@@ -1,4 +1,4 @@
-// read_image: the file's bytes, a look at them, one of the decoders, and what all images have in common.
+// read_image(): reads the file's bytes, probes them, runs one of the decoders, and does what all images need.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -11,11 +11,11 @@
 namespace imgmesh {
 namespace {
 
-// Above any image within the default limits, and far below what a machine has.
+// Above any image within the default limits, and far below the memory of a machine.
 constexpr std::uint64_t kMaxFileBytes = std::uint64_t{8} << 30;
 
-// Where a displayed pixel is stored, as bits (EXIF 2.3, tag Orientation): the axes are exchanged first, then
-// each may run backwards.
+// Where a displayed pixel is stored, as bits (EXIF 2.3, tag Orientation): first the axes are exchanged, then
+// each may be reversed.
 struct Orientation {
     bool exchange, backwards_x, backwards_y;
 };
@@ -45,7 +45,7 @@ Image displayed(Image stored, int orientation) {
     return out;
 }
 
-// Where alpha is zero the colour stands for light that covers nothing, as it does.
+// Where alpha is zero, the colour is kept: it is light that covers nothing.
 void divide_alpha_out(Image& image) {
     const int alpha = image.channel("A");
     if (alpha < 0) return;
@@ -73,7 +73,7 @@ void check_finite(const std::string& path, const Image& image) {
 }
 
 DecodedPicture decode(const std::string& path, bool any_primaries, const ImageLimits& limits) {
-    // A device or a pipe has no size to check beforehand: no more is read than the pixels could need.
+    // A device or a pipe has no size to check beforehand. No more is read than the pixels could need.
     constexpr std::uint64_t kOther = std::uint64_t{64} << 20;  // profiles, previews, metadata
     const std::uint64_t most = kOther + static_cast<std::uint64_t>(limits.max_pixels) *
                                             static_cast<std::uint64_t>(limits.max_channels) * sizeof(float);

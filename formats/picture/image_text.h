@@ -1,4 +1,4 @@
-// Words in images. Target imgmesh_pictures.
+// Text in images. Target imgmesh_pictures.
 #pragma once
 
 #include <string>
@@ -9,7 +9,7 @@ namespace imgmesh {
 
 enum class TextAlign { kLeft, kCenter, kRight };
 
-/// A line of UTF-8 text; (x, y) is where its baseline begins, has its middle or ends [pixels].
+/// A line of UTF-8 text; (x, y) is the start, middle or end of its baseline [pixels].
 struct TextLabel {
     int x = 0;
     int y = 0;
@@ -19,8 +19,8 @@ struct TextLabel {
     std::string text;
 };
 
-/// Draws the label over an RGB image, in DejaVu Sans; what lies outside is cut off. Throws
-/// Error(kUnsupported) where that font is not installed.
+/// Draws the label over an RGB image in DejaVu Sans; parts outside are cut off. Throws Error(kUnsupported) if
+/// that font is not installed.
 void draw_text(Image& image, const TextLabel& label);
 
 }  // namespace imgmesh

@@ -8,7 +8,7 @@ namespace imgmesh {
 namespace {
 
 const OiioModule& load() {
-    // By its name alone: the linker has written into the program where to look for it
+    // By its name alone: the linker has written the search path into the program
     // (formats/CMakeLists.txt).
     void* const module = ::dlopen(IMGMESH_OIIO_MODULE, RTLD_NOW | RTLD_LOCAL);
     void* const entry = module ? ::dlsym(module, kOiioEntry) : nullptr;
@@ -23,7 +23,7 @@ const OiioModule& load() {
 }  // namespace
 
 const OiioModule& oiio_module() {
-    static const OiioModule& module = load();  // tried again on the next call where it throws
+    static const OiioModule& module = load();  // if it throws, the next call tries again
     return module;
 }
 

@@ -1,5 +1,5 @@
-// What imgmesh has OpenImageIO do, behind a table of functions in a shared module of its own: the library
-// brings 260 others along, which take 0.17 s and 130 MB at the start of a program that may not need them
+// imgmesh's uses of OpenImageIO, behind a table of functions in a shared module. The library loads 260
+// others, which takes 0.17 s and 130 MB at the start of a program that may not need them
 // (docs/decisions/0016-fast-files.md).
 #pragma once
 
@@ -14,7 +14,7 @@
 
 namespace imgmesh {
 
-/// An image as its file says it.
+/// An image as its file stores it.
 struct OiioPicture {
     int width = 0, height = 0, channels = 0;
     std::vector<std::string> channel_names;
@@ -27,7 +27,7 @@ struct OiioPicture {
     std::string color_name;  ///< empty for none
 };
 
-/// An image as a file is to hold it.
+/// An image as a file is to store it.
 struct OiioTask {
     const char* writer;  ///< OpenImageIO's name
     std::string extension;
@@ -36,26 +36,26 @@ struct OiioTask {
     int alpha_channel;              ///< or -1
     SampleType type;                ///< kUint8, kUint16 or kFloat
     const void* samples;            ///< of that type
-    bool say_srgb;                  ///< where the format has a word for it
+    bool say_srgb;                  ///< if the format has a word for it
     std::vector<std::uint8_t> icc;  ///< empty for none
 };
 
 struct OiioModule {
-    /// `check` is called with every size before memory is taken. Throws Error as decode_png() does.
+    /// Calls `check` with every size before memory is taken. Throws Error as decode_png() does.
     OiioPicture (*decode)(const std::string& path, std::span<const std::uint8_t> bytes,
                           const PictureClaim& claim, const ImageLimits& limits, decltype(&check_size) check);
-    /// Throws Error: kBadArgument for what the format cannot hold, kUnsupported for a writer that is not
-    /// there.
+    /// Throws Error: kBadArgument for what the format cannot hold, kUnsupported for a writer that does not
+    /// exist.
     std::vector<std::uint8_t> (*encode)(const std::string& path, const OiioTask& task);
     /// draw_text().
     void (*draw_text)(Image& image, const TextLabel& label);
 };
 
-/// The one function that the module exports, by its name and type.
+/// The only function that the module exports, by its name and type.
 inline constexpr const char* kOiioEntry = "imgmesh_oiio_module";
 using OiioEntry = const OiioModule*();
 
-/// The module, loaded on the first call and kept. Throws Error(kUnsupported) where it cannot be loaded.
+/// Returns the module, loaded on the first call and kept. Throws Error(kUnsupported) if it cannot be loaded.
 const OiioModule& oiio_module();
 
 }  // namespace imgmesh

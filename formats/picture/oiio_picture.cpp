@@ -1,4 +1,4 @@
-// Formats that imgmesh leaves to OpenImageIO.
+// Formats that OpenImageIO reads and writes for imgmesh.
 #include "formats/picture/oiio_module.h"
 #include "formats/picture/picture_decoders.h"
 #include "formats/picture/stated_color.h"

@@ -1,4 +1,4 @@
-// What an image file says of itself, read from its bytes before any library takes memory for it.
+// Reads what an image file says about itself before any library takes memory for it.
 #pragma once
 
 #include <cstdint>
@@ -11,8 +11,8 @@ namespace imgmesh {
 
 enum class PictureFormat { kPng, kJpeg, kTiff, kExr, kWebp, kGif, kBmp, kPnm, kTga, kHdr, kJpeg2000, kHeif };
 
-/// Size as the first bytes claim it; 0 where only the library can tell, which then does so without taking
-/// memory for the pixels.
+/// The size by the first bytes; 0 if only the library can tell, which then does so without taking memory for
+/// the pixels.
 struct PictureClaim {
     PictureFormat format;
     std::int64_t width = 0;
@@ -20,13 +20,13 @@ struct PictureClaim {
     std::int64_t channels = 0;
 };
 
-/// Recognises the format by the content, not by the name (TGA alone, which has no signature, by its
-/// extension), and checks a PNG's chunks to their end. Throws Error: kBadFile for no image, a broken PNG or
-/// a BMP whose compression is not for its depth, kUnsupported for camera raw files and other compressions of
+/// Recognises the format by the content, not by the name (except TGA, which has no signature, by its
+/// extension), and checks a PNG's chunks to their end. Throws Error: kBadFile for no image, a broken PNG or a
+/// BMP whose compression does not fit its depth; kUnsupported for camera raw files and other compressions of
 /// BMP.
 PictureClaim probe_picture(const std::string& path, std::span<const std::uint8_t> bytes);
 
-/// Throws Error(kBadFile) where the size is not positive or over the limits.
+/// Throws Error(kBadFile) if the size is not positive or over the limits.
 void check_size(const std::string& path, std::int64_t width, std::int64_t height, std::int64_t channels,
                 const ImageLimits& limits);
 

@@ -1,5 +1,5 @@
-// PNG through libpng. Its errors leave by longjmp, so that the functions it may leave hold nothing that would
-// have to be destroyed: everything is in a State outside of them.
+// PNG through libpng. Its errors leave by longjmp, so functions that it may leave hold nothing that needs a
+// destructor: everything is in a State outside of them.
 #include <png.h>
 
 #include <bit>
@@ -49,7 +49,7 @@ void on_read(png_structp png, png_bytep out, std::size_t count) {
     left = left.subspan(count);
 }
 
-// Palettes become RGB, grey of few bits 8 bits, a transparent colour an alpha channel.
+// Converts palettes to RGB, grey of few bits to 8 bits, and a transparent colour to an alpha channel.
 void read_header(State& s) {
     png_read_info(s.png, s.info);
     png_set_expand(s.png);
@@ -64,10 +64,10 @@ void read_header(State& s) {
 
 void read_rows(State& s) {
     png_read_image(s.png, s.rows.data());
-    png_read_end(s.png, s.info);  // metadata may stand behind the pixels
+    png_read_end(s.png, s.info);  // metadata may follow the pixels
 }
 
-// Whether `step` came to its end.
+// Returns whether `step` came to its end.
 bool guarded(State& s, void (*step)(State&)) {
     if (setjmp(png_jmpbuf(s.png))) return false;  // NOLINT(cert-err52-cpp): libpng knows no other way
     step(s);

@@ -27,7 +27,7 @@ void to_floats(std::span<const Code> codes, std::span<float> out) {
     });
 }
 
-// Truncation and a comparison are exact, and vector code, unlike lround().
+// Truncation and a comparison are exact and, unlike lround(), vectorise.
 template <typename Code>
 std::vector<Code> to_codes(std::span<const float> values) {
     constexpr float kMax = std::numeric_limits<Code>::max();

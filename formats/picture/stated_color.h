@@ -1,4 +1,4 @@
-// The colour space of an image from what its file says.
+// The colour space of an image from the statements in its file.
 #pragma once
 
 #include <cstdint>
@@ -12,12 +12,12 @@ namespace imgmesh {
 
 struct StatedColor {
     std::span<const std::uint8_t> icc = {};  ///< a profile; empty for none
-    float gamma = 0;                         ///< light is value^gamma; 0 where none is said
+    float gamma = 0;                         ///< linear = value^gamma; 0 if not stated
     std::string_view name = {};              ///< of a colour space; empty for none
 };
 
-/// The profile's colour space, else the gamma's, else that of the name; nothing where none of them is one of
-/// ours. The samples of an image whose gamma is none of ours are brought to 2.2, alpha aside.
+/// Returns the profile's colour space, else the gamma's, else that of the name; nothing if none of them is
+/// one of ours. If the gamma is none of ours, the samples are converted to 2.2, except alpha.
 std::optional<ColorSpace> stated_color_space(const StatedColor& stated, Image& image);
 
 }  // namespace imgmesh

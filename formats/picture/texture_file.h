@@ -10,12 +10,12 @@
 
 namespace imgmesh {
 
-/// What glTF knows: lossless, or of quality 95 and without transparency.
+/// The formats that glTF knows: lossless, or of quality 95 and without transparency.
 enum class TextureType { kPng, kJpeg };
 
-/// texture_image(image, mask) as a file of 8-bit sRGB. The same image gives the same bytes.
-/// Throws Error(kUnsupported) where the image has no colour, and for a masked image as JPEG;
-/// Error(kBadArgument) where it is too large for the format.
+/// Returns texture_image(image, mask) as a file of 8-bit sRGB. The same image gives the same bytes. Throws
+/// Error(kUnsupported) for an image without colour, and for a masked image as JPEG; Error(kBadArgument) if it
+/// is too large for the format.
 std::vector<std::uint8_t> encode_texture(const Image& image, const Mask& mask, TextureType type);
 
 }  // namespace imgmesh

@@ -1,5 +1,5 @@
-// WebP through libwebp itself: OpenImageIO's reader rounds colours under alpha to 8 bits in another space,
-// knows no orientation, and reads each frame of an animation into memory.
+// WebP through libwebp itself. OpenImageIO's reader rounds colours under alpha to 8 bits in another space,
+// ignores the orientation, and reads each frame of an animation into memory.
 #include <webp/decode.h>
 #include <webp/demux.h>
 #include <webp/encode.h>
@@ -52,7 +52,7 @@ DecodedPicture decode_webp(const std::string& path, Bytes bytes, const ImageLimi
     if (!WebPDecodeRGBAInto(frame.fragment.bytes, frame.fragment.size, pixels.data(), size, 4 * frame.width))
         throw broken("its first image is truncated or broken");
 
-    // An animation's first frame may cover a part of the canvas; the rest is transparent.
+    // An animation's first frame may cover only part of the canvas; the rest is transparent.
     DecodedPicture out;
     out.image = make_image(width, height, alpha || frame.width < width || frame.height < height ? 4 : 3);
     for (int y = 0; y < frame.height && y + frame.y_offset < height; ++y)
@@ -101,7 +101,7 @@ std::vector<std::uint8_t> encode_webp(const Image& image) {
     const bool done =
         WebPPictureImportRGBA(&picture, pixels.data(), 4 * image.width) && WebPEncode(&config, &picture);
     WebPPictureFree(&picture);
-    if (!done) throw std::bad_alloc();  // sizes and options are checked: memory is what is left
+    if (!done) throw std::bad_alloc();  // sizes and options are checked, so memory is the only cause left
     return {writer.mem, writer.mem + writer.size};
 }
 
