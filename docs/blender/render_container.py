@@ -26,7 +26,7 @@ def import_container(path):
 
 def picture_size(item):
     """Width and height in pixels: the object puts the middle between the first pixel's centre and the last's at the
-    origin. (Its mesh may be a cut-out, and smaller.)"""
+    origin. (The mesh of a masked image may be smaller.)"""
     return tuple(round(2 * abs(item.location[i]) / item.scale[i]) + 1 for i in (0, 2))
 
 

@@ -71,7 +71,7 @@ inline constexpr Finding kFindings[] = {
     {"mesh.index", "a face points beyond the vertices"},
     {"mesh.position", "a position is not a multiple of 1/32 pixel, too far out, or has z != 0"},
     {"mesh.color", "a colour has alpha other than 1"},
-    {"mesh.light", "light is below 0, above 2^20 or not a number"},
+    {"mesh.light", "an HDR colour is below 0, above 2^20 or not a number"},
     {"mesh.channel", "a channel's value is not finite"},
     {"mesh.orientation", "a face has no area or runs clockwise"},
     {"mesh.topology", "faces or positions changed since the pixel map was made"},

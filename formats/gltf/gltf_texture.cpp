@@ -72,7 +72,7 @@ std::string picture_type(std::span<const std::uint8_t> bytes) {
     return starts(kPngStart) ? kPng : starts(kJpegStart) ? kJpeg : "";
 }
 
-void add_texture(json& document, int view, const std::string& type, bool cut_out) {
+void add_texture(json& document, int view, const std::string& type, bool masked) {
     document["images"] = json::array({{{"bufferView", view}, {"mimeType", type}, {"name", "picture"}}});
     document["samplers"] = json::array({{{"magFilter", kLinear},
                                          {"minFilter", kLinearMipmapLinear},
@@ -81,7 +81,7 @@ void add_texture(json& document, int view, const std::string& type, bool cut_out
     document["textures"] = json::array({{{"sampler", 0}, {"source", 0}}});
     json& material = document["materials"][0];
     material["pbrMetallicRoughness"]["baseColorTexture"] = {{"index", 0}};
-    if (cut_out) material["alphaMode"] = "MASK";  // at the default, 1/2
+    if (masked) material["alphaMode"] = "MASK";  // at the default, 1/2
 }
 
 std::optional<TextureView> texture_view(const json& document, std::uint64_t mesh) {

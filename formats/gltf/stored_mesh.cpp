@@ -159,7 +159,7 @@ BaseMesh base_from_stored(const StoredMesh& mesh, Findings& findings) {
             if (layout.hdr && !is_hdr(mesh.hdr[v]))
                 lights.hit([&] {
                     const auto& [r, g, b] = mesh.hdr[v];
-                    return std::pair(cat("vertex ", v, " has the light (", r, ",", g, ",", b,
+                    return std::pair(cat("vertex ", v, " has the HDR colour (", r, ",", g, ",", b,
                                          "), expected 0 to ", kMaxHdr),
                                      Place());
                 });

@@ -8,7 +8,7 @@ namespace imgmesh {
 
 std::vector<std::uint8_t> encode_texture(const Image& image, const Mask& mask, TextureType type) {
     if (type == TextureType::kJpeg && !mask.empty())
-        throw Error(ErrorKind::kUnsupported, "a JPEG texture cannot be cut out, a PNG can");
+        throw Error(ErrorKind::kUnsupported, "a JPEG texture cannot hold a mask, a PNG can");
     return encode_image(type == TextureType::kPng ? "texture.png" : "texture.jpg", texture_image(image, mask),
                         SampleType::kUint8);
 }

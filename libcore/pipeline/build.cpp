@@ -267,8 +267,9 @@ BuildResult build_mesh_image(const Image& image, const BuildParams& asked, const
     if (!params.refine) params.refine = refinable ? refine_rounds(asked) : 0;
     if ((*params.refine > 0 || params.objective == Objective::kRgb) && !refinable)
         throw Error(ErrorKind::kUnsupported,
-                    "refinement, which the presets best and fem bring along, is for colour alone, without "
-                    "light above 1");
+                    "refinement, which the presets best and fem include, is only for colours without HDR, "
+                    "and not for "
+                    "auxiliary channels");
     const FeatureImage feature = extract_features(image, space, mask);
 
     BuildResult result;

@@ -183,7 +183,7 @@ void draw(const Image& image, const DisplacementField& field, const std::vector<
 }
 
 // Returns the image unchanged, except that opaque pixels outside the mask become transparent.
-Image cut_out(const Image& image, const DisplacementField& field) {
+Image clear_outside(const Image& image, const DisplacementField& field) {
     Image out = image;
     if (!field.has_mask) return out;
     std::vector<float> alpha = alpha_of(image);
@@ -219,7 +219,7 @@ Image warp_image(const Image& image, const DisplacementField& given, const Outpu
     DisplacementField extended;
     const DisplacementField& field = given.has_mask ? extended : given;
     if (size.width == given.width && size.height == given.height && moves_nothing(given))
-        return cut_out(image, given);
+        return clear_outside(image, given);
     std::vector<float> alpha = alpha_of(image);
     if (given.has_mask) {
         extended = given;

@@ -181,7 +181,7 @@ class Pictures(CliCase):
                 self.assertEqual((report["alpha"], report["pixels"]), ("ignored", inside.sum()))
                 np.testing.assert_array_equal(back[..., 3] > 0, inside)
 
-    def test_cut_outs_of_any_depth_and_size(self):
+    def test_masks_of_any_depth_and_size(self):
         """Odd sizes, 16 bits, float; the mask to the pixel, whatever the picture."""
         for width, height in ((1, 1), (1, 7), (31, 17)):
             alpha = (picture_files.noise(width, height, 1, seed=width) > 0.4).astype(float)
@@ -200,7 +200,7 @@ class Pictures(CliCase):
                     seen = back[..., 3] > 0 if back.shape[2] == 4 else np.ones((height, width), bool)
                     np.testing.assert_array_equal(seen, alpha[..., 0] > 0)
 
-    def test_levels_and_drawings_of_a_cut_out(self):
+    def test_levels_and_drawings_of_a_masked_image(self):
         y, x = np.mgrid[0:60, 0:80]
         ring = np.abs(np.hypot(x - 40, y - 30) - 18) < 9
         rgba = np.concatenate([picture_files.ramp(80, 60), ring[..., None].astype(float)], axis=-1)
@@ -221,7 +221,7 @@ class Pictures(CliCase):
         self.run_ok("imgmesh-reconstruct", "out.glb", "-o", "wire.svg", "--mode", "wire")
         self.assert_error("imgmesh-reconstruct", ("out.glb", "-o", "map.jpg"), 2, "map.jpg")
 
-    def test_cut_outs_that_cannot_be(self):
+    def test_masks_that_cannot_be(self):
         rgba = np.concatenate([picture_files.ramp(12, 9), np.zeros((9, 12, 1))], axis=-1)
         picture_files.png(self.folder / "clear.png", rgba)
         picture_files.png(self.folder / "in.png", picture_files.ramp(12, 9))

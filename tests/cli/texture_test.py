@@ -124,7 +124,7 @@ class Texture(CliCase):
         self.assertTrue((self.attribute("w.glb", "TEXCOORD_0") == self.attribute("t.glb", "TEXCOORD_0")).all())
         self.assertFalse((self.attribute("w.glb", "POSITION") == self.attribute("t.glb", "POSITION")).all())
 
-    def test_cut_outs(self):
+    def test_masked_images(self):
         """The texture is clear outside of the mask; its colours there are near those inside."""
         y, x = np.mgrid[0:32, 0:48]
         inside = (x - 20) ** 2 + (y - 15) ** 2 < 100

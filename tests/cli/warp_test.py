@@ -155,8 +155,8 @@ class Warp(CliCase):
             self.assertFalse(np.array_equal(read(name + ".g.png"), read("c.glb.g.png")))
         self.assert_error(TOOL, ["c.glb", "-o", "x.glb", "--handle", "24,16:500,0", "--level", "1"], 5, "turn over")
 
-    def test_cut_out(self):
-        """A ring with a soft outline, meshed as a cut-out on two levels."""
+    def test_masked_image(self):
+        """A ring with a soft boundary, meshed as a masked image on two levels."""
         y, x = np.mgrid[0:60, 0:80]
         radius = np.hypot(x - 39.5, y - 29.5)
         alpha = np.clip(26.5 - radius, 0, 1) * np.clip(radius - 13.5, 0, 1)
@@ -165,7 +165,7 @@ class Warp(CliCase):
         self.build("ring.png", "--level-faces", "300,60", output="ring.glb")
         warp = lambda *args: self.warp(*args, container="ring.glb", image="ring.png")[1]
         np.testing.assert_array_equal(warp(), original)
-        # All moved: what can be seen moves along to the bit, the faint outside of the outline too.
+        # All moved: what can be seen moves along to the bit, the faint outside of the boundary too.
         self.edits({"level": 1, "handles": [{"box": [-9, -9, 90, 90], "move": [4, 2]}]})
         moved = warp("--edits", "e.json")
         seen = original[:58, :76, 3] > 0
@@ -180,7 +180,7 @@ class Warp(CliCase):
         report = self.report(TOOL, "ring.glb", "-o", "w.glb", "--handle", "66,30:3,0", "--level", "1")
         self.assertEqual(report["moved_vertices"], 1)
         self.assertTrue(self.report("imgmesh-info", "w.glb", "--validate")["valid"])
-        self.assert_error(TOOL, ["ring.glb", "--image", "ring.png", "-o", "x.png", "--retarget", "40x40"], 5, "cut-out")
+        self.assert_error(TOOL, ["ring.glb", "--image", "ring.png", "-o", "x.png", "--retarget", "40x40"], 5, "masked image")
 
     def test_bad_edit_files(self):
         handle = {"vertex": 0, "move": [1, 1]}

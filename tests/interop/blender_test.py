@@ -71,7 +71,7 @@ def main():
                    if path.suffix in (".glb", ".gltf"))
     drawn = []
     for name, picture, options in (("photograph", "photograph.png", ["--levels", "2"]),
-                                   ("cut-out", "photograph.png", ["--mask", "mask.png"])):
+                                   ("masked", "photograph.png", ["--mask", "mask.png"])):
         drawn.append(folder / f"{name}.glb")
         subprocess.run([bin_folder / "imgmesh-build", picture, "-o", drawn[-1], "--density", "2", "--draco", "none", "-q",
                         *options], cwd=folder, check=True)

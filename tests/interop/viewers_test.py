@@ -27,7 +27,7 @@ ZOOM = 2
 MIN_PSNR = 40.0
 # Upside down or mirrored the photograph must be far from the expectation, or the comparison would tell nothing.
 MAX_PSNR_TURNED = 25.0
-# Samples this near to the mesh's outline may fall on either side of it [pixels].
+# Samples this near to the mesh's boundary may fall on either side of it [pixels].
 OUTLINE_MARGIN = 0.02
 # And so near to the alpha from which on a texture is drawn.
 ALPHA_MARGIN = 0.02
@@ -36,8 +36,8 @@ ALPHA_MARGIN = 0.02
 @dataclasses.dataclass
 class Expected:
     codes: np.ndarray  # sRGB of every sample, 0 to 255, height x width x 3
-    inside: np.ndarray  # in the mesh, away from its outline
-    outside: np.ndarray  # not in the mesh, away from its outline
+    inside: np.ndarray  # in the mesh, away from its boundary
+    outside: np.ndarray  # not in the mesh, away from its boundary
 
 
 def srgb_codes(linear):
@@ -100,7 +100,7 @@ def mesh_of(path):
 
 
 def rasterise(position, faces, vertex_values, width, height):
-    """The values at every sample, whether the mesh covers it, and whether it is near to the outline."""
+    """The values at every sample, whether the mesh covers it, and whether it is near to the boundary."""
     shape = (ZOOM * height, ZOOM * width)
     values, covered, near = np.zeros((*shape, vertex_values.shape[1])), np.zeros(shape, bool), np.zeros(shape, bool)
     for face in faces:
@@ -178,7 +178,7 @@ def compare(path, expected, is_photograph):
 def make_pictures(folder):
     photograph = Image.open(DATA / "kodim23.png").crop((70, 80, 262, 208))
     photograph.save(folder / "photograph.png")
-    # A ring with an island, cut out along soft alpha; and any shape by a mask.
+    # A ring with an island, masked by soft alpha; and any shape by a mask.
     alpha = Image.new("L", (4 * photograph.width, 4 * photograph.height), 0)
     draw = ImageDraw.Draw(alpha)
     for fill, box in ((255, (140, 20, 620, 490)), (0, (280, 130, 500, 360)), (255, (340, 190, 430, 300))):
@@ -205,7 +205,7 @@ def make_cases(bin_folder, folder):
 
     cases = []
     for name, picture, options in (("draco", "photograph.png", ()), ("alpha", "alpha.png", ()), ("1x1", "one.png", ()),
-                                   ("cut-out", "photograph.png", ("--mask", "mask.png"))):
+                                   ("masked", "photograph.png", ("--mask", "mask.png"))):
         run("imgmesh-build", picture, "-o", f"{name}.glb", "--density", "2", *options)
         run("imgmesh-convert", f"{name}.glb", "-o", f"{name}-plain.glb", "--draco", "none")
         cases.append(Case(f"{name}.glb", f"{name}-plain.glb", name != "1x1"))
@@ -220,7 +220,7 @@ def make_cases(bin_folder, folder):
     run("imgmesh-warp", "draco-texture-plain.glb", "--handle", "60,50:6,-3", "-o", "warped-texture.gltf")
     run("imgmesh-convert", "warped-texture.gltf", "-o", "warped-texture-plain.glb", "--draco", "none")
     cases.append(Case("warped-texture.gltf", "warped-texture-plain.glb"))
-    for name in ("draco", "cut-out"):
+    for name in ("draco", "masked"):
         run("imgmesh-convert", f"{name}.glb", "-o", f"{name}.json", "--image", "photograph.png")
         cases.append(Case(f"{name}.json", f"{name}.json", viewers=("pixi",)))
     return cases

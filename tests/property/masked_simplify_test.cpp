@@ -19,7 +19,7 @@ using namespace imgmesh::test;
 
 namespace {
 
-GridMesh cut_out(const Mask& mask, Kind kind = Kind::kNoise) {
+GridMesh masked_grid(const Mask& mask, Kind kind = Kind::kNoise) {
     return grid_mesh(sample_feature(kind, mask.width, mask.height), mask);
 }
 
@@ -118,7 +118,7 @@ TEST_CASE("masked images: the dense mesh of small masks") {
              Case{{"##...##", "#######", "##...##"}, 18, 14, 3, 3}  // and of one
          }) {
         INFO(c.rows[0] << " " << c.rows.size());
-        const BaseMesh mesh = dense_mesh(cut_out(mask_of(c.rows)));
+        const BaseMesh mesh = dense_mesh(masked_grid(mask_of(c.rows)));
         const MeshQuality q = mesh_quality(mesh);
         CHECK(mesh.vertex_count() == c.vertices);
         CHECK(mesh.faces.size() == c.faces);
@@ -130,7 +130,7 @@ TEST_CASE("masked images: the dense mesh of small masks") {
 
 // A pixel with triangles to its left and right and none between them is two vertices.
 TEST_CASE("masked images: a pinch is split") {
-    const GridMesh pinched = cut_out(mask_of({"#.#", "###", "#.#"}));
+    const GridMesh pinched = masked_grid(mask_of({"#.#", "###", "#.#"}));
     // Left: triangles (0,0) (0,1) (1,1) and (0,1) (0,2) (1,1); right likewise: the middle is shared by both.
     REQUIRE(pinched.copies == std::vector<Id>{4});
     const RingMesh rings = ring_mesh(pinched);
@@ -144,7 +144,7 @@ TEST_CASE("masked images: a pinch is split") {
 TEST_CASE("masked images: the dense mesh has the faces that the cells say, once each") {
     for (const auto& [name, mask] : sample_masks(40)) {
         INFO(name);
-        const BaseMesh mesh = dense_mesh(cut_out(mask));
+        const BaseMesh mesh = dense_mesh(masked_grid(mask));
         double area = 0;
         CHECK(static_cast<std::int64_t>(mesh.faces.size()) == expected_faces(mask, area));
         const MeshQuality q = mesh_quality(mesh);
@@ -156,7 +156,7 @@ TEST_CASE("masked images: the dense mesh has the faces that the cells say, once 
 
 TEST_CASE("masked images: a mask with all pixels inside is meshed as if there were none") {
     const Mask full = mask_where(30, 22, [](int, int) { return true; });
-    const BaseMesh with = dense_mesh(cut_out(full)), without = dense_mesh(cut_out(Mask{30, 22, {}}));
+    const BaseMesh with = dense_mesh(masked_grid(full)), without = dense_mesh(masked_grid(Mask{30, 22, {}}));
     CHECK(with.position == without.position);
     CHECK(with.faces == without.faces);
 }
@@ -164,7 +164,7 @@ TEST_CASE("masked images: a mask with all pixels inside is meshed as if there we
 TEST_CASE("masked images: topology is kept, every pixel stays covered, and the boundary stays close") {
     for (const auto& [name, mask] : sample_masks(40))
         for (const Kind kind : {Kind::kNoise, Kind::kConstant, Kind::kDisc}) {
-            const GridMesh grid = cut_out(mask, kind);
+            const GridMesh grid = masked_grid(mask, kind);
             const BaseMesh dense = dense_mesh(grid);
             const MeshQuality dense_quality = mesh_quality(dense);
             for (const std::int64_t vertices : {200, 0}) {
@@ -187,7 +187,7 @@ TEST_CASE("masked images: masks at random keep topology, pixels and distance") {
     for (std::uint32_t seed = 1; seed <= 150; ++seed) {
         INFO("seed " << seed);
         const Mask mask = random_mask(seed);
-        const GridMesh grid = cut_out(mask, kAllKinds[seed % 5]);
+        const GridMesh grid = masked_grid(mask, kAllKinds[seed % 5]);
         const BaseMesh dense = dense_mesh(grid);
         const SimplifyTarget targets[] = {{.vertices = static_cast<std::int64_t>(dense.vertex_count()) / 2},
                                           {.vertices = 0}};
@@ -205,16 +205,16 @@ TEST_CASE("masked images: masks at random keep topology, pixels and distance") {
 // A ring around a circle of radius r and one pixel thick has room for pi / acos(1 - 1 / r) edges at the
 // least, 16 for this disc, a rounded one of pixels for some more. Stairs of every slope become straight.
 TEST_CASE("masked images: boundaries become simple") {
-    const GridMesh disc = cut_out(sample_masks(120)[0].mask, Kind::kConstant);
+    const GridMesh disc = masked_grid(sample_masks(120)[0].mask, Kind::kConstant);
     CHECK(coarse_mesh(disc, 0).vertex_count() <= 55);
     for (const int slope : {1, 2, 3, 7, 20}) {
         const Mask triangle =
             mask_where(80, 60, [&](int x, int y) { return x + slope * y <= 76 && x >= 2 && y >= 1; });
-        CHECK(coarse_mesh(cut_out(triangle, Kind::kConstant), 0).vertex_count() <= 12);
+        CHECK(coarse_mesh(masked_grid(triangle, Kind::kConstant), 0).vertex_count() <= 12);
     }
     const Mask rectangle =
         mask_where(60, 40, [](int x, int y) { return x > 3 && x < 50 && y > 5 && y < 30; });
-    const BaseMesh mesh = coarse_mesh(cut_out(rectangle, Kind::kConstant), 0);
+    const BaseMesh mesh = coarse_mesh(masked_grid(rectangle, Kind::kConstant), 0);
     CHECK(mesh.vertex_count() == 4);
     CHECK(mesh_quality(mesh).area == 45 * 23);
 }
@@ -222,7 +222,7 @@ TEST_CASE("masked images: boundaries become simple") {
 TEST_CASE("masked images: levels, limits and rebuilt quadrics keep the topology") {
     for (const auto& [name, mask] : sample_masks(48)) {
         INFO(name);
-        const GridMesh grid = cut_out(mask, Kind::kDisc);
+        const GridMesh grid = masked_grid(mask, Kind::kDisc);
         const MeshQuality dense = mesh_quality(dense_mesh(grid));
         const SimplifyTarget targets[] = {{.vertices = 600}, {.vertices = 150}, {.vertices = 20}};
         for (const SimplifyParams& params : {SimplifyParams{}, SimplifyParams{.rebuild_quadrics = true},
@@ -238,7 +238,7 @@ TEST_CASE("masked images: levels, limits and rebuilt quadrics keep the topology"
 // Large enough for several rounds of tiles with boundaries through them.
 TEST_CASE("masked images: tiles keep topology, pixels and distance, the same with any number of threads") {
     const Mask mask = sample_masks(220)[2].mask;  // a ring
-    const GridMesh grid = cut_out(mask);
+    const GridMesh grid = masked_grid(mask);
     const BaseMesh first = coarse_mesh(grid, 1500);
     check_topology(first, mesh_quality(dense_mesh(grid)));
     check_covers(first, mask);
@@ -252,11 +252,11 @@ TEST_CASE("masked images: tiles keep topology, pixels and distance, the same wit
 
 TEST_CASE("masked images: the same mesh every time, with any number of threads") {
     const Mask mask = sample_masks(150)[4].mask;
-    const GridMesh grid = cut_out(mask);
+    const GridMesh grid = masked_grid(mask);
     const BaseMesh first = coarse_mesh(grid, 400);
     for (const int threads : {1, 3}) {
         const ThreadLimit limit(threads);
-        const BaseMesh again = coarse_mesh(cut_out(mask), 400);
+        const BaseMesh again = coarse_mesh(masked_grid(mask), 400);
         CHECK(again.position == first.position);
         CHECK(again.faces == first.faces);
         CHECK(again.feature == first.feature);

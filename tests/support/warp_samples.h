@@ -30,7 +30,7 @@ inline MeshImage grid_pyramid(int width, int height, const std::vector<int>& cel
 }
 
 /// Cuts out the pixels for which `inside` holds, on all levels.
-inline void cut_out(MeshImage& m, const std::function<bool(int x, int y)>& inside) {
+inline void apply_mask(MeshImage& m, const std::function<bool(int x, int y)>& inside) {
     m.source.has_mask = true;
     for (Level& level : m.levels)
         for (int y = 0; y < level.map.height; ++y)

@@ -80,6 +80,6 @@ TEST_CASE("retarget_field: thin pictures work, masked images are refused") {
         CHECK(warp_image(noise_image(w, h, 3), field, {5, 4}).channels == 3);
     }
     MeshImage m = grid_pyramid(9, 9, {2});
-    cut_out(m, [](int x, int) { return x > 2; });
+    apply_mask(m, [](int x, int) { return x > 2; });
     CHECK_THROWS_AS(retarget_field(m, {5, 5}), Error);
 }

@@ -274,7 +274,7 @@ TEST_CASE("warp_image: a side that rests is opaque") {
 TEST_CASE("warp_image: masked images keep their alpha, soft boundaries included") {
     MeshImage m = grid_pyramid(24, 20, {5});
     const auto distance = [](int x, int y) { return std::hypot(x - 11.5, y - 9.5); };
-    cut_out(m, [&](int x, int y) { return distance(x, y) < 6; });
+    apply_mask(m, [&](int x, int y) { return distance(x, y) < 6; });
     Image soft = noise_image(24, 20, 4);
     for (int y = 0; y < 20; ++y)
         for (int x = 0; x < 24; ++x)
@@ -309,7 +309,7 @@ TEST_CASE("warp_image: masked images keep their alpha, soft boundaries included"
 // Colours outside must not bleed in, wherever the boundary goes.
 TEST_CASE("warp_image: what is outside shows nowhere") {
     MeshImage m = grid_pyramid(40, 30, {6});
-    cut_out(m, [](int x, int y) { return (x / 3 + y / 4) % 2 == 0 && x != 20; });
+    apply_mask(m, [](int x, int y) { return (x / 3 + y / 4) % 2 == 0 && x != 20; });
     Image image = make_image(40, 30, 3);
     for (int y = 0; y < 30; ++y)
         for (int x = 0; x < 40; ++x) {

@@ -156,7 +156,7 @@ TEST_CASE("displacement_field: edits of several levels add up") {
 TEST_CASE("warp_image: pulling one side of an annulus leaves the far side untouched") {
     MeshImage m = grid_pyramid(64, 64, {6});
     const auto radius = [](int x, int y) { return std::hypot(x - 31.5, y - 31.5); };
-    cut_out(m, [&](int x, int y) { return radius(x, y) < 30 && radius(x, y) > 17; });
+    apply_mask(m, [&](int x, int y) { return radius(x, y) < 30 && radius(x, y) > 17; });
     const Image image = noise_image(64, 64, 3);
     const Image still = warp_image(image, displacement_field(m, solve_edits(m, {})));
     const Image pulled =
