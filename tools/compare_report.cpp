@@ -10,7 +10,7 @@
 namespace imgmesh {
 namespace {
 
-// A measure by its name in the report and by its title in text and plots.
+// A measure: its name in the report, and its title in text and plots.
 template <typename Distributions>
 struct Measure {
     const char* key;
@@ -43,7 +43,7 @@ void add_panels(std::vector<HistogramPanel>& panels, const Measure<Distributions
     panels.push_back(std::move(panel));
 }
 
-// Before the report is printed as JSON, what is infinite or no number has not become null yet.
+// Until the report is printed as JSON, infinite and undefined numbers are not null yet.
 std::string number(const Report& value) {
     const double x = value.get<double>();
     return std::isfinite(x) ? format_number(x) : "-";

@@ -1,4 +1,4 @@
-// What imgmesh-compare found, as the report's members, as text and as histograms.
+// What imgmesh-compare has found, as members of the report, as text and as histograms.
 #pragma once
 
 #include <iosfwd>
@@ -14,7 +14,7 @@
 
 namespace imgmesh {
 
-/// All that is measured of one level of a container.
+/// All measures of one level of a container.
 struct LevelQuality {
     std::size_t vertices = 0;
     std::size_t faces = 0;
@@ -25,12 +25,12 @@ struct LevelQuality {
 
 Report distribution_report(const Distribution& d);
 Report quality_report(const LevelQuality& quality);
-/// luv, ciede2000: the distributions of the difference's errors of pixels.
+/// luv, ciede2000: the distributions of the pixels' errors.
 Report difference_report(const ImageDifference& difference, const Distribution& luv,
                          const Distribution& ciede2000);
 
-/// The measures of `qualities` as panels, with one series each. names: of each quality, an index into the
-/// plot's names.
+/// Returns the measures of `qualities` as panels with one series each. names: for each quality an index into
+/// the plot's names.
 std::vector<HistogramPanel> quality_panels(const std::vector<LevelQuality>& qualities,
                                            const std::vector<std::size_t>& names);
 

@@ -1,4 +1,4 @@
-// What imgmesh-segment tells of its regions.
+// What imgmesh-segment reports about its regions.
 #pragma once
 
 #include <string>
@@ -10,10 +10,10 @@ namespace imgmesh {
 
 std::vector<Vec3f> mean_colors(const std::vector<RegionFacts>& facts);
 
-/// The members of the report that concern the segmentation.
+/// Returns the members of the report that concern the segmentation.
 Report segmentation_report(const Segmentation& result, const std::vector<RegionFacts>& facts);
 
-/// The file of --report, schemas/imgmesh-segment.regions.schema.json.
+/// Returns the file of --report: schemas/imgmesh-segment.regions.schema.json.
 std::string regions_text(const LabelImage& labels, const std::vector<RegionFacts>& facts,
                          const std::string& generator, const std::string& input);
 

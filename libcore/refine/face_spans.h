@@ -1,4 +1,4 @@
-// The pixels of a triangle as spans, such that the faces of a mesh share out its pixels: each counts once.
+// The pixels of a triangle as spans. The faces of a mesh divide its pixels among them: each counts once.
 #pragma once
 
 #include <algorithm>
@@ -9,9 +9,9 @@
 
 namespace imgmesh {
 
-/// Where an edge crosses a row: the first pixel that is not left of it. Exact, as positions are multiples of
-/// 1/32 px: numerators stay below 2^53, and a quotient that is not whole differs from every whole number by
-/// more than a double's rounding.
+/// The first pixel of a row that is not left of an edge. It is exact, because positions are multiples of 1/32
+/// px: numerators stay below 2^53, and a quotient that is not whole differs from every whole number by more
+/// than a double's rounding.
 struct SpanEdge {
     double numerator = 0, per_row = 0, denominator = 1;
 
@@ -31,12 +31,12 @@ struct SpanEdge {
     }
 };
 
-/// Calls row(y, begin, end) for the pixels (begin..end-1, y) of a face of positive area, rows in ascending
-/// order.
+/// Calls row(y, begin, end) for the pixels (begin..end-1, y) of a face of positive area, in ascending
+/// rows.
 ///
-/// A pixel whose centre lies on an edge belongs to the face that its centre would be in if it lay a trifle
-/// to the right and, far less, down; in the last column to the left, in the last row up. So each pixel of a
-/// mesh that covers the whole width x height image is in exactly one face.
+/// A pixel whose centre lies on an edge belongs to the face just to the right of its centre and, far less,
+/// below; in the last column just to the left, in the last row just above. So each pixel of a mesh that
+/// covers the whole width x height image is in exactly one face.
 template <class Row>
 IMGMESH_INLINE void for_each_span(const Vec2f& a, const Vec2f& b, const Vec2f& c, int width, int height,
                                   Row&& row) {

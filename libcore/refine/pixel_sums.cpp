@@ -6,8 +6,8 @@
 namespace imgmesh {
 namespace {
 
-// Colour and weights of a face relative to its first corner: f + fx dx + fy dy; weights of the second corner
-// ux dx + uy dy, of the third vx dx + vy dy.
+// Colour and weights of a face relative to its first corner: the colour is f + fx dx + fy dy, the weight of
+// the second corner ux dx + uy dy, that of the third vx dx + vy dy.
 struct Plane {
     float ax, ay, f[3], fx[3], fy[3], ux, uy, vx, vy;
 
@@ -33,7 +33,7 @@ struct Plane {
 };
 
 constexpr Float8 kLane = {0, 1, 2, 3, 4, 5, 6, 7};
-// Float sums are added up in double after so many rows.
+// Float sums are added up in double after this many rows.
 constexpr int kFlushRows = 32;
 
 IMGMESH_INLINE double total(const Float8& v) {
@@ -42,27 +42,26 @@ IMGMESH_INLINE double total(const Float8& v) {
     return (a + c) + (b + d);
 }
 
-// Calls chunk(e, dx, dy, inside) for every eight pixels; e and dx have no meaning where not inside.
+// Calls chunk(e, dx, dy, inside) for every eight pixels; e and dx are undefined where not inside.
 template <class Chunk, class Flush>
-IMGMESH_INLINE void for_each_chunk(const ImagePlanes& picture, const Plane& plane, const Corner& a,
+IMGMESH_INLINE void for_each_chunk(const ImagePlanes& image, const Plane& plane, const Corner& a,
                                    const Corner& b, const Corner& c, Chunk&& chunk, Flush&& flush) {
     int rows = 0;
     for_each_span(
-        a.position, b.position, c.position, picture.width,
-        picture.height, [&](int y, int begin, int end) __attribute__((always_inline)) {
-            const std::size_t start = static_cast<std::size_t>(y) * static_cast<std::size_t>(picture.width) +
+        a.position, b.position, c.position, image.width,
+        image.height, [&](int y, int begin, int end) __attribute__((always_inline)) {
+            const std::size_t start = static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) +
                                       static_cast<std::size_t>(begin);
             const float dy = static_cast<float>(y) - plane.ay;
             const float dx = static_cast<float>(begin) - plane.ax;
             for (int i = 0; i < end - begin; i += 8) {
                 const Float8 dx8 = dx + static_cast<float>(i) + kLane;
                 Int8 inside = kLane < static_cast<float>(end - begin - i);
-                if (!picture.inside.empty())
-                    inside &= load8(picture.inside.data() + start + static_cast<std::size_t>(i)) > 0.0f;
+                if (!image.inside.empty())
+                    inside &= load8(image.inside.data() + start + static_cast<std::size_t>(i)) > 0.0f;
                 Float8 e[3];
                 for (std::size_t k = 0; k < 3; ++k) {
-                    const Float8 want =
-                        load8(picture.channel[k].data() + start + static_cast<std::size_t>(i));
+                    const Float8 want = load8(image.channel[k].data() + start + static_cast<std::size_t>(i));
                     e[k] = plane.f[k] + plane.fy[k] * dy + plane.fx[k] * dx8 - want;
                     e[k] = inside ? e[k] : Float8{};
                 }
@@ -73,14 +72,14 @@ IMGMESH_INLINE void for_each_chunk(const ImagePlanes& picture, const Plane& plan
     flush();
 }
 
-IMGMESH_INLINE CornerSums corner_sums_of(const ImagePlanes& picture, const Corner& a, const Corner& b,
+IMGMESH_INLINE CornerSums corner_sums_of(const ImagePlanes& image, const Corner& a, const Corner& b,
                                          const Corner& c) {
     const Plane plane(a, b, c);
     const float wx = -plane.ux - plane.vx, wy = -plane.uy - plane.vy;
     CornerSums sums;
     Float8 ee = {}, ww = {}, we[3] = {};
     for_each_chunk(
-        picture, plane, a, b, c,
+        image, plane, a, b, c,
         [&](const Float8* e, const Float8& dx, float dy, const Int8& inside, int, int)
             __attribute__((always_inline)) {
                 Float8 w = 1 + wy * dy + wx * dx;
@@ -98,12 +97,12 @@ IMGMESH_INLINE CornerSums corner_sums_of(const ImagePlanes& picture, const Corne
     return sums;
 }
 
-IMGMESH_INLINE double squared_error_of(const ImagePlanes& picture, const Corner& a, const Corner& b,
+IMGMESH_INLINE double squared_error_of(const ImagePlanes& image, const Corner& a, const Corner& b,
                                        const Corner& c) {
     double sum = 0;
     Float8 ee = {};
     for_each_chunk(
-        picture, Plane(a, b, c), a, b, c,
+        image, Plane(a, b, c), a, b, c,
         [&](const Float8* e, const Float8&, float, const Int8&, int, int)
             __attribute__((always_inline)) { ee += e[0] * e[0] + e[1] * e[1] + e[2] * e[2]; },
         [&]() __attribute__((always_inline)) {
@@ -113,13 +112,13 @@ IMGMESH_INLINE double squared_error_of(const ImagePlanes& picture, const Corner&
     return sum;
 }
 
-IMGMESH_INLINE FaceSums face_sums_of(const ImagePlanes& picture, const Corner& a, const Corner& b,
+IMGMESH_INLINE FaceSums face_sums_of(const ImagePlanes& image, const Corner& a, const Corner& b,
                                      const Corner& c) {
     const Plane plane(a, b, c);
     FaceSums sums;
     Float8 ee = {}, ww[3][3] = {}, we[3][3] = {};
     for_each_chunk(
-        picture, plane, a, b, c,
+        image, plane, a, b, c,
         [&](const Float8* e, const Float8& dx, float dy, const Int8& inside, int, int)
             __attribute__((always_inline)) {
                 Float8 w[3];
@@ -152,17 +151,17 @@ IMGMESH_INLINE FaceSums face_sums_of(const ImagePlanes& picture, const Corner& a
 }
 
 #if defined(__x86_64__)
-__attribute__((target("avx2"))) CornerSums corner_sums_avx2(const ImagePlanes& picture, const Corner& a,
+__attribute__((target("avx2"))) CornerSums corner_sums_avx2(const ImagePlanes& image, const Corner& a,
                                                             const Corner& b, const Corner& c) {
-    return corner_sums_of(picture, a, b, c);
+    return corner_sums_of(image, a, b, c);
 }
-__attribute__((target("avx2"))) double squared_error_avx2(const ImagePlanes& picture, const Corner& a,
+__attribute__((target("avx2"))) double squared_error_avx2(const ImagePlanes& image, const Corner& a,
                                                           const Corner& b, const Corner& c) {
-    return squared_error_of(picture, a, b, c);
+    return squared_error_of(image, a, b, c);
 }
-__attribute__((target("avx2"))) FaceSums face_sums_avx2(const ImagePlanes& picture, const Corner& a,
+__attribute__((target("avx2"))) FaceSums face_sums_avx2(const ImagePlanes& image, const Corner& a,
                                                         const Corner& b, const Corner& c) {
-    return face_sums_of(picture, a, b, c);
+    return face_sums_of(image, a, b, c);
 }
 bool has_avx2() {
     static const bool kAvx2 = __builtin_cpu_supports("avx2");
@@ -172,44 +171,44 @@ bool has_avx2() {
 
 }  // namespace
 
-ImagePlanes::ImagePlanes(const FeatureImage& picture, const Mask& mask)
-    : width(picture.width), height(picture.height) {
+ImagePlanes::ImagePlanes(const FeatureImage& image, const Mask& mask)
+    : width(image.width), height(image.height) {
     constexpr std::size_t kPadding = 8;
     for (std::size_t k = 0; k < 3; ++k) {
-        channel[k].resize(picture.pixel_count() + kPadding);
-        for (std::size_t i = 0; i < picture.pixel_count(); ++i) channel[k][i] = picture.pixel(i)[k];
+        channel[k].resize(image.pixel_count() + kPadding);
+        for (std::size_t i = 0; i < image.pixel_count(); ++i) channel[k][i] = image.pixel(i)[k];
     }
     if (mask.empty()) return;
-    inside.resize(picture.pixel_count() + kPadding);
-    for (std::size_t i = 0; i < picture.pixel_count(); ++i) inside[i] = mask.contains(i) ? 1.0f : 0.0f;
+    inside.resize(image.pixel_count() + kPadding);
+    for (std::size_t i = 0; i < image.pixel_count(); ++i) inside[i] = mask.contains(i) ? 1.0f : 0.0f;
 }
 
-CornerSums corner_sums(const ImagePlanes& picture, const Corner& a, const Corner& b, const Corner& c) {
+CornerSums corner_sums(const ImagePlanes& image, const Corner& a, const Corner& b, const Corner& c) {
 #if defined(__x86_64__)
-    if (has_avx2()) return corner_sums_avx2(picture, a, b, c);
+    if (has_avx2()) return corner_sums_avx2(image, a, b, c);
 #endif
-    return corner_sums_of(picture, a, b, c);
+    return corner_sums_of(image, a, b, c);
 }
 
-double squared_error(const ImagePlanes& picture, const Corner& a, const Corner& b, const Corner& c) {
+double squared_error(const ImagePlanes& image, const Corner& a, const Corner& b, const Corner& c) {
 #if defined(__x86_64__)
-    if (has_avx2()) return squared_error_avx2(picture, a, b, c);
+    if (has_avx2()) return squared_error_avx2(image, a, b, c);
 #endif
-    return squared_error_of(picture, a, b, c);
+    return squared_error_of(image, a, b, c);
 }
 
-FaceSums face_sums(const ImagePlanes& picture, const Corner& a, const Corner& b, const Corner& c) {
+FaceSums face_sums(const ImagePlanes& image, const Corner& a, const Corner& b, const Corner& c) {
 #if defined(__x86_64__)
-    if (has_avx2()) return face_sums_avx2(picture, a, b, c);
+    if (has_avx2()) return face_sums_avx2(image, a, b, c);
 #endif
-    return face_sums_of(picture, a, b, c);
+    return face_sums_of(image, a, b, c);
 }
 
-WorstPixel worst_pixel(const ImagePlanes& picture, const Corner& a, const Corner& b, const Corner& c) {
+WorstPixel worst_pixel(const ImagePlanes& image, const Corner& a, const Corner& b, const Corner& c) {
     const Plane plane(a, b, c);
     WorstPixel worst;
     for_each_chunk(
-        picture, plane, a, b, c,
+        image, plane, a, b, c,
         [&](const Float8* e, const Float8&, float, const Int8& inside, int y, int x) {
             const Float8 ee = e[0] * e[0] + e[1] * e[1] + e[2] * e[2];
             for (int k = 0; k < 8; ++k)

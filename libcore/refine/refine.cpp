@@ -9,12 +9,12 @@
 
 namespace imgmesh {
 
-// Rounds end where one gains less than this share of the error.
+// Rounds end when one gains less than this share of the error.
 constexpr double kLeastGain = 1e-4;
 
-RefineReport refine(BaseMesh& mesh, const FeatureImage& picture, const RefineParams& params,
+RefineReport refine(BaseMesh& mesh, const FeatureImage& image, const RefineParams& params,
                     const Progress& progress, const Mask& mask) {
-    const ImagePlanes planes(picture, mask);
+    const ImagePlanes planes(image, mask);
     Refiner refiner(mesh, planes, params);
     mesh = refiner.result();
     RefineReport report;
@@ -26,7 +26,7 @@ RefineReport refine(BaseMesh& mesh, const FeatureImage& picture, const RefinePar
         report.moves += refiner.move_vertices();
         refiner.fit_colors();
         if (params.exchange > 0) refiner.exchange(params.exchange);
-        // Steps may raise the error for a better shape; a round may not.
+        // A step may raise the error for a better shape; a round may not.
         const double error = refiner.total_error();
         if (!(error < report.error.back())) break;
         report.error.push_back(error);

@@ -1,4 +1,4 @@
-// Refinement: the base mesh's vertices, edges and colours adjusted to the image's own pixels.
+// Refinement: adjusts the base mesh's vertices, edges and colours to the image's own pixels.
 #pragma once
 
 #include <cstdint>
@@ -12,40 +12,38 @@
 
 namespace imgmesh {
 
-/// Which colours a vertex may have: those of a container (in_gamut), or [0, 1] in each channel.
+/// The colours that a vertex may have: those of a container (in_gamut), or [0, 1] in each channel.
 enum class ColorRange { kLuv, kUnit };
 
 struct RefineParams {
     int rounds = 0;          ///< of colours, moves, flips and relocations; >= 0
-    double min_quality = 0;  ///< no new triangle of a lesser q = 4 sqrt(3) area / sum of squared edges
-    double max_face_area = std::numeric_limits<double>::infinity();  ///< no new triangle larger [px^2]
+    double min_quality = 0;  ///< no new triangle has a lesser q = 4 sqrt(3) area / sum of squared edges
+    double max_face_area = std::numeric_limits<double>::infinity();  ///< no new triangle is larger [px^2]
     double shape_weight = 0;    ///< of sum (1/q - 1) over faces, in mean squared errors of a face; >= 0
-    double relocations = 0.05;  ///< share of the vertices that may be put elsewhere in a round; 0 to 1
+    double relocations = 0.05;  ///< share of the vertices that a round may relocate; 0 to 1
     double exchange = 0;        ///< share of the vertices that a round adds, then removes elsewhere; 0 to 1
     ColorRange range = ColorRange::kLuv;
 };
 
 struct RefineReport {
-    /// Squared error summed over pixels and channels: with fitted colours at the start, then after each
-    /// round.
+    /// Squared error summed over pixels and channels: first with fitted colours, then after each round.
     std::vector<double> error;
     std::int64_t moves = 0, flips = 0, relocations = 0;
 };
 
 /// Lowers the squared error of the mesh drawn with colours interpolated linearly over its faces. Each round
-/// fits all colours by least squares, moves vertices by Gauss-Newton steps, flips edges, and takes vertices
-/// from where their loss costs least to where they gain most; every single step lowers the error
-/// plus what shape weighs, and a round that does not lower the error alone is dropped with all after it: it
-/// never rises. The numbers of vertices and of faces stay.
+/// fits all colours by least squares, moves vertices by Gauss-Newton steps, flips edges, and relocates
+/// vertices from where their loss costs least to where they gain most. Every step lowers the sum of error and
+/// weighted shape. A round that does not lower the error itself is dropped, and so are all after it, so the
+/// error never rises. The numbers of vertices and of faces stay.
 ///
-/// mesh     any boundary, three channels, positions on kPositionStep; corners and boundaries other than
-/// straight
-///          sides of the bounding box stay, vertices of such sides slide
-/// image  what to draw, in the space of mesh.feature; pixels outside the mesh do not count,
-///          nor do those outside `mask`, which is empty() or of the image's size
+/// mesh   any boundary, three channels, positions on kPositionStep; corners and boundaries stay, except that
+///        vertices on straight sides of the bounding box slide
+/// image  what to draw, in the space of mesh.feature; pixels outside the mesh do not count, nor do those
+///        outside `mask`, which is empty() or of the image's size
 ///
-/// Source: docs/decisions/0012-refinement.md. Same result for any number of threads.
-RefineReport refine(BaseMesh& mesh, const FeatureImage& picture, const RefineParams& params,
+/// Source: docs/decisions/0012-refinement.md. The result is the same for any number of threads.
+RefineReport refine(BaseMesh& mesh, const FeatureImage& image, const RefineParams& params,
                     const Progress& progress = {}, const Mask& mask = {});
 
 }  // namespace imgmesh

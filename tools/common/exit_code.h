@@ -1,4 +1,4 @@
-// How a tool ends, as a number for scripts.
+// The exit codes of the tools, for scripts.
 #pragma once
 
 #include "libcore/base/error.h"

@@ -12,13 +12,13 @@
 namespace imgmesh {
 namespace {
 
-// Told apart also by people who do not tell red from green: blue, orange, grey.
+// Blue, orange, grey: colour-blind people can distinguish them too.
 const std::array<Vec3f, 3> kColors = {Vec3f(0.20f, 0.42f, 0.66f), Vec3f(0.88f, 0.53f, 0.15f),
                                       Vec3f(0.42f, 0.42f, 0.42f)};
 const Vec3f kInk(0.15f, 0.15f, 0.15f), kPale(0.85f, 0.85f, 0.85f);
 
-// Of the drawing and of a panel [pixels]. The bars' area is a multiple of 20 wide: most histograms have 20
-// bins.
+// Sizes of the drawing and of a panel [pixels]. The width of the bars' area is a multiple of 20, because most
+// histograms have 20 bins.
 constexpr int kColumns = 3, kMargin = 14, kLegendRow = 20;
 constexpr int kPanelWidth = 350, kPanelHeight = 240;
 constexpr int kLeft = 50, kTop = 56, kBarsWidth = 280, kBarsHeight = 150;
@@ -32,7 +32,7 @@ double share_of(std::int64_t part, const Distribution& d) {
     return d.count > 0 ? static_cast<double>(part) / static_cast<double>(d.count) : 0;
 }
 
-// The least of these shares, or 1, that holds every bar.
+// Returns the least of these shares, or 1, that no bar exceeds.
 double share_axis(const HistogramPanel& panel) {
     double top = 0;
     for (const HistogramSeries& s : panel.series)
@@ -86,13 +86,13 @@ class PanelWriter {
             const auto height = static_cast<int>(std::lround(share / axis_ * kBarsHeight));
             const int slot = bin * series + place;
             const int from = slot * kBarsWidth / slots, to = (slot + 1) * kBarsWidth / slots;
-            // A gap between bins, none between the bars of one bin.
+            // There is a gap between bins, and none between the bars of one bin.
             const int gap = place + 1 == series ? 1 : 0;
             if (height > 0) box(from, kBarsHeight - height, to - from - gap, height, color(s));
         }
     }
 
-    // Mean and spread, and how many values stand outside the bins.
+    // Writes mean and deviation, and how many values lie outside the bins.
     void write_figures(std::size_t s) {
         const Distribution& d = panel_.series[s].distribution;
         if (d.count == 0) return;

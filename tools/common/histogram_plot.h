@@ -1,4 +1,4 @@
-// Histograms as a drawing of boxes and words, which becomes an SVG or an image.
+// Histograms as a drawing of boxes and labels, which becomes an SVG or an image.
 #pragma once
 
 #include <cstddef>
@@ -12,7 +12,7 @@
 namespace imgmesh {
 
 struct HistogramSeries {
-    std::size_t name = 0;  ///< index of its name; decides the colour
+    std::size_t name = 0;  ///< index of its name; determines the colour
     Distribution distribution;
 };
 
@@ -27,7 +27,7 @@ struct PlotBox {
     Vec3f color;              ///< sRGB
 };
 
-/// Boxes are drawn in order, labels over them, on white.
+/// Boxes are drawn in order on white, labels over them.
 struct Plot {
     int width = 0;
     int height = 0;
@@ -35,14 +35,14 @@ struct Plot {
     std::vector<TextLabel> labels;
 };
 
-/// The names as a legend, then the panels in rows of three. Heights are shares of a series' values, so that
-/// series of different counts compare; what lies outside the bins is told in words. At most three names.
+/// Draws the names as a legend, then the panels in rows of three. Heights are shares of a series' values, so
+/// series of different counts can be compared. A text gives the values outside the bins. At most three names.
 Plot histogram_plot(const std::vector<std::string>& names, const std::vector<HistogramPanel>& panels);
 
-/// The drawing as an SVG document.
+/// Returns the drawing as an SVG document.
 std::string plot_svg(const Plot& plot);
 
-/// The boxes of the drawing, `scale` times as large, as an RGB image in sRGB; and the labels for it.
+/// Returns the boxes of the drawing, `scale` times as large, as an RGB image in sRGB, and the labels for it.
 Image plot_boxes(const Plot& plot, int scale);
 std::vector<TextLabel> plot_labels(const Plot& plot, int scale);
 

@@ -26,7 +26,8 @@ void* allocate(std::size_t size, std::size_t alignment) {
         else if (::posix_memalign(&block, alignment, size) != 0)
             block = nullptr;
         if (block) {
-            // What is left of a page stays in small ones. A kernel without large pages says no: none then.
+            // The rest of a page stays in small pages. A kernel without huge pages refuses; then there are
+            // none.
             if (large) ::madvise(block, size / kPage * kPage, MADV_HUGEPAGE);
             return block;
         }

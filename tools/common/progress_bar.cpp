@@ -18,7 +18,7 @@ void ProgressBar::show(double fraction, std::string_view stage) {
     fraction = std::clamp(fraction, 0.0, 1.0);
     const auto full = static_cast<std::size_t>(fraction * kCells);
     const std::string bar = std::string(full, '#') + std::string(kCells - full, '.');
-    // \033[K clears the rest of the line, where a longer stage name may have stood.
+    // \033[K clears the rest of the line, which may still have a longer stage name.
     std::cerr << "\r[" << bar << "] " << static_cast<int>(fraction * 100) << "% " << stage << "\033[K"
               << std::flush;
 }

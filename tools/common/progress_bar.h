@@ -1,4 +1,4 @@
-// How far the work is, for someone who watches a terminal.
+// Shows the progress of the work on a terminal.
 #pragma once
 
 #include <chrono>
@@ -7,8 +7,8 @@
 
 namespace imgmesh {
 
-/// One line on standard error, redrawn in place. It shows up only when the work has taken a second, and goes
-/// away before anything else is printed.
+/// One line on standard error, redrawn in place. It appears only after a second of work, and disappears
+/// before anything else is printed.
 class ProgressBar {
   public:
     /// A bar that is not `enabled` never draws.
@@ -17,7 +17,7 @@ class ProgressBar {
     ProgressBar(const ProgressBar&) = delete;
     ProgressBar& operator=(const ProgressBar&) = delete;
 
-    /// `fraction` of the whole in [0, 1]. Any thread.
+    /// `fraction` is the share of the whole in [0, 1]. Any thread may call it.
     void show(double fraction, std::string_view stage);
     void clear();
 

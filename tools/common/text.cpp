@@ -10,7 +10,8 @@
 namespace imgmesh {
 namespace {
 
-// Length of the well-formed UTF-8 sequence at `i`, or 0 (Unicode 15, table 3-7); sets its code point.
+// Returns the length of the well-formed UTF-8 sequence at `i`, or 0 (Unicode 15, table 3-7); sets its code
+// point.
 std::size_t utf8_length(const std::string& text, std::size_t i, std::uint32_t& code) {
     const auto byte = [&](std::size_t k) {
         return k < text.size() ? static_cast<std::uint8_t>(text[k]) : std::uint8_t{0};

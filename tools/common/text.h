@@ -9,8 +9,8 @@
 
 namespace imgmesh {
 
-/// `text` on one line that a terminal shows as it is: control characters, line and paragraph separators and
-/// bytes that are no UTF-8 become \xNN.
+/// Returns `text` as one line that a terminal shows unchanged: control characters, line and paragraph
+/// separators and bytes that are not UTF-8 become \xNN.
 std::string printable_line(const std::string& text);
 
 /// Rows of a name and a value, printed with the values aligned.
@@ -25,7 +25,7 @@ class TextTable {
 
 /// 999 -> "999 B", 28345 -> "28.3 kB" (units of 1000).
 std::string format_bytes(std::uint64_t bytes);
-/// `value` with `digits` significant digits, never with an exponent for 1e-4 <= |value| < 1e6.
+/// Prints `value` with `digits` significant digits, and never with an exponent for 1e-4 <= |value| < 1e6.
 std::string format_number(double value, int digits = 4);
 
 }  // namespace imgmesh
