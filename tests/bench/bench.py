@@ -62,7 +62,7 @@ def options(arguments):
 
 
 class Case:
-    """One picture, density and number of threads."""
+    """One image, density and number of threads."""
 
     def __init__(self, o, folder, picture, side, density, threads):
         self.o, self.folder, self.picture = o, folder, picture

@@ -16,7 +16,7 @@ struct StageRow {
     double rms = -1;  ///< of what the stage has made [L*u*v*], where that has one; -1 elsewhere
 };
 
-/// Measures each stage `repeats` times on the picture at `path`; containers go into `folder`. `params` has
+/// Measures each stage `repeats` times on the image at `path`; containers go into `folder`. `params` has
 /// one level. Throws Error.
 std::vector<StageRow> measure_stages(const std::string& path, const std::string& folder,
                                      const BuildParams& params, int repeats);

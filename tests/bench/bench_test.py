@@ -47,7 +47,7 @@ class BenchTest(unittest.TestCase):
             # The stages are those of the program: they come to its error.
             self.assertAlmostEqual(rows["map"]["rms"], rows["imgmesh-build"]["rms"], places=5)
             self.assertLess(rows["map"]["rms"], rows["collapse"]["rms"])
-            # Rounding to 8 bits is all that the picture drawn has beside; its colours are those of a picture, too.
+            # Rounding to 8 bits is all that the image drawn has beside; its colours are those of an image, too.
             self.assertAlmostEqual(rows["imgmesh-reconstruct"]["rms"], rows["imgmesh-build"]["rms"], delta=0.1)
         self.assertIn("64 x 64 pixels, 4 % vertices, 1 thread, preset default", text)
         self.assertIn("ours / theirs", text)

@@ -1,7 +1,7 @@
-// What ./run bench needs of C++: pictures of any size, the stages of a build in one process, and the side of
+// What ./run bench needs of C++: images of any size, the stages of a build in one process, and the side of
 // the comparison with other simplifiers that is ours.
 //
-//     bench-tool mosaic SIDE OUT.png PICTURE...    SIDE x SIDE pixels: the pictures side by side, mirrored in
+//     bench-tool mosaic SIDE OUT.png PICTURE...    SIDE x SIDE pixels: the images side by side, mirrored in
 //     turn bench-tool stages PICTURE FOLDER PRESET DENSITY THREADS REPEATS   JSON: a row for every stage
 //     bench-tool features PICTURE OUT              what a simplifier gets (raw_files.h)
 //     bench-tool measure FEATURES MESH             JSON: the error of the mesh that it gives back
@@ -42,7 +42,7 @@ int number(const std::string& text, int least, int most) {
     return static_cast<int>(value);
 }
 
-// Tiles repeat only every 2 x 2 pictures, and neighbours meet at equal colours: no seam to waste vertices on.
+// Tiles repeat only every 2 x 2 images, and neighbours meet at equal colours: no seam to waste vertices on.
 int mirrored(int at, int size) {
     const int within = at % (2 * size);
     return within < size ? within : 2 * size - 1 - within;

@@ -4,9 +4,9 @@
 segmentation.py BIN FOLDER [--density 2] [--pictures N] [--only regions|superpixels] [--distance contour|paper]
 
 BIN     folder with imgmesh-build and imgmesh-segment
-FOLDER  pictures X.jpg or X.png, each with the hand-made segmentations X.mat of BSDS500 (not part of this project)
+FOLDER  images X.jpg or X.png, each with the hand-made segmentations X.mat of BSDS500 (not part of this project)
 
-Prints F, covering, PRI and VI at the best parameter for all pictures, for every other picture from the first on, on which
+Prints F, covering, PRI and VI at the best parameter for all images, for every other image from the first on, on which
 the constants of imgmesh-segment were chosen, for the rest, and for all; then boundary recall and achievable accuracy of
 superpixels, and user CPU seconds a picture. Needs python3-skimage, python3-scipy and python3-openimageio.
 """

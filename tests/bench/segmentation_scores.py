@@ -89,7 +89,7 @@ def superpixel_scores(labels, truths):
 
 
 def summary(counts, regions):
-    """Figures over pictures (first axis) and parameters (second): each at its best parameter for all (ODS)."""
+    """Figures over images (first axis) and parameters (second): each at its best parameter for all (ODS)."""
     mean = regions.mean(0)
     f = f_measure(counts.sum(0))
     return {"F": (f.max(), f.argmax()), "covering": (mean[:, 0].max(), mean[:, 0].argmax()),

@@ -1,4 +1,4 @@
-"""Many pictures in one process, and the same bytes whatever the threads."""
+"""Many images in one process, and the same bytes whatever the threads."""
 import picture_files
 from support import CliCase, main
 
@@ -26,7 +26,7 @@ class Batch(CliCase):
             self.assertEqual(run, runs[0])
 
     def test_alone_or_in_company(self):
-        """A picture's container does not depend on what else the process builds."""
+        """An image's container does not depend on what else the process builds."""
         self.assertEqual(self.run_batch("-o", "all/").returncode, 0)
         for i in range(3):
             self.build(f"p{i}.png", output=f"one{i}.glb")

@@ -1,4 +1,4 @@
-"""imgmesh-compare: figures against numpy, which shares no code; tolerance, pictures of errors, plots."""
+"""imgmesh-compare: figures against numpy, which shares no code; tolerance, images of errors, plots."""
 import json
 import xml.etree.ElementTree
 

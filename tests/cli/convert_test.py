@@ -1,4 +1,4 @@
-"""imgmesh-convert: the same picture in every spelling, and exports that other programs read."""
+"""imgmesh-convert: the same image in every spelling, and exports that other programs read."""
 import json
 import xml.etree.ElementTree
 
@@ -20,7 +20,7 @@ class Convert(CliCase):
         return (self.folder / "drawn.ppm").read_bytes()
 
     def map_as_set(self, name):
-        """What the pixel map says of each pixel, whatever the order of vertices, faces and corners: the picture's own
+        """What the pixel map says of each pixel, whatever the order of vertices, faces and corners: the image's own
         colours, and where in the mesh it lies."""
         return self.levels(name), self.picture(name), self.picture(name, 1)
 

@@ -25,7 +25,7 @@ class Faults(CliCase):
             self.run_ok("imgmesh-build", "new.png", "-o", f"alone/{name}", "-q")
 
     def picture(self, name):
-        """The picture that a container holds, which is valid and has no findings."""
+        """The image that a container holds, which is valid and has no findings."""
         report = self.report("imgmesh-info", name, "--validate")
         self.assertEqual(report["findings"], [])
         with tempfile.TemporaryDirectory() as folder:

@@ -1,4 +1,4 @@
-"""imgmesh-build on every size and kind of picture: a sound container, and the picture comes back."""
+"""imgmesh-build on every size and kind of image: a sound container, and the image comes back."""
 import os
 
 import numpy as np
@@ -7,13 +7,13 @@ import picture_files
 from support import CliCase, main
 
 # With faces enough to keep every vertex the pixel map is the identity, and colours are 16-bit codes: what is
-# left is rounding to the picture's 8 bits. One code is 48 dB.
+# left is rounding to the image's 8 bits. One code is 48 dB.
 EXACT_DB = 48
 
 
 class Pictures(CliCase):
     def round_trip(self, picture, *args, **kwargs):
-        """Builds, checks the container, reconstructs; gives the report and the picture read back."""
+        """Builds, checks the container, reconstructs; gives the report and the image read back."""
         report = self.build(picture, *args, **kwargs)
         verdict = self.report("imgmesh-info", "out.glb", "--validate")
         self.assertTrue(verdict["valid"])

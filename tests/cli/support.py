@@ -53,7 +53,7 @@ class CliCase(unittest.TestCase):
         return report
 
     def build(self, picture, *args, output="out.glb"):
-        """Builds one picture and gives its part of the report."""
+        """Builds one image and gives its part of the report."""
         return self.report("imgmesh-build", picture, "-o", output, *args)["images"][0]
 
     def assert_error_lines(self, tool, result, code, count):

@@ -1,4 +1,4 @@
-"""--texture: a picture on the meshes, for engines."""
+"""--texture: an image on the meshes, for engines."""
 import io
 import json
 import struct

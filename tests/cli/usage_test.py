@@ -89,7 +89,7 @@ class Usage(CliCase):
                               "--density", option)
 
     def test_contradictions_are_told_as_typed(self):
-        """Before any work: the picture is not there."""
+        """Before any work: the image is not there."""
         for words in (("--metric hoppe", "--geometry-weight 2"), ("--map tracked", "--refine 3"),
                       ("--map tracked", "--preset best"), ("--map relaxed", "--projection-color-weight 0"),
                       ("--map trivial", "--map-smoothness 3"), ("--rms 3", "--map tracked"), ("--rms 3", "--visits"),
@@ -106,7 +106,7 @@ class Usage(CliCase):
         (self.folder / "c.toml").write_text('map = "tracked"\nrefine = 2\n')
         self.assert_error("imgmesh-build", ["none.png", "-o", "out.glb", "--config", "c.toml"], 2, "--map tracked",
                           "--refine 2")
-        # What only seems to contradict goes on, to the picture that is not there.
+        # What only seems to contradict goes on, to the image that is not there.
         for words in ("--preset best --map tracked --refine 0", "--preset fem --colors quadric --refine 0 --objective luv",
                       "--map trivial --projection-color-weight 0", "--level-errors 8,9"):
             self.assert_error("imgmesh-build", ["none.png", "-o", "out.glb", *words.split()], 3, "none.png")
@@ -125,7 +125,7 @@ class Usage(CliCase):
         self.assert_error("imgmesh-reconstruct", ["in.glb", "-o", "out"], 2, "out")
 
     def test_two_pictures_of_one_name(self):
-        """Refused before any work: the pictures are not there, and the folder is not made."""
+        """Refused before any work: the images are not there, and the folder is not made."""
         self.assert_error("imgmesh-build", ["a/x.png", "b/y.png", "c/x.jpg", "-o", "out/"], 2, "a/x.png", "c/x.jpg")
         self.assertFalse((self.folder / "out").exists())
 

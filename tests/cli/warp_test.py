@@ -1,4 +1,4 @@
-"""imgmesh-warp: pictures, maps and containers out of edits, and what it says to bad ones."""
+"""imgmesh-warp: images, maps and containers out of edits, and what it says to bad ones."""
 import json
 
 import numpy as np
@@ -55,7 +55,7 @@ class Warp(CliCase):
             files[name] = picture_files.png(self.folder / name, noise((*shape, 3)))
         for name, path in files.items():
             with self.subTest(name):
-                # The container's picture is another of the same size: only its map counts.
+                # The container's image is another of the same size: only its map counts.
                 height, width = picture_files.read(path).shape[:2]
                 container = f"{width}x{height}.glb"
                 if not (self.folder / container).exists():
@@ -135,7 +135,7 @@ class Warp(CliCase):
                      (back[y0 + 1, x0] * (1 - fx) + back[y0 + 1, x0 + 1] * fx) * fy)
             self.assertLess(np.abs(there - origin).max(), 0.5)
             self.assertLess(np.abs(there - origin).mean(), 0.02)
-        # Without a picture to draw, the maps alone.
+        # Without an image to draw, the maps alone.
         self.assertNotIn("output", self.report(TOOL, "c.glb", "--displacement", "m.exr", "--size", "9x5"))
         self.assertEqual(part(self.folder / "m.exr", 0)[0].shape, (5, 9, 3))
         self.assertEqual(part(self.folder / "m.exr", 1)[0].shape, (32, 48, 2))
@@ -146,7 +146,7 @@ class Warp(CliCase):
             self.assertEqual(report["bytes"], (self.folder / name).stat().st_size)
             info = self.report("imgmesh-info", name, "--validate")
             self.assertTrue(info["valid"])
-            # The map is the unwarped picture's; the mesh is another.
+            # The map is the unwarped image's; the mesh is another.
             for container in (name, "c.glb"):
                 self.run_ok("imgmesh-reconstruct", container, "-o", container + ".png", "-q")
                 self.run_ok("imgmesh-reconstruct", container, "-o", container + ".g.png", "--mode", "wire", "-q")

@@ -32,7 +32,7 @@ struct Exr {
     Bytes bytes() const;
 };
 
-/// A picture of 3 x 3 pixels, all in face 0 or 1 of a square of two faces, on each of `levels` levels.
+/// An image of 3 x 3 pixels, all in face 0 or 1 of a square of two faces, on each of `levels` levels.
 struct Sample {
     Asset asset;
     std::vector<StoredMesh> meshes;

@@ -12,7 +12,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::size_t kHeadBytes = 700;  // of an EXR or picture: where its header is
+constexpr std::size_t kHeadBytes = 700;  // of an EXR or image: where its header is
 
 void collect(json& value, std::vector<json*>& all) {
     all.push_back(&value);

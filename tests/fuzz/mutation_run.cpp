@@ -1,4 +1,4 @@
-// mutation-run COUNT [SEED [FOLDER]]: COUNT mutated containers, pictures and files of edits through their
+// mutation-run COUNT [SEED [FOLDER]]: COUNT mutated containers, images and files of edits through their
 // readers. Fails on a crash, on a hang of more than 10 s, on more than 2 GiB, and on an exception that no
 // reader documents; the input is then kept in FOLDER (default: the working folder). The same inputs for the
 // same SEED. mutation-run --replay FOLDER: every file there, which is named container-*, picture-* or

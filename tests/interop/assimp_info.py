@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 """assimp_info.py SAMPLES CONFORMANCE: assimp reads uncompressed containers as they were written: the meshes' names, their
-vertices and faces, and the picture centred at the origin.
+vertices and faces, and the image centred at the origin.
 
 Debian's assimp 5.2 has no Draco decoder, and does not find a file beside whose name has escapes in its URI, so of the
 samples, whose names have spaces, it gets each .glb, and the .gltf of the conformance set."""

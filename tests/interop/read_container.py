@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Draws the picture of a container without any code of imgmesh, from docs/format.md alone.
+"""Draws the image of a container without any code of imgmesh, from docs/format.md alone.
 
 read_container.py IN OUT.png [--level K] [--exposure E] [--expect PICTURE [--min-psnr DB]] [--channel NAME --within LOW HIGH]
 
@@ -149,7 +149,7 @@ def srgb_from_linear(rgb):
 
 
 def reconstruct(path, level, exposure=1.0):
-    """The picture as (H, W, 3) bytes, where it has faces (H, W), and the other channels (H, W) by their names."""
+    """The image as (H, W, 3) bytes, where it has faces (H, W), and the other channels (H, W) by their names."""
     document, binary, exr = read_gltf(path)
     part = f"lod{level}"
     node = next(n for n in document["nodes"] if n["extensions"][EXTENSION]["part"] == part)

@@ -2,9 +2,9 @@
 """viewers_test.py BIN NODE CHROMIUM FOLDER: three.js, Babylon.js and PixiJS in headless Chromium show containers
 as they are meant, by the pages of docs/engines. FOLDER gets the containers and the screenshots.
 
-The expected picture is drawn here, from the container without Draco: a viewer interpolates COLOR_0 in linear light
+The expected image is drawn here, from the container without Draco: a viewer interpolates COLOR_0 in linear light
 over each triangle, or takes the texture's light at TEXCOORD_0, between its pixels by bilinear interpolation. A
-screenshot has ZOOM x ZOOM pixels for one of the picture, so none lies on its edge.
+screenshot has ZOOM x ZOOM pixels for one of the image, so none lies on its edge.
 """
 import collections
 import dataclasses
@@ -138,7 +138,7 @@ def expected_of(path):
 
 
 def expected_of_sprite(path):
-    """PixiJS knows no linear light: it interpolates the picture's numbers."""
+    """PixiJS knows no linear light: it interpolates the image's numbers."""
     sheet = json.loads(path.read_text())
     (frame,) = sheet["frames"].values()
     size = sheet["meta"]["size"]

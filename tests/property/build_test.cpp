@@ -1,4 +1,4 @@
-// The whole pipeline: bad arguments, odd pictures, and figures that can be measured again.
+// The whole pipeline: bad arguments, odd images, and figures that can be measured again.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -146,7 +146,7 @@ TEST_CASE("build: an error limit counts in the weights' own units") {
     }
 }
 
-TEST_CASE("build: all kinds and sizes of pictures") {
+TEST_CASE("build: all kinds and sizes of images") {
     for (const Kind kind : kAllKinds)
         for (const auto& [w, h] :
              {std::pair{1, 1}, {1, 2}, {2, 1}, {2, 2}, {1, 30}, {30, 1}, {3, 3}, {5, 7}, {40, 30}}) {
@@ -176,7 +176,7 @@ TEST_CASE("build: grey is colour with equal channels, and alpha is ignored") {
     CHECK(expected.source.channel_names == std::vector<std::string>{"R", "G", "B"});
 }
 
-TEST_CASE("build: pictures without colour, or with samples that are none, are not supported") {
+TEST_CASE("build: images without colour, or with samples that are none, are not supported") {
     Image depth = make_image(4, 4, 1);
     depth.channel_names = {"Z"};
     CHECK(failure(depth, {}) == ErrorKind::kUnsupported);
@@ -252,7 +252,7 @@ TEST_CASE("build: progress rises from 0 to 1") {
 }
 
 // L*u*v* of negative light has no bound, so an unclipped sample would outweigh the whole picture.
-TEST_CASE("build: light below 0 is clipped, and above 1 too in pictures of integers") {
+TEST_CASE("build: light below 0 is clipped, and above 1 too in images of integers") {
     Image clipped = make_image(24, 18, 3);
     clipped.color_space = ColorSpace::kLinear;
     clipped.sample_type = SampleType::kUint16;

@@ -1,4 +1,4 @@
-// What must hold for pictures of any number of features.
+// What must hold for images of any number of features.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -272,7 +272,7 @@ TEST_CASE("channels: grey with a channel keeps its name, and pixels outside the 
     CHECK(drawn.pixel(1, 0)[1] == 1);
 }
 
-TEST_CASE("light: highlights above 1 come back, in half and float pictures, and are clipped in others") {
+TEST_CASE("light: highlights above 1 come back, in half and float images, and are clipped in others") {
     Image image = make_image(kWidth, kHeight, 3);
     image.color_space = ColorSpace::kLinear;
     for (int y = 0; y < kHeight; ++y)
@@ -299,7 +299,7 @@ TEST_CASE("light: highlights above 1 come back, in half and float pictures, and 
     }
 }
 
-TEST_CASE("light: a float picture within 0 and 1 is what an integer one is, to the bit") {
+TEST_CASE("light: a float image within 0 and 1 is what an integer one is, to the bit") {
     Image image = sample_picture(Kind::kDisc, 40, 30);
     const Level expected = build_mesh_image(image, {}).mesh_image.levels[0];
     image.sample_type = SampleType::kFloat;

@@ -142,7 +142,7 @@ TEST_CASE("masked images: pixels do move") {
     }
 }
 
-// The boundaries of a mask with all pixels inside are the picture's sides.
+// The boundaries of a mask with all pixels inside are the image's sides.
 TEST_CASE("masked images: a mask with all pixels inside relaxes as if there were none") {
     const Mask full = mask_where(45, 40, [](int, int) { return true; });
     Scene s = scene(Kind::kNoise, Mask{45, 40, {}}, 70), t = s;

@@ -24,7 +24,7 @@ SimplifyResult collapse(const FeatureImage& feature, std::int64_t vertices, cons
 
 }  // namespace
 
-TEST_CASE("metrics: every one makes a sound mesh of every picture, by every solver") {
+TEST_CASE("metrics: every one makes a sound mesh of every image, by every solver") {
     for (const auto& [metric, solver] : {std::pair(Metric::kFlattened, Solver::kSvd),
                                          {Metric::kFlattened, Solver::kLu},
                                          {Metric::kHoppe, Solver::kClosed},
@@ -78,9 +78,9 @@ TEST_CASE("metrics: solvers and forms differ by rounding alone") {
     }
 }
 
-// Hoppe's metric sees nothing but colour, so that a linear picture costs nothing however far it is reduced,
+// Hoppe's metric sees nothing but colour, so that a linear image costs nothing however far it is reduced,
 // and keeps its colours; the paper's counts the way that vertices move.
-TEST_CASE("metrics: a linear picture is free of error to all but the flattened metric") {
+TEST_CASE("metrics: a linear image is free of error to all but the flattened metric") {
     FeatureImage feature{20, 16, 3, {}};
     const auto color = [](float x, float y) { return Vec3f(20 + 2 * x + y, 3 * y - x, 5 - x); };
     for (int y = 0; y < 16; ++y)
@@ -105,7 +105,7 @@ TEST_CASE("metrics: a linear picture is free of error to all but the flattened m
 
 // The flat half's edges cost nothing at all: the windows of the queue start with the smallest cost there is,
 // and must still come to what the noisy half costs, and soon.
-TEST_CASE("metrics: hoppe's on a picture that is flat in one half") {
+TEST_CASE("metrics: hoppe's on an image that is flat in one half") {
     FeatureImage feature = sample_feature(Kind::kNoise, 120, 80);
     for (int y = 0; y < 80; ++y)
         for (int x = 0; x < 70; ++x)

@@ -94,7 +94,7 @@ double largest_move(const Scene& s, const PixelMap& map) {
 
 }  // namespace
 
-TEST_CASE("quantized map: both grids hold the relaxed map of any picture without a fold") {
+TEST_CASE("quantized map: both grids hold the relaxed map of any image without a fold") {
     for (const Kind kind : kAllKinds)
         for (const float smoothness : {0.01f, 30.0f}) {
             const Scene s = relaxed(kind, 48, 36, 30, smoothness);

@@ -46,7 +46,7 @@ TEST_CASE("reference collapse: its meshes are sound, too") {
 }
 
 // Buckets, windows and tiles change the order of collapses, single precision their cost; neither may cost
-// quality. The mean is over pictures, as a single one scatters by a few percent either way.
+// quality. The mean is over images, as a single one scatters by a few percent either way.
 TEST_CASE("collapse: as good as the plain one with an exactly sorted queue") {
     std::vector<FeatureImage> pictures;
     for (const char* name : {"/kodim05.png", "/kodim23.png"}) {

@@ -112,7 +112,7 @@ TEST_CASE("refine: vertices find a ridge") {
 }
 
 // A diagonal edge between two flat colours, and a mesh of two triangles whose diagonal is the other one.
-TEST_CASE("refine: edges flip along the picture's edges") {
+TEST_CASE("refine: edges flip along the image's edges") {
     FeatureImage halves{33, 33, 3, {}};
     for (int y = 0; y < 33; ++y)
         for (int x = 0; x < 33; ++x) {

@@ -14,7 +14,7 @@ using namespace imgmesh::test;
 
 namespace {
 
-// A picture, its base mesh at `vertices`, and its pixels at rest.
+// An image, its base mesh at `vertices`, and its pixels at rest.
 struct Scene {
     FeatureImage feature;
     BaseMesh mesh;
@@ -95,7 +95,7 @@ double rms(const Scene& s) {
     return std::sqrt(sum / static_cast<double>(s.pixels.face.size()));
 }
 
-// Rounding of positions moves an area by that much at most in pictures this small.
+// Rounding of positions moves an area by that much at most in images this small.
 constexpr double kSlack = 1e-4;
 
 }  // namespace
@@ -114,7 +114,7 @@ TEST_CASE("relax: no triangle of pixels folds or thins out, however soft or hard
         }
 }
 
-// Grey pictures with steep diagonals make J'J singular and large: all is left to mu, which rounding may
+// Grey images with steep diagonals make J'J singular and large: all is left to mu, which rounding may
 // drown.
 TEST_CASE("relax: a steep grey edge against the softest grid") {
     FeatureImage feature{32, 32, 3, std::vector<float>(3 * 32 * 32)};
@@ -131,7 +131,7 @@ TEST_CASE("relax: a steep grey edge against the softest grid") {
     }
 }
 
-TEST_CASE("relax: small pictures, and those of two columns or rows") {
+TEST_CASE("relax: small images, and those of two columns or rows") {
     for (const auto& [w, h] : {std::pair{2, 2}, {2, 9}, {9, 2}, {3, 3}, {5, 4}}) {
         INFO(w << " x " << h);
         Scene s = scene(sample_feature(Kind::kNoise, w, h), 4);

@@ -125,7 +125,7 @@ TEST_CASE("mesh lods: meshes of any number of vertices, from as few runs as poss
     CHECK(count(4, true) == 4);
 }
 
-// A strip one pixel wide has more vertices than pixels: with all of them the picture is reached exactly.
+// A strip one pixel wide has more vertices than pixels: with all of them the image is reached exactly.
 TEST_CASE("build: a wanted RMS is reached on strips") {
     BuildParams params;
     params.stop.rms = 0.1;
@@ -150,7 +150,7 @@ TEST_CASE("build: a wanted RMS is kept, closely") {
             const std::size_t vertices = built.mesh_image.levels.front().mesh.vertex_count();
             CHECK(vertices >= before);
             before = vertices;
-            // A tenth fewer vertices are too few; with a single edge in the picture, errors do not rise
+            // A tenth fewer vertices are too few; with a single edge in the image, errors do not rise
             // steadily.
             if (vertices < 40 || kind == Kind::kDisc) continue;
             BuildParams fewer;

@@ -33,7 +33,7 @@ constexpr Size kSizes[] = {{2, 2}, {3, 3}, {1, 1}, {1, 9}, {9, 1}, {2, 12}, {5, 
 
 }  // namespace
 
-TEST_CASE("collapse: the base mesh triangulates the picture's rectangle, down to the least") {
+TEST_CASE("collapse: the base mesh triangulates the image's rectangle, down to the least") {
     for (const Size size : kSizes)
         for (const Kind kind : kAllKinds) {
             const FeatureImage feature = sample_feature(kind, size.width, size.height);
@@ -71,7 +71,7 @@ TEST_CASE("collapse: the target is met") {
         }
 }
 
-TEST_CASE("collapse: where nothing but the guards stops it, two triangles remain of a constant picture") {
+TEST_CASE("collapse: where nothing but the guards stops it, two triangles remain of a constant image") {
     const BaseMesh mesh = collapse(sample_feature(Kind::kConstant, 16, 12), to_vertices(0)).mesh;
     CHECK(mesh.vertex_count() == 4);
     CHECK(mesh.faces.size() == 2);
@@ -103,7 +103,7 @@ TEST_CASE("collapse: no vertex costs more than the largest error allowed") {
     }
 }
 
-// Large enough for several tiles each way, worked off one by one, and for the whole picture after them.
+// Large enough for several tiles each way, worked off one by one, and for the whole image after them.
 TEST_CASE("collapse: tiles make a sound mesh, the same every time, with any number of threads") {
     for (const Kind kind : {Kind::kNoise, Kind::kCheckerboard, Kind::kDisc}) {
         constexpr Size kLarge{230, 170};
@@ -122,7 +122,7 @@ TEST_CASE("collapse: tiles make a sound mesh, the same every time, with any numb
 }
 
 // A limit reached half way through the tiles would leave some of them fine and others coarse.
-TEST_CASE("collapse: no part of an even picture is favoured") {
+TEST_CASE("collapse: no part of an even image is favoured") {
     for (const Kind kind : {Kind::kConstant, Kind::kNoise})
         for (const std::int64_t target : {9000, 1000, 200}) {
             INFO(name_of(kind) << " to " << target);
@@ -138,7 +138,7 @@ TEST_CASE("collapse: no part of an even picture is favoured") {
 }
 
 // All planes agree, so every merge keeps the colour on the one plane, wherever it puts the vertex.
-TEST_CASE("collapse: a linear picture keeps its colours at every vertex") {
+TEST_CASE("collapse: a linear image keeps its colours at every vertex") {
     FeatureImage feature{24, 18, 3, {}};
     const auto color = [](float x, float y) { return Vec3f(20 + 2 * x + y, 3 * y - x, 5 - x); };
     for (int y = 0; y < 18; ++y)
@@ -154,7 +154,7 @@ TEST_CASE("collapse: a linear picture keeps its colours at every vertex") {
     }
 }
 
-// A large lambda asks for even spacing, so shape improves where the picture has nothing to say for it.
+// A large lambda asks for even spacing, so shape improves where the image has nothing to say for it.
 TEST_CASE("collapse: more geometry weight makes rounder triangles") {
     const FeatureImage feature = sample_feature(Kind::kNoise, 40, 30);
     const auto roundness = [&](float geometry_weight) {

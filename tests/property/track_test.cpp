@@ -16,7 +16,7 @@ namespace {
 
 using MapCheck = std::function<void(const BaseMesh&, const PixelMap&)>;
 
-// Collapses a picture level by level with a tracker beside it, and checks the map after each.
+// Collapses an image level by level with a tracker beside it, and checks the map after each.
 PixelTracker tracked(const FeatureImage& feature, const TrackParams& params,
                      const std::vector<std::int64_t>& vertices, const MapCheck& check) {
     const GridMesh grid = grid_mesh(feature);
@@ -104,7 +104,7 @@ TEST_CASE("track: without colour every pixel stays where it is") {
             });
 }
 
-TEST_CASE("track: in the plane every pixel is where it was, whatever the picture, and nothing is forbidden") {
+TEST_CASE("track: in the plane every pixel is where it was, whatever the image, and nothing is forbidden") {
     TrackParams params;
     params.space = TrackSpace::kPlane;
     for (const Kind kind : kAllKinds) {
@@ -119,7 +119,7 @@ TEST_CASE("track: in the plane every pixel is where it was, whatever the picture
 }
 
 // The tracked map is there to follow colours.
-TEST_CASE("track: colour weight brings a map that is closer to the picture than none") {
+TEST_CASE("track: colour weight brings a map that is closer to the image than none") {
     const FeatureImage feature = sample_feature(Kind::kDisc, 60, 50);
     double with = 0, without = 0;
     const auto rms_into = [&](double& out) {

@@ -43,7 +43,7 @@ std::optional<ErrorKind> failure(const BuildParams& params) {
 
 }  // namespace
 
-TEST_CASE("tracked build: all kinds and sizes of pictures, and both precisions") {
+TEST_CASE("tracked build: all kinds and sizes of images, and both precisions") {
     for (const Kind kind : kAllKinds)
         for (const auto& [w, h] :
              {std::pair{1, 1}, {1, 2}, {2, 1}, {2, 2}, {1, 30}, {30, 1}, {3, 3}, {5, 7}, {40, 30}})
@@ -78,7 +78,7 @@ TEST_CASE("tracked build: halves serve small faces, floats large ones") {
     }
 }
 
-TEST_CASE("tracked build: each level has its own map, closer to the picture than the trivial one") {
+TEST_CASE("tracked build: each level has its own map, closer to the image than the trivial one") {
     const Image image = sample_picture(Kind::kDisc, 60, 50);
     BuildParams params = with_map(MapKind::kTracked, 3);
     params.levels.count = 2;

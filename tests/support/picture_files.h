@@ -1,4 +1,4 @@
-// Pictures for tests: made-up samples, and files written by OpenImageIO, not by us.
+// Images for tests: made-up samples, and files written by OpenImageIO, not by us.
 #pragma once
 
 #include <OpenImageIO/imageio.h>

@@ -10,7 +10,7 @@
 
 namespace imgmesh {
 
-/// A grid of cells_x x cells_y cells, two triangles each, over a picture of width x height, with interior
+/// A grid of cells_x x cells_y cells, two triangles each, over an image of width x height, with interior
 /// vertices moved, random colours, and vertices, faces and corners in random order. A side of one pixel is a
 /// strip from -0.5 to 0.5, as in docs/format.md.
 inline BaseMesh random_mesh(int width, int height, int cells_x, int cells_y, std::mt19937& random) {

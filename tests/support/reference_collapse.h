@@ -1,5 +1,5 @@
 // The collapse written down a second time without any cleverness: a list of faces, quadrics as matrices in
-// picture coordinates, every edge in one exactly sorted queue, no tiles. What the fast one is compared with.
+// image coordinates, every edge in one exactly sorted queue, no tiles. What the fast one is compared with.
 #pragma once
 
 #include <Eigen/Dense>

@@ -1,4 +1,4 @@
-// Small pictures, each nasty in its own way, for tests of what must hold for every picture.
+// Small images, each nasty in its own way, for tests of what must hold for every picture.
 #pragma once
 
 #include <cmath>
@@ -25,7 +25,7 @@ inline std::string name_of(Kind kind) {
     return kNames[static_cast<int>(kind)];
 }
 
-/// An sRGB picture of that kind, values in [0, 1]. `seed` matters for noise alone.
+/// An sRGB image of that kind, values in [0, 1]. `seed` matters for noise alone.
 inline Image sample_picture(Kind kind, int width, int height, std::uint32_t seed = 1) {
     std::mt19937 random(seed);
     Image image = make_image(width, height, 3);

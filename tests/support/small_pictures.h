@@ -1,4 +1,4 @@
-// Files of pictures that are as small as they get.
+// Files of images that are as small as they get.
 #pragma once
 
 #include <cstdint>

@@ -19,7 +19,7 @@ inline bool has_vertex(const BaseMesh& mesh, float x, float y) {
                        [&](const Vec2f& p) { return p.x() == x && p.y() == y; });
 }
 
-/// A triangulation of the picture's rectangle on the position grid. (Areas on that grid are exact.)
+/// A triangulation of the image's rectangle on the position grid. (Areas on that grid are exact.)
 inline void check_sound(const BaseMesh& mesh, Size size) {
     const MeshQuality q = mesh_quality(mesh);
     CHECK(q.nonmanifold_edges == 0);

@@ -1,4 +1,4 @@
-// Mesh images, moves and pictures for tests of warping.
+// Mesh images, moves and images for tests of warping.
 #pragma once
 
 #include <cmath>
@@ -38,7 +38,7 @@ inline void apply_mask(MeshImage& m, const std::function<bool(int x, int y)>& in
                 if (!inside(x, y)) level.map.row(y)[static_cast<std::size_t>(x)] = {};
 }
 
-/// The field of a picture without a mask, each pixel moved by move(x, y).
+/// The field of an image without a mask, each pixel moved by move(x, y).
 inline DisplacementField field_of(int width, int height, const std::function<Vec2f(int x, int y)>& move) {
     DisplacementField field;
     field.width = width;
@@ -49,7 +49,7 @@ inline DisplacementField field_of(int width, int height, const std::function<Vec
     return field;
 }
 
-/// Independent samples from -1 to 2, of which integer pictures can hold a third.
+/// Independent samples from -1 to 2, of which integer images can hold a third.
 inline Image noise_image(int width, int height, int channels, std::uint32_t seed = 1) {
     std::mt19937 random(seed);
     Image image = make_image(width, height, channels);

@@ -1,5 +1,5 @@
 // write-samples FOLDER: a container of every flavour for the tests that use other software, and for each .glb
-// the picture (.ppm) that a reader must draw of its level 0. FOLDER/regions: base meshes in pieces.
+// the image (.ppm) that a reader must draw of its level 0. FOLDER/regions: base meshes in pieces.
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -47,7 +47,7 @@ void write_picture(const std::string& path, const MeshImage& image) {
 
 // The same with a texture, as "texture ..."; with a depth, as "channels ...", and with light of up to 4 times
 // what a display shows, as "light
-// ...": there the picture to expect is that of a quarter of the light.
+// ...": there the image to expect is that of a quarter of the light.
 void write_with_channels(const std::filesystem::path& folder, const std::string& name, const MeshImage& image,
                          DracoMode mode) {
     MeshImage channels = image, light = image;

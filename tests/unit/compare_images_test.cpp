@@ -78,7 +78,7 @@ TEST_CASE("compare_images: symmetric, and the same for any number of threads") {
 }
 
 // The same light, written in two ways, is no difference; and linear light is compared as sRGB.
-TEST_CASE("compare_images: pictures of different colour spaces") {
+TEST_CASE("compare_images: images of different colour spaces") {
     const Image srgb = random_image(20, 20, 3, 3);
     for (const ColorSpace space : {ColorSpace::kLinear, ColorSpace::kAdobeRgb, ColorSpace::kDisplayP3}) {
         Image other = srgb;
@@ -115,7 +115,7 @@ TEST_CASE("compare_images: wholly transparent pixels do not count, others do") {
     CHECK(d.luv[3] == 0);
 }
 
-TEST_CASE("compare_images: a picture without colour is refused") {
+TEST_CASE("compare_images: an image without colour is refused") {
     const Image five = make_image(2, 2, 5);
     CHECK_FALSE(has_color(five));
     CHECK(has_color(make_image(2, 2, 1)));
@@ -186,8 +186,8 @@ TEST_CASE("ciede2000: the published test pairs") {
     }
 }
 
-// Constant pictures have no variance, so only the luminance term is left: (2 p q + C1) / (p^2 + q^2 + C1).
-TEST_CASE("mean_ssim: constant pictures") {
+// Constant images have no variance, so only the luminance term is left: (2 p q + C1) / (p^2 + q^2 + C1).
+TEST_CASE("mean_ssim: constant images") {
     const std::vector<float> p(20 * 15, 0.25f), q(20 * 15, 0.75f);
     CHECK(mean_ssim(p, p, 20, 15) == Approx(1));
     CHECK(mean_ssim(p, q, 20, 15) == Approx((0.375 + 1e-4) / (0.625 + 1e-4)));

@@ -196,7 +196,7 @@ TEST_CASE("refusals: a mesh or layers that are not those the container was made 
     CHECK(refusal(file.path) == "mesh.topology");
     write_bytes(file.folder / "x.bin", bin);
     CHECK(refusal(file.path) == "");
-    // A picture of the same size, but of another mesh.
+    // An image of the same size, but of another mesh.
     write_container(file.folder / "y.gltf", random_mesh_image(20, 15, 1, WeightPrecision::kHalf, true, 6));
     std::filesystem::copy_file(file.folder / "y.exr", file.folder / "x.exr",
                                std::filesystem::copy_options::overwrite_existing);

@@ -295,7 +295,7 @@ TEST_CASE("container: usage and files that are there already") {
     CHECK(code("x.gltf", false) == std::nullopt);
     CHECK(code("x.gltf", false) == ErrorKind::kIo);
     CHECK(code("x.gltf", true) == std::nullopt);
-    // photo.exr may be the picture that the container is made from.
+    // photo.exr may be the image that the container is made from.
     AtomicFile photo(folder / "photo.exr", true);
     photo.commit();
     CHECK(code("photo.gltf", true) == std::nullopt);

@@ -48,7 +48,7 @@ TEST_CASE("refusals: the texture; one of another kind is for viewers alone") {
         d["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"]["index"] = 1;
     }) == "gltf.index");
     CHECK(file.with([](json& d) { d["textures"][0]["source"] = 7; }) == "gltf.index");
-    // A level that is not looked at for the picture counts as well; a validator tells it once.
+    // A level that is not looked at for the image counts as well; a validator tells it once.
     for (const std::size_t k : {0u, 1u}) {
         std::vector<Issue> issues;
         CHECK(file.with([&](json& d) { d["meshes"][k]["primitives"][0]["material"] = 7; },

@@ -139,7 +139,7 @@ TEST_CASE("fit colours: never worse than before, from any colours of the gamut")
     }
 }
 
-TEST_CASE("fit map: a constant picture is reproduced by any mesh") {
+TEST_CASE("fit map: a constant image is reproduced by any mesh") {
     for (const Vec3f& encoded : {Vec3f(0.2f, 0.5f, 0.7f), Vec3f(1, 1, 1), Vec3f(0, 0, 0), Vec3f(0, 0, 1)}) {
         Image image = make_image(30, 20, 3);
         for (std::size_t i = 0; i < image.data.size(); ++i)

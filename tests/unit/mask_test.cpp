@@ -1,4 +1,4 @@
-// Which pixels a picture's alpha, or a mask's picture, leaves inside.
+// Which pixels an image's alpha, or a mask's image, leaves inside.
 #include <doctest/doctest.h>
 
 #include "libcore/base/error.h"
@@ -28,7 +28,7 @@ TEST_CASE("masks: alpha from the threshold on") {
     CHECK(alpha_mask(row_of(3, {0, 0, 0, 0, 0, 0, 0, 0, 0}), 0.5f).empty());  // no alpha
 }
 
-TEST_CASE("masks: a mask's picture counts by its alpha, else by its light") {
+TEST_CASE("masks: a mask's image counts by its alpha, else by its light") {
     CHECK(image_mask(row_of(1, {0, 0.5f, 1}), 0.5f).inside == Inside{0, 1, 1});
     CHECK(image_mask(row_of(3, {0, 0, 0, 0.6f, 0.6f, 0.2f, 1, 0.5f, 0}), 0.5f).inside == Inside{0, 0, 1});
     // An alpha that shows something, and one that is opaque.
@@ -41,7 +41,7 @@ TEST_CASE("masks: a mask's picture counts by its alpha, else by its light") {
     CHECK_THROWS_AS(image_mask(alpha, 0.5f), Error);
 }
 
-TEST_CASE("masks: nothing is inside beyond the picture") {
+TEST_CASE("masks: nothing is inside beyond the image") {
     const Mask mask{2, 1, {1, 0}};
     CHECK(mask.at(0, 0));
     CHECK_FALSE(mask.at(1, 0));

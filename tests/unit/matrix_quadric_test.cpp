@@ -151,7 +151,7 @@ TEST_CASE("matrix quadrics: all solvers find the least point, and its value is t
 
 // Where colours are linear every position along the plane is as good for all metrics but the paper's: the
 // singular case, in which every solver has to notice it, and still to find the least value, which is zero.
-TEST_CASE("matrix quadrics: on a linear picture only the flattened metric has a minimiser") {
+TEST_CASE("matrix quadrics: on a linear image only the flattened metric has a minimiser") {
     FeatureImage feature{6, 6, 3, {}};
     for (int y = 0; y < 6; ++y)
         for (int x = 0; x < 6; ++x)
@@ -173,7 +173,7 @@ TEST_CASE("matrix quadrics: on a linear picture only the flattened metric has a 
         }
 }
 
-// A picture that changes along x alone: along y all is free, so only x is to be found.
+// An image that changes along x alone: along y all is free, so only x is to be found.
 TEST_CASE("matrix quadrics: a step that is the same all along has a best place across only") {
     FeatureImage feature{6, 6, 3, {}};
     for (int y = 0; y < 6; ++y)

@@ -166,7 +166,7 @@ TEST_CASE("map_quality: a pixel moved across, one unmapped, one outside the simp
     }
 }
 
-TEST_CASE("map_quality: a picture of one row has steps but no triangles") {
+TEST_CASE("map_quality: an image of one row has steps but no triangles") {
     const BaseMesh mesh = test::jittered_grid(0, -0.5, 9, 0.5, 2, 1, 1);
     const MapQuality q = map_quality(mesh, trivial_map(mesh, 10, 1));
     CHECK(q.min_area2 == 1);

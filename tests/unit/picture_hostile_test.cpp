@@ -48,7 +48,7 @@ long peak_kilobytes() {
 
 }  // namespace
 
-// Never half a picture: a prefix is an error, or (where only what follows the pixels is removed) the whole
+// Never half an image: a prefix is an error, or (where only what follows the pixels is removed) the whole
 // picture.
 TEST_CASE("hostile: truncated files at many lengths") {
     const TemporaryFolder folder;
@@ -73,7 +73,7 @@ TEST_CASE("hostile: truncated files at many lengths") {
     }
 }
 
-TEST_CASE("hostile: flipped bytes give an error or a picture of a permitted size") {
+TEST_CASE("hostile: flipped bytes give an error or an image of a permitted size") {
     const TemporaryFolder folder;
     ImageLimits limits;
     limits.max_pixels = 1 << 20;
@@ -98,7 +98,7 @@ TEST_CASE("hostile: flipped bytes give an error or a picture of a permitted size
     }
 }
 
-TEST_CASE("hostile: random bytes, alone and behind every signature, are no picture") {
+TEST_CASE("hostile: random bytes, alone and behind every signature, are no image") {
     const TemporaryFolder folder;
     std::mt19937 random(3);
     const std::string_view signatures[] = {"",
@@ -254,7 +254,7 @@ TEST_CASE("hostile: EXR attributes longer than the file, openly and hidden") {
     }
 }
 
-TEST_CASE("hostile: paths that lead to no picture") {
+TEST_CASE("hostile: paths that lead to no image") {
     const TemporaryFolder folder;
     CHECK(error_of([&] { read_image(folder / "missing.png"); }) == ErrorKind::kIo);
     CHECK(error_of([&] { read_image(folder / ""); }) == ErrorKind::kIo);

@@ -107,7 +107,7 @@ TEST_CASE("read: lossy formats come back alike, and a content under a wrong name
     CHECK(read_image(folder / "b.png").width == 64);
 }
 
-// Stored 3x2, each pixel another grey; the displayed pictures are drawn from EXIF's definition of the tag: 1
+// Stored 3x2, each pixel another grey; the displayed images are drawn from EXIF's definition of the tag: 1
 // the first row is the top and the first column the left side, 2 top right, 3 bottom right, 4 bottom left, 5
 // left top, 6 right top, 7 right bottom, 8 left bottom.
 TEST_CASE("read: all eight EXIF orientations") {
@@ -287,7 +287,7 @@ TEST_CASE("read: a WebP's orientation and profile") {
     CHECK(read.pixel(0, 5)[1] == stored.pixel(5, 2)[1]);
 }
 
-// The display window is the picture; the data window may be smaller, larger, or elsewhere.
+// The display window is the image; the data window may be smaller, larger, or elsewhere.
 TEST_CASE("read: an EXR's windows, tiles and compressions") {
     const TemporaryFolder folder;
     const Imath::Box2i shown({2, 3}, {7, 8});
@@ -343,7 +343,7 @@ TEST_CASE("read: an EXR with a preview and unusual attributes") {
     CHECK(read_image(folder / "p.exr").data == samples);
 }
 
-TEST_CASE("read: what an EXR can hold and a picture cannot") {
+TEST_CASE("read: what an EXR can hold and an image cannot") {
     const TemporaryFolder folder;
     const auto write = [&](const Imf::Channel& channel, bool other_primaries) {
         Imf::Header header(4, 4);

@@ -155,7 +155,7 @@ TEST_CASE("write: what the format cannot hold is refused, and leaves nothing") {
     CHECK_FALSE(can_write_image("x/y.glb"));
 }
 
-TEST_CASE("write: the same picture gives the same bytes") {
+TEST_CASE("write: the same image gives the same bytes") {
     const TemporaryFolder folder;
     const Image image = random_picture(20, 10, 3);
     for (const std::string name : {"s.png", "s.jpg", "s.tif", "s.webp", "s.exr", "s.bmp", "s.ppm"}) {

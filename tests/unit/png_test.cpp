@@ -130,7 +130,7 @@ TEST_CASE("png: what is written reads as OpenImageIO reads it, and comes back") 
 }
 
 // Each filter is the best somewhere: constant rows, ramps along and down, both, noise.
-TEST_CASE("png: smooth pictures come back whatever filter packs them best, the same bytes for any threads") {
+TEST_CASE("png: smooth images come back whatever filter packs them best, the same bytes for any threads") {
     const TemporaryFolder folder;
     for (int pattern = 0; pattern < 6; ++pattern) {
         INFO("pattern " << pattern);

@@ -67,7 +67,7 @@ TEST_CASE("rasterize: the full pixel grid, where every sample is a tie") {
     check_against_brute_force(mesh, sample_grid(13, 10, 4), true);
 }
 
-TEST_CASE("rasterize: a mesh smaller than the picture covers its inside and border only") {
+TEST_CASE("rasterize: a mesh smaller than the image covers its inside and border only") {
     const BaseMesh mesh = test::jittered_grid(2, 3, 10, 9.5, 3, 2, 7);
     check_against_brute_force(mesh, sample_grid(14, 12, 1), false);
     const PixelMap map = trivial_map(mesh, 14, 12);
@@ -97,7 +97,7 @@ TEST_CASE("rasterize: one thread and several give the same map") {
     CHECK(trivial_map(mesh, 200, 150).coords == many.coords);
 }
 
-TEST_CASE("sample_grid: positions of an enlarged picture") {
+TEST_CASE("sample_grid: positions of an enlarged image") {
     const SampleGrid grid = sample_grid(3, 1, 2);
     CHECK(grid.x == std::vector<double>{0, 0.25, 0.75, 1.25, 1.75, 2});
     CHECK(grid.y == std::vector<double>{-0.25, 0.25});

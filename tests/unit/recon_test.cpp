@@ -95,7 +95,7 @@ TEST_CASE("LuvEncoder: as the plain form, in and out of gamut, for every space a
 }
 
 // Keeping every pixel as a vertex keeps every pixel: the case where the reconstruction must be exact.
-TEST_CASE("draw map: a mesh of all pixels gives the picture back") {
+TEST_CASE("draw map: a mesh of all pixels gives the image back") {
     MeshImage m = random_mesh_image(17, 11, 16, 10, 1);
     BaseMesh& mesh = m.levels[0].mesh;
     for (Vec2f& p : mesh.position) p = {std::round(p.x()), std::round(p.y())};
@@ -109,7 +109,7 @@ TEST_CASE("draw map: a mesh of all pixels gives the picture back") {
     }
 }
 
-TEST_CASE("draw: a constant mesh is a constant picture in every colour space") {
+TEST_CASE("draw: a constant mesh is a constant image in every colour space") {
     MeshImage m = random_mesh_image(40, 30, 5, 4, 2);
     const Vec3f luv = luv_from_linear({0.2f, 0.5f, 0.1f});
     set_all(m.levels[0].mesh, luv);
@@ -150,7 +150,7 @@ TEST_CASE("draw map: every pixel interpolates its face's corners with its own we
 }
 
 // L* linear in x must come out as L* at the sample's place, also at the clamped borders.
-TEST_CASE("draw gouraud: an enlarged picture samples at (i + 0.5) / scale - 0.5") {
+TEST_CASE("draw gouraud: an enlarged image samples at (i + 0.5) / scale - 0.5") {
     MeshImage m = random_mesh_image(21, 9, 4, 2, 5);
     for (Id v = 0; v < m.levels[0].mesh.vertex_count(); ++v)
         for (int c = 0; c < 3; ++c)

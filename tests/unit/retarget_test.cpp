@@ -73,7 +73,7 @@ TEST_CASE("retarget_field: detail keeps its proportions, the rest gives way") {
     CHECK(out.channels == 3);
 }
 
-TEST_CASE("retarget_field: thin pictures work, masked images are refused") {
+TEST_CASE("retarget_field: thin images work, masked images are refused") {
     for (const auto& [w, h] : {std::pair(1, 1), {1, 9}, {9, 1}, {3, 3}}) {
         const DisplacementField field = retarget_field(grid_pyramid(w, h, {1}), {5, 4});
         for (const Vec2f& move : field.move) CHECK(move.allFinite());

@@ -96,7 +96,7 @@ TEST_CASE("population distance: the textbook's values") {
     CHECK(color_equivalent(population_distance(zero, zero, step, zero)) == doctest::Approx(5));
 }
 
-// Two plain halves of a square picture: every part of the formula is then their colours' distance.
+// Two plain halves of a square image: every part of the formula is then their colours' distance.
 TEST_CASE("contour distance of two plain halves is that of their colours") {
     constexpr int kSide = 32;
     PixelMap map = map_of_faces(kSide, kSide, std::vector<Id>(kSide * kSide, 0));
@@ -175,7 +175,7 @@ TEST_CASE("facts of regions") {
 }
 
 // Squares of a checkerboard of 4x4 pixels, each pixel a patch: that many superpixels are the squares, and of
-// a constant picture they have about the same size.
+// a constant image they have about the same size.
 TEST_CASE("superpixels follow edges, and without edges are of similar size") {
     constexpr int kSide = 32;
     std::vector<Id> faces(kSide * kSide);

@@ -20,7 +20,7 @@ Mask middle(int side) {
 
 }  // namespace
 
-TEST_CASE("texture: an 8-bit sRGB picture is itself, without its alpha") {
+TEST_CASE("texture: an 8-bit sRGB image is itself, without its alpha") {
     Image image = make_image(3, 2, 4);
     for (std::size_t i = 0; i < image.data.size(); ++i) image.data[i] = static_cast<float>(i) / 255;
     const Image texture = texture_image(image, {});
@@ -76,7 +76,7 @@ TEST_CASE("texture: colours spread ring by ring, and the rest has their mean") {
     CHECK(Vec3f(texture_image(wide, ends).data.data() + 4 * 8) == Vec3f(1, 0, 0));
 }
 
-// The definition, pixel by pixel over the whole picture for each ring.
+// The definition, pixel by pixel over the whole image for each ring.
 TEST_CASE("texture: colours spread as they are said to, out of masks of any shape") {
     std::mt19937 random(4);
     for (const int share : {2, 30, 400}) {
@@ -119,7 +119,7 @@ TEST_CASE("texture: colours spread as they are said to, out of masks of any shap
     }
 }
 
-TEST_CASE("texture: a picture without colour has none") {
+TEST_CASE("texture: an image without colour has none") {
     Image image = make_image(2, 2, 5);
     CHECK_THROWS_AS(texture_image(image, {}), Error);
 }

@@ -1,4 +1,4 @@
-// Drawing a picture whose pixels have moved.
+// Drawing an image whose pixels have moved.
 #include <doctest/doctest.h>
 
 #include <Eigen/LU>
@@ -88,7 +88,7 @@ std::vector<Hit> slow_map(const DisplacementField& field, int width, int height)
 
 }  // namespace
 
-TEST_CASE("warp_image: without a move the picture comes back to the bit") {
+TEST_CASE("warp_image: without a move the image comes back to the bit") {
     for (const auto& [w, h] : kShapes)
         for (const int channels : {1, 2, 3, 4, 5}) {
             const Image image = noise_image(w, h, channels);
@@ -98,7 +98,7 @@ TEST_CASE("warp_image: without a move the picture comes back to the bit") {
         }
 }
 
-TEST_CASE("warp_image: whole moves shift the picture to the bit, and the rest is clear") {
+TEST_CASE("warp_image: whole moves shift the image to the bit, and the rest is clear") {
     for (const auto& [w, h] : kShapes)
         for (const auto& [dx, dy] : {std::pair(1, 0), {-2, 3}, {0, -1}}) {
             const Image image = noise_image(w, h, 3);

@@ -1,4 +1,4 @@
-// A program of somebody else: a picture made on the spot, its container written, read and drawn,
+// A program of somebody else: an image made on the spot, its container written, read and drawn,
 // and the drawing as a file that needs the installed module.
 #include <iostream>
 #include <string>
