@@ -20,7 +20,7 @@ install(FILES
   ${CMAKE_CURRENT_BINARY_DIR}/packaging/imgmesh-config-version.cmake
   cmake/dependencies.cmake
   DESTINATION ${_package})
-install(DIRECTORY libcore formats DESTINATION include/imgmesh FILES_MATCHING PATTERN "*.h")
+include(cmake/public_headers.cmake)
 install(DIRECTORY schemas/ DESTINATION ${CMAKE_INSTALL_DATADIR}/imgmesh/schemas FILES_MATCHING PATTERN "*.schema.json"
   PATTERN examples EXCLUDE)
 install(FILES README.md CHANGELOG.md LICENSE docs/format.md DESTINATION ${CMAKE_INSTALL_DOCDIR})

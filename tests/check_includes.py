@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Fails on an include against tools -> formats -> libcore, or against the ranks of the rooms in a layer.
+"""Fails on an include against tools -> formats -> libcore, against the ranks of the rooms in a layer, or from a public
+header (cmake/public_headers.cmake) to one that is not installed.
 
 check_includes.py [ROOT]     prints each wrong include of the tree, exit 1 if there is one
 check_includes.py --self-test   plants includes, wrong and right, into small trees and expects each to be judged so
@@ -7,6 +8,7 @@ check_includes.py --self-test   plants includes, wrong and right, into small tre
 import re
 import sys
 import tempfile
+from collections import Counter
 from pathlib import Path
 
 INCLUDE = re.compile(r'^\s*#\s*include\s*[<"]([^>"]+)[>"]', re.MULTILINE)
@@ -88,7 +90,30 @@ def leaks(root, header, seen):
     return None
 
 
+def public_headers(root):
+    """The headers that are installed, as cmake/public_headers.cmake lists them."""
+    path = root / "cmake" / "public_headers.cmake"
+    text = path.read_text(encoding="utf-8") if path.is_file() else ""
+    block = re.search(r"set\(IMGMESH_PUBLIC_HEADERS([^)]*)\)", text)
+    return block.group(1).split() if block else []
+
+
+def public_findings(root):
+    headers = public_headers(root)
+    names = Counter(header.partition("/")[2] for header in headers)
+    for header in headers:
+        if not (root / header).is_file():
+            yield f"cmake/public_headers.cmake lists {header}, which is not there"
+            continue
+        if names[header.partition("/")[2]] > 1:
+            yield f"cmake/public_headers.cmake lists {header}, whose public name another header has as well"
+        for include in includes(root / header):
+            if "/" in include and include not in headers and not include.startswith("Eigen/"):
+                yield f"{header} is public and includes {include}, which is not"
+
+
 def findings(root):
+    yield from public_findings(root)
     for layer in ("libcore", "formats", "tools"):
         for path in sorted((root / layer).rglob("*")):
             if path.suffix not in SOURCES:
@@ -154,6 +179,18 @@ CASES = [
 LEAK_CASES = [("OpenEXR/ImfHeader.h", True), ("nlohmann/json_fwd.hpp", True), ("vector", False)]
 
 
+# (listed headers, text of libcore/mesh/a.h, whether there is a finding)
+PUBLIC_CASES = [
+    ("libcore/mesh/a.h", '#include "libcore/mesh/b.h"\n', True),
+    ("libcore/mesh/a.h libcore/mesh/b.h", '#include "libcore/mesh/b.h"\n', False),
+    ("libcore/mesh/a.h", "#include <Eigen/Core>\n#include <vector>\n", False),
+    ("libcore/mesh/a.h", "#include <boost/any.hpp>\n", True),
+    ("libcore/mesh/a.h libcore/mesh/gone.h", "", True),
+    ("libcore/mesh/a.h formats/mesh/a.h", "", True),
+    ("libcore/mesh/b.h", '#include "libcore/mesh/b.h"\n', False),
+]
+
+
 def failures(files, is_wrong):
     """1 if the tree of these files is not judged as it must be."""
     with tempfile.TemporaryDirectory() as folder:
@@ -175,6 +212,9 @@ def self_test():
     for include, is_wrong in LEAK_CASES:
         failed += failures({"tools/a.cpp": '#include "formats/gltf/a.h"\n', "formats/gltf/a.h": '#include "formats/gltf/b.h"\n',
                             "formats/gltf/b.h": f"#include <{include}>\n"}, is_wrong)
+    for listed, text, is_wrong in PUBLIC_CASES:
+        failed += failures({"cmake/public_headers.cmake": f"set(IMGMESH_PUBLIC_HEADERS\n  {listed})\n", "libcore/mesh/a.h": text,
+                            "libcore/mesh/b.h": "", "formats/mesh/a.h": ""}, is_wrong)
     return failed
 
 

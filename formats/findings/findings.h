@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "formats/findings/finding_error.h"
 #include "formats/findings/issue.h"
 
 namespace imgmesh {

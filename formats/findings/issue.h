@@ -5,6 +5,7 @@
 #include <string>
 
 #include "formats/findings/finding_codes.h"
+#include "formats/findings/place.h"
 
 namespace imgmesh {
 

@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "formats/findings/finding_codes.h"
+#include "formats/findings/finding_error.h"
 #include "libcore/base/error.h"
 
 namespace imgmesh {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <string_view>
 
-#include "formats/findings/finding_codes.h"
+#include "formats/findings/finding_error.h"
 #include "libcore/base/error.h"
 
 namespace imgmesh {

@@ -1,13 +1,12 @@
-// How many features a pixel or vertex may have, and the numbers of features that code is compiled for.
+// The numbers of features that code is compiled for.
 #pragma once
 
 #include <type_traits>
 #include <utility>
 
-namespace imgmesh {
+#include "libcore/image/feature_space.h"
 
-/// The largest number of features of a pixel or vertex.
-inline constexpr int kMaxFeatures = 16;
+namespace imgmesh {
 
 /// The numbers of features that templates are compiled for. Other numbers are padded with features of value
 /// zero, which change no error.

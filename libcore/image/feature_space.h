@@ -4,11 +4,13 @@
 #include <string>
 #include <vector>
 
-#include "libcore/image/channel_count.h"
 #include "libcore/image/color.h"
 #include "libcore/image/mask.h"
 
 namespace imgmesh {
+
+/// A pixel or vertex has at most this many features.
+inline constexpr int kMaxFeatures = 16;
 
 /// The features of an image in their order: L*, u*, v* of its colour, then auxiliary channels, each times its
 /// weight.

@@ -3,7 +3,8 @@
 
 #include <vector>
 
-#include "libcore/segment/merge_regions.h"
+#include "libcore/segment/cells.h"
+#include "libcore/segment/hierarchy.h"
 
 namespace imgmesh {
 

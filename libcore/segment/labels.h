@@ -2,10 +2,13 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "libcore/image/image.h"
-#include "libcore/segment/merge_regions.h"
+#include "libcore/segment/cells.h"
+#include "libcore/segment/hierarchy.h"
 
 namespace imgmesh {
 

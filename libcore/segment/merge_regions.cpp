@@ -1,7 +1,6 @@
 #include "libcore/segment/merge_regions.h"
 
 #include <algorithm>
-#include <numeric>
 #include <queue>
 
 namespace imgmesh {
@@ -114,23 +113,6 @@ class Merger {
 
 Hierarchy merge_regions(RegionGraph graph, const RegionDistance& distance, std::int64_t min_size) {
     return Merger(std::move(graph), distance, min_size).run();
-}
-
-std::size_t merges_below(const Hierarchy& hierarchy, double threshold) {
-    const auto end = std::partition_point(hierarchy.merges.begin(), hierarchy.merges.end(),
-                                          [&](const Merge& m) { return double(m.height) < threshold; });
-    return static_cast<std::size_t>(end - hierarchy.merges.begin());
-}
-
-std::vector<Id> regions_after(const Hierarchy& hierarchy, std::size_t merges) {
-    // The a and b of every merge are the first cells of their regions, and a < b.
-    std::vector<Id> region(hierarchy.cells);
-    std::iota(region.begin(), region.end(), Id{0});
-    for (std::size_t k = 0; k < merges; ++k) region[hierarchy.merges[k].b] = hierarchy.merges[k].a;
-    Id count = 0;
-    for (Id cell = 0; cell < region.size(); ++cell)
-        region[cell] = region[cell] == cell ? count++ : region[region[cell]];
-    return region;
 }
 
 }  // namespace imgmesh

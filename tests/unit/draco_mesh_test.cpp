@@ -2,7 +2,7 @@
 
 #include <doctest/doctest.h>
 
-#include "formats/findings/finding_codes.h"
+#include "formats/findings/finding_error.h"
 #include "libcore/base/error.h"
 #include "tests/support/random_mesh_image.h"
 

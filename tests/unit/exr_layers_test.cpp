@@ -11,7 +11,7 @@
 #include <doctest/doctest.h>
 
 #include "formats/files/atomic_file.h"
-#include "formats/findings/finding_codes.h"
+#include "formats/findings/finding_error.h"
 #include "libcore/base/error.h"
 #include "tests/support/random_mesh_image.h"
 #include "tests/support/temporary_folder.h"

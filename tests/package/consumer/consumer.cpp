@@ -3,10 +3,10 @@
 #include <iostream>
 #include <string>
 
-#include "formats/container/container.h"
-#include "formats/picture/image_io.h"
-#include "libcore/pipeline/build.h"
-#include "libcore/recon/draw.h"
+#include <imgmesh/container/container.h>
+#include <imgmesh/picture/image_io.h>
+#include <imgmesh/pipeline/build.h>
+#include <imgmesh/recon/draw.h>
 
 int main(int argc, char** argv) {
     if (argc != 2) return 2;

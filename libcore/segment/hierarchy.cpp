@@ -1,0 +1,25 @@
+#include "libcore/segment/hierarchy.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace imgmesh {
+
+std::size_t merges_below(const Hierarchy& hierarchy, double threshold) {
+    const auto end = std::partition_point(hierarchy.merges.begin(), hierarchy.merges.end(),
+                                          [&](const Merge& m) { return double(m.height) < threshold; });
+    return static_cast<std::size_t>(end - hierarchy.merges.begin());
+}
+
+std::vector<Id> regions_after(const Hierarchy& hierarchy, std::size_t merges) {
+    // The a and b of every merge are the first cells of their regions, and a < b.
+    std::vector<Id> region(hierarchy.cells);
+    std::iota(region.begin(), region.end(), Id{0});
+    for (std::size_t k = 0; k < merges; ++k) region[hierarchy.merges[k].b] = hierarchy.merges[k].a;
+    Id count = 0;
+    for (Id cell = 0; cell < region.size(); ++cell)
+        region[cell] = region[cell] == cell ? count++ : region[region[cell]];
+    return region;
+}
+
+}  // namespace imgmesh
