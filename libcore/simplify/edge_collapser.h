@@ -6,9 +6,11 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <utility>
 #include <vector>
 
+#include "libcore/image/channel_count.h"
 #include "libcore/mesh/ring_mesh.h"
 #include "libcore/simplify/border_rules.h"
 #include "libcore/simplify/bucket_queue.h"
@@ -51,13 +53,14 @@ inline constexpr CollapseStats kAllMayGo{.vertices = std::numeric_limits<std::in
 struct SimplifyRules {
     const SimplifyParams& params;
     const SimplifyHooks& hooks;
+    int channels;  ///< of the quadrics
     StarLimits limits;
     MaskBoundary* boundary = nullptr;  ///< of a masked image
     double max_error = std::numeric_limits<double>::infinity();
 };
 
-/// Source and steps: simplify.cpp. `Q` is the quadric that vertices carry: kChannels features,
-/// merged(a, b), at(x, y), feature(c, x, y), error, the minimiser (px, py) and best_x(y), best_y(x) on a
+/// Source and steps: simplify.cpp. `Q` is the quadric that vertices carry: merged(a, b), at(x, y),
+/// features(x, y, out), error, the minimiser (px, py) and best_x(y), best_y(x) on a
 /// line where has_minimum(fixed); initial_quadrics and rebuilt_quadrics make vectors of it.
 ///
 /// Edges with a locked end (Ring::locked) are left alone. So several engines may work on one mesh at the
@@ -254,10 +257,10 @@ class EdgeCollapser {
 
     // What the follower says to a collapse.
     bool may_happen(Id i, Id j, const Q& sum, const Placement& place) const {
-        std::array<float, Q::kChannels> feature;
-        for (int c = 0; c < Q::kChannels; ++c)
-            feature[static_cast<std::size_t>(c)] = sum.feature(c, place.x, place.y);
-        return rules_.hooks.before({i, j, place.x, place.y, feature});
+        std::array<float, kMaxFeatures> feature;
+        sum.features(place.x, place.y, feature.data());
+        return rules_.hooks.before(
+            {i, j, place.x, place.y, std::span(feature).first(static_cast<std::size_t>(rules_.channels))});
     }
 
     // Files the edges of vertex i that cost less than the threshold, but for those to vertices below `from`.

@@ -3,35 +3,29 @@
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <Eigen/SVD>
-#include <type_traits>
 
 namespace imgmesh {
 namespace {
 
-// Beyond the paper's five dimensions one solver of any size, so that compiling does not take minutes.
 template <int N>
-using Solved = std::conditional_t<N == 5, Eigen::Matrix<double, N, N>,
-                                  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 18, 18>>;
-template <class Matrix>
-using Column = Eigen::Matrix<double, Matrix::RowsAtCompileTime, 1, 0, Matrix::MaxRowsAtCompileTime, 1>;
-
-template <class Matrix>
-bool solve_svd(const Matrix& a, Column<Matrix>& v) {
-    const Eigen::JacobiSVD<Matrix> svd(a, Eigen::ComputeFullU | Eigen::ComputeFullV);
+MatrixMinimum<N> svd_minimum(const Eigen::Matrix<double, N, N>& a, const Eigen::Matrix<double, N, 1>& b) {
+    // A preconditioner is for matrices that are not square, and takes long to compile.
+    const Eigen::JacobiSVD<Eigen::Matrix<double, N, N>, Eigen::NoQRPreconditioner> svd(
+        a, Eigen::ComputeFullU | Eigen::ComputeFullV);
     const auto& scales = svd.singularValues();  // in descending order
-    Column<Matrix> along = svd.matrixU().transpose() * v;
+    const Eigen::Matrix<double, N, 1> v = -b;
+    Eigen::Matrix<double, N, 1> along = svd.matrixU().transpose() * v;
     for (Eigen::Index k = 0; k < along.size(); ++k)
         along[k] = scales[k] > kFlat * scales[0] ? along[k] / scales[k] : 0;
-    v = svd.matrixV() * along;
-    return scales[along.size() - 1] > kFlat * scales[0];
+    return {svd.matrixV() * along, scales[along.size() - 1] > kFlat * scales[0]};
 }
 
-template <class Matrix>
-bool solve_lu(const Matrix& a, Column<Matrix>& v) {
-    Eigen::FullPivLU<Matrix> lu(a);
+template <int N>
+MatrixMinimum<N> lu_minimum(const Eigen::Matrix<double, N, N>& a, const Eigen::Matrix<double, N, 1>& b) {
+    Eigen::FullPivLU<Eigen::Matrix<double, N, N>> lu(a);
     lu.setThreshold(kFlat);
-    v = lu.solve(v).eval();
-    return lu.rank() == a.rows();
+    const Eigen::Matrix<double, N, 1> v = -b;
+    return {lu.solve(v), lu.rank() == a.rows()};
 }
 
 template <int N>
@@ -50,11 +44,15 @@ MatrixMinimum<N> closed_minimum(const PlaneForm<N>& plane) {
 
 template <int N>
 PlaneForm<N>::PlaneForm(const Eigen::Matrix<double, N, N>& a, const Eigen::Matrix<double, N, 1>& b) {
-    constexpr int C = N - 2;
-    const Eigen::LDLT<Eigen::Matrix<double, C, C>> others(a.template bottomRightCorner<C, C>());
-    const auto coupling = a.template bottomLeftCorner<C, 2>();
-    slope = others.solve(coupling);
-    offset = others.solve(b.template tail<C>());
+    constexpr int C = kOthers;
+    const Eigen::Index channels = a.rows() - 2;
+    const Eigen::LDLT<Eigen::Matrix<double, C, C>> others(
+        a.template bottomRightCorner<C, C>(channels, channels));
+    const auto coupling = a.template bottomLeftCorner<C, 2>(channels, 2);
+    // Column by column: Eigen's solver of many columns at once is slower here, and takes long to compile.
+    slope.resize(channels, 2);
+    for (int k = 0; k < 2; ++k) slope.col(k) = others.solve(coupling.col(k));
+    offset = others.solve(b.template bottomRows<C>(channels));
     s = a.template topLeftCorner<2, 2>() - coupling.transpose() * slope;
     r = b.template head<2>() - coupling.transpose() * offset;
     steepest = a(0, 0) + a(1, 1);
@@ -63,20 +61,21 @@ PlaneForm<N>::PlaneForm(const Eigen::Matrix<double, N, N>& a, const Eigen::Matri
 template <int N>
 MatrixMinimum<N> matrix_minimum(const Eigen::Matrix<double, N, N>& a, const Eigen::Matrix<double, N, 1>& b,
                                 Solver solver) {
-    if (solver == Solver::kClosed) return closed_minimum(PlaneForm<N>(a, b));
-    Column<Solved<N>> v = -b;
-    const bool unique = solver == Solver::kSvd ? solve_svd<Solved<N>>(a, v) : solve_lu<Solved<N>>(a, v);
-    return {v, unique};
+    switch (solver) {
+        case Solver::kClosed:
+            return closed_minimum(PlaneForm<N>(a, b));
+        case Solver::kSvd:
+            return svd_minimum<N>(a, b);
+        case Solver::kLu:
+            return lu_minimum<N>(a, b);
+    }
+    __builtin_unreachable();
 }
 
 template struct PlaneForm<5>;
-template struct PlaneForm<10>;
-template struct PlaneForm<18>;
+template struct PlaneForm<Eigen::Dynamic>;
 template MatrixMinimum<5> matrix_minimum(const Eigen::Matrix<double, 5, 5>&,
                                          const Eigen::Matrix<double, 5, 1>&, Solver);
-template MatrixMinimum<10> matrix_minimum(const Eigen::Matrix<double, 10, 10>&,
-                                          const Eigen::Matrix<double, 10, 1>&, Solver);
-template MatrixMinimum<18> matrix_minimum(const Eigen::Matrix<double, 18, 18>&,
-                                          const Eigen::Matrix<double, 18, 1>&, Solver);
+template MatrixMinimum<Eigen::Dynamic> matrix_minimum(const Eigen::MatrixXd&, const Eigen::VectorXd&, Solver);
 
 }  // namespace imgmesh

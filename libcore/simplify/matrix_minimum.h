@@ -13,18 +13,22 @@ inline constexpr double kFlat = 1e-10;
 
 /// The function with the last N - 2 coordinates at their best for the first two: p'Sp + 2 r'p + const, the
 /// others being -(offset + slope p).
+///
+/// N is 5, for the paper's three channels, or Eigen::Dynamic, for any other number of them.
 template <int N>
 struct PlaneForm {
+    static constexpr int kOthers = N == Eigen::Dynamic ? Eigen::Dynamic : N - 2;
+
     Eigen::Matrix2d s;
     Eigen::Vector2d r;
-    Eigen::Matrix<double, N - 2, 2> slope;
-    Eigen::Matrix<double, N - 2, 1> offset;
+    Eigen::Matrix<double, kOthers, 2> slope;
+    Eigen::Matrix<double, kOthers, 1> offset;
     double steepest;  ///< how it rises along a position, other coordinates fixed: the scale of rounding in s
 
     PlaneForm(const Eigen::Matrix<double, N, N>& a, const Eigen::Matrix<double, N, 1>& b);
     /// All coordinates at their best for a position.
     Eigen::Matrix<double, N, 1> at(const Eigen::Vector2d& p) const {
-        Eigen::Matrix<double, N, 1> v;
+        Eigen::Matrix<double, N, 1> v(2 + offset.size());
         v << p, -(offset + slope * p);
         return v;
     }
@@ -37,7 +41,7 @@ struct MatrixMinimum {
 };
 
 /// Where v'Av + 2 b'v is least. A: symmetric, positive semidefinite, its last N - 2 rows and columns
-/// definite; b: in A's range, so that there is a least value. N is 5, 10 or 18.
+/// definite; b: in A's range, so that there is a least value. N as in PlaneForm.
 template <int N>
 MatrixMinimum<N> matrix_minimum(const Eigen::Matrix<double, N, N>& a, const Eigen::Matrix<double, N, 1>& b,
                                 Solver solver);

@@ -12,18 +12,21 @@
 
 namespace imgmesh {
 
+/// For C: a number of channels that is known only at run time.
+inline constexpr int kAnyChannels = Eigen::Dynamic;
+
 /// Q(v) = w'Aw + 2 b'w + c, w = v - origin, for v = (x, y, features). The origin stays near the vertex: about
-/// the image's corner, w'Aw and c would be large and nearly cancel. 8 (N^2 + 2 N) bytes and a few, N = 2 +
-/// C.
+/// the image's corner, w'Aw and c would be large and nearly cancel. C is 3 or kAnyChannels, for which A and
+/// the vectors lie on the heap. 8 (N^2 + 2 N) bytes and a few, N = 2 + channels.
 template <int C>
 struct MatrixQuadric {
-    static constexpr int kChannels = C, kSize = 2 + C;
+    static constexpr int kChannels = C, kSize = C == kAnyChannels ? Eigen::Dynamic : 2 + C;
     using Vector = Eigen::Matrix<double, kSize, 1>;
     using Matrix = Eigen::Matrix<double, kSize, kSize>;
 
-    Vector origin = Vector::Zero();
-    Matrix a = Matrix::Zero();
-    Vector b = Vector::Zero();
+    Vector origin;
+    Matrix a;
+    Vector b;
     double c = 0;
     // What find_minimum() finds:
     float px = 0, py = 0;  ///< position of the minimiser [pixels]
@@ -31,14 +34,19 @@ struct MatrixQuadric {
     bool unique = false;   ///< whether there is one minimiser
     Solver solver = Solver::kClosed;
 
+    /// Zero everywhere. `size`: N; without it the quadric of kAnyChannels has none yet.
+    explicit MatrixQuadric(Eigen::Index size = std::max(kSize, 0))
+        : origin(Vector::Zero(size)), a(Matrix::Zero(size, size)), b(Vector::Zero(size)) {}
+
+    Eigen::Index channels() const { return origin.size() - 2; }
     double value(const Vector& w) const { return w.dot(a * w + 2 * b) + c; }
     /// As Quadric's.
     float at(float x, float y) const {
         return std::max(0.0f, static_cast<float>(value(PlaneForm<kSize>(a, b).at(from_origin(x, y)))));
     }
-    float feature(int channel, float x, float y) const {
-        const int k = 2 + channel;
-        return static_cast<float>(origin[k] + PlaneForm<kSize>(a, b).at(from_origin(x, y))[k]);
+    void features(float x, float y, float* out) const {
+        const Vector best = origin + PlaneForm<kSize>(a, b).at(from_origin(x, y));
+        for (Eigen::Index k = 2; k < best.size(); ++k) *out++ = static_cast<float>(best[k]);
     }
     float best_y(float x) const {
         const PlaneForm<kSize> plane(a, b);
@@ -82,7 +90,7 @@ struct MatrixQuadric {
     }
 };
 
-/// Q_i + Q_j; O(C^3).
+/// Q_i + Q_j, of one size; O(N^3).
 template <int C>
 MatrixQuadric<C> merged(const MatrixQuadric<C>& i, const MatrixQuadric<C>& j) {
     const typename MatrixQuadric<C>::Vector middle = 0.5 * (i.origin + j.origin);
@@ -95,11 +103,11 @@ MatrixQuadric<C> merged(const MatrixQuadric<C>& i, const MatrixQuadric<C>& j) {
     return sum;
 }
 
-/// The dense form of vertex_quadrics(), of params' metric, weight and solver; C is 3, 8 or 16.
+/// What vertex_quadrics() are in canonical form, of params' metric, weight and solver.
 template <int C>
 std::vector<MatrixQuadric<C>> matrix_quadrics(const GridMesh& grid, const RingMesh& rings,
                                               const FeaturePatch& gradients, const SimplifyParams& params);
-/// And of current_quadrics().
+/// And what current_quadrics() are.
 template <int C>
 std::vector<MatrixQuadric<C>> matrix_quadrics(const RingMesh& rings,
                                               const std::vector<MatrixQuadric<C>>& before,

@@ -50,6 +50,10 @@ struct Quadric {
     static constexpr bool has_minimum(unsigned /*fixed*/) { return true; }
     /// The best feature c for position p.
     float feature(int c, float x, float y) const { return s[c] + gx[c] * (x - px) + gy[c] * (y - py); }
+    /// All C of them.
+    void features(float x, float y, float* out) const {
+        for (int c = 0; c < C; ++c) out[c] = feature(c, x, y);
+    }
 };
 
 /// Minimiser of Q_i + Q_j, relative to that of Q_i, and how much the least error grows.

@@ -1,7 +1,6 @@
 // Where a collapse's quadrics come from, for either of their forms.
 #pragma once
 
-#include <type_traits>
 #include <vector>
 
 #include "libcore/simplify/matrix_quadric.h"
@@ -10,7 +9,9 @@
 namespace imgmesh {
 
 template <class Q>
-inline constexpr bool kCanonical = std::is_same_v<Q, Quadric<Q::kChannels>>;
+inline constexpr bool kCanonical = false;
+template <int C>
+inline constexpr bool kCanonical<Quadric<C>> = true;
 
 /// Those of the dense mesh; `rings` are the grid's, `gradients` those of all of it.
 template <class Q>

@@ -31,7 +31,8 @@ class Simplifier {
     Simplifier(const GridMesh& grid, const SimplifyParams& params, const SimplifyHooks& hooks)
         : grid_(grid),
           params_(params),
-          rules_{params_, hooks, StarLimits::of(params.max_face_area, params.min_shape)} {
+          rules_{params_, hooks, grid.feature.channels,
+                 StarLimits::of(params.max_face_area, params.min_shape)} {
         // Who follows the collapse is told of one step at a time, in the grid's numbers.
         if (hooks.before) params_.tiles = false;
     }
@@ -66,13 +67,16 @@ class Simplifier {
         if (!mesh_.pixel.empty())
             std::sort(order.begin(), order.end(),
                       [&](Id a, Id b) { return mesh_.pixel[a] < mesh_.pixel[b]; });
-        result.mesh.channels = Q::kChannels;
+        const auto channels = static_cast<std::size_t>(rules_.channels);
+        result.mesh.channels = rules_.channels;
+        result.mesh.feature.resize(order.size() * channels);
+        float* feature = result.mesh.feature.data();
         result.mesh.faces = ring_faces(mesh_.rings, order);
         for (const Id v : order) {
             const Ring& ring = mesh_.rings[v];
             result.mesh.position.emplace_back(ring.x, ring.y);
-            for (int c = 0; c < Q::kChannels; ++c)
-                result.mesh.feature.push_back(mesh_.quadrics[v].feature(c, ring.x, ring.y));
+            mesh_.quadrics[v].features(ring.x, ring.y, feature);
+            feature += channels;
         }
         return result;
     }

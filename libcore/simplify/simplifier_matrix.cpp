@@ -4,7 +4,6 @@
 namespace imgmesh {
 
 template class Simplifier<MatrixQuadric<3>>;
-template class Simplifier<MatrixQuadric<8>>;
-template class Simplifier<MatrixQuadric<16>>;
+template class Simplifier<MatrixQuadric<kAnyChannels>>;
 
 }  // namespace imgmesh

@@ -13,10 +13,9 @@
 
 namespace imgmesh {
 
-// Compiled in dense_collapser.cpp.
+// Compiled in simplifier_matrix.cpp.
 extern template class Simplifier<MatrixQuadric<3>>;
-extern template class Simplifier<MatrixQuadric<8>>;
-extern template class Simplifier<MatrixQuadric<16>>;
+extern template class Simplifier<MatrixQuadric<kAnyChannels>>;
 
 struct SimplifyRun::Engine {
     virtual ~Engine() = default;
@@ -50,43 +49,49 @@ class EngineOf : public SimplifyRun::Engine {
 };
 
 // For a grid whose features are fewer than the quadrics have room for.
+template <class Q>
 class PaddedEngine : public SimplifyRun::Engine {
   public:
-    template <class MakeEngine>
-    PaddedEngine(const GridMesh& grid, int padded, MakeEngine&& make)
-        : channels_(grid.feature.channels), padded_(padded), wide_(grid) {
-        wide_.feature.channels = padded;
-        wide_.feature.data = with_channels(grid.feature.data, channels_, padded);
-        engine_ = make(wide_);
-    }
+    PaddedEngine(const GridMesh& grid, const SimplifyParams& params, const SimplifyHooks& hooks)
+        : channels_(grid.feature.channels), wide_(padded(grid)), engine_(wide_, params, hooks) {}
     SimplifyResult to(const SimplifyTarget& target, const Progress& progress) override {
-        SimplifyResult level = engine_->to(target, progress);
+        SimplifyResult level = engine_.to(target, progress);
         level.mesh.channels = channels_;
-        level.mesh.feature = with_channels(level.mesh.feature, padded_, channels_);
+        level.mesh.feature = with_channels(level.mesh.feature, Q::kChannels, channels_);
         return level;
     }
 
   private:
-    int channels_, padded_;
+    static GridMesh padded(GridMesh grid) {
+        grid.feature.data = with_channels(grid.feature.data, grid.feature.channels, Q::kChannels);
+        grid.feature.channels = Q::kChannels;
+        return grid;
+    }
+
+    int channels_;
     GridMesh wide_;
-    std::unique_ptr<SimplifyRun::Engine> engine_;
+    EngineOf<Q> engine_;
 };
+
+template <class Q>
+std::unique_ptr<SimplifyRun::Engine> engine_of(const GridMesh& grid, const SimplifyParams& params,
+                                               const SimplifyHooks& hooks) {
+    if constexpr (Q::kChannels != kAnyChannels)
+        if (grid.feature.channels < Q::kChannels)
+            return std::make_unique<PaddedEngine<Q>>(grid, params, hooks);
+    return std::make_unique<EngineOf<Q>>(grid, params, hooks);
+}
 
 std::unique_ptr<SimplifyRun::Engine> make_engine(const GridMesh& grid, const SimplifyParams& params,
                                                  const SimplifyHooks& hooks) {
     const int channels = grid.feature.channels;
     if (channels < 1 || channels > kMaxFeatures)
         throw Error(ErrorKind::kBadArgument, cat(channels, " features, expected 1 to ", kMaxFeatures));
-    return with_padded_features(channels, [&](auto padded) -> std::unique_ptr<SimplifyRun::Engine> {
-        constexpr int kPadded = padded();
-        const auto make = [&](const GridMesh& g) -> std::unique_ptr<SimplifyRun::Engine> {
-            if (params.metric == Metric::kFlattened && params.solver == Solver::kClosed)
-                return std::make_unique<EngineOf<Quadric<kPadded>>>(g, params, hooks);
-            return std::make_unique<EngineOf<MatrixQuadric<kPadded>>>(g, params, hooks);
-        };
-        if (channels == kPadded) return make(grid);
-        return std::make_unique<PaddedEngine>(grid, kPadded, make);
-    });
+    if (params.metric == Metric::kFlattened && params.solver == Solver::kClosed)
+        return with_padded_features(
+            channels, [&](auto padded) { return engine_of<Quadric<padded()>>(grid, params, hooks); });
+    return channels <= 3 ? engine_of<MatrixQuadric<3>>(grid, params, hooks)
+                         : engine_of<MatrixQuadric<kAnyChannels>>(grid, params, hooks);
 }
 
 const SimplifyHooks kNoHooks;

@@ -27,6 +27,12 @@ std::vector<MatrixQuadric<3>> quadrics_of(const GridMesh& grid, const SimplifyPa
     return matrix_quadrics<3>(grid, ring_mesh(grid), FeaturePatch{grid.feature}, params);
 }
 
+Vec3f features_of(const MatrixQuadric<3>& quadric, float x, float y) {
+    Vec3f out;
+    quadric.features(x, y, out.data());
+    return out;
+}
+
 // The definitions, face by face, each written as a distance and not as a matrix.
 double error_of(const GridMesh& grid, Metric metric, Id vertex, const Point& v) {
     const auto w = static_cast<Id>(grid.feature.width);
@@ -115,7 +121,8 @@ TEST_CASE("matrix quadrics: the flattened one is the canonical one") {
                 CHECK(double(d.at(x, y)) == doctest::Approx(double(q.at(x, y))).epsilon(1e-3));
                 CHECK(double(d.best_x(y)) == doctest::Approx(double(q.best_x(y))).epsilon(1e-3));
                 CHECK(double(d.best_y(x)) == doctest::Approx(double(q.best_y(x))).epsilon(1e-3));
-                for (int c = 0; c < 3; ++c) CHECK(std::abs(d.feature(c, x, y) - q.feature(c, x, y)) < 0.02f);
+                for (int c = 0; c < 3; ++c)
+                    CHECK(std::abs(features_of(d, x, y)[c] - q.feature(c, x, y)) < 0.02f);
             }
         }
 }
@@ -132,8 +139,7 @@ TEST_CASE("matrix quadrics: all solvers find the least point, and its value is t
                 const MatrixQuadric<3> q = merged(quadrics[a], quadrics[b]);
                 REQUIRE(q.unique);
                 Point least;
-                least << q.px, q.py, q.feature(0, q.px, q.py), q.feature(1, q.px, q.py),
-                    q.feature(2, q.px, q.py);
+                least << q.px, q.py, features_of(q, q.px, q.py).cast<double>();
                 CHECK(double(q.error) == doctest::Approx(q.value(least - q.origin)).epsilon(1e-4));
                 CHECK(double(q.at(q.px, q.py)) == doctest::Approx(double(q.error)).epsilon(1e-4));
                 for (const double radius : {0.01, 0.1, 1.0})
@@ -169,7 +175,7 @@ TEST_CASE("matrix quadrics: on a linear image only the flattened metric has a mi
             if (metric == Metric::kFlattened) continue;
             CHECK(q.error < 1e-6f);
             CHECK(q.at(3.25f, 2.0f) < 1e-6f);
-            CHECK(double(q.feature(0, 3.25f, 2.0f)) == doctest::Approx(59.75));
+            CHECK(double(features_of(q, 3.25f, 2.0f)[0]) == doctest::Approx(59.75));
         }
 }
 
@@ -193,26 +199,40 @@ TEST_CASE("matrix quadrics: a step that is the same all along has a best place a
     }
 }
 
-TEST_CASE("matrix_minimum: padded features of value zero change nothing") {
+// Features of value zero change no error, so five channels, of which two are zero, must have the minimum of
+// three: the path of any size against the one compiled for five dimensions. The summed quadric is taken anew
+// from the mesh as well.
+TEST_CASE("matrix quadrics: with any number of channels what three have") {
     const GridMesh grid = grid_mesh(sample_feature(Kind::kNoise, 5, 5));
     GridMesh wide = grid;
-    wide.feature = {5, 5, 8, std::vector<float>(25 * 8, 0.0f)};
+    wide.feature = {5, 5, 5, std::vector<float>(25 * 5, 0.0f)};
     for (std::size_t v = 0; v < 25; ++v)
-        std::copy_n(grid.feature.pixel(v), 3, wide.feature.data.data() + v * 8);
+        std::copy_n(grid.feature.pixel(v), 3, wide.feature.data.data() + v * 5);
     const RingMesh rings = ring_mesh(grid);
+    const auto same = [](const auto& three, const auto& any) {
+        const auto q = merged(three[6], three[12]);
+        const auto p = merged(any[6], any[12]);
+        CHECK(double(p.px) == doctest::Approx(double(q.px)).epsilon(1e-5));
+        CHECK(double(p.py) == doctest::Approx(double(q.py)).epsilon(1e-5));
+        CHECK(double(p.error) == doctest::Approx(double(q.error)).epsilon(1e-5));
+        CHECK(double(p.at(2, 3)) == doctest::Approx(double(q.at(2, 3))).epsilon(1e-5));
+        CHECK(double(p.best_x(2)) == doctest::Approx(double(q.best_x(2))).epsilon(1e-5));
+        CHECK(p.unique == q.unique);
+        CHECK(p.channels() == 5);
+        float features[5];
+        p.features(2, 2, features);
+        for (int c = 0; c < 3; ++c)
+            CHECK(double(features[c]) == doctest::Approx(double(features_of(q, 2, 2)[c])).epsilon(1e-5));
+        CHECK(features[3] == 0);
+        CHECK(features[4] == 0);
+    };
     for (const Metric metric : kMetrics)
         for (const Solver solver : kSolvers) {
             INFO(metric_name(metric) << ", " << solver_name(solver));
-            const auto three =
-                matrix_quadrics<3>(grid, rings, FeaturePatch{grid.feature}, params_of(metric, solver));
-            const auto eight =
-                matrix_quadrics<8>(wide, rings, FeaturePatch{wide.feature}, params_of(metric, solver));
-            const auto q = merged(three[6], three[12]);
-            const auto p = merged(eight[6], eight[12]);
-            CHECK(double(p.px) == doctest::Approx(double(q.px)).epsilon(1e-5));
-            CHECK(double(p.py) == doctest::Approx(double(q.py)).epsilon(1e-5));
-            CHECK(double(p.error) == doctest::Approx(double(q.error)).epsilon(1e-5));
-            CHECK(p.unique == q.unique);
-            CHECK(p.feature(7, 2, 2) == 0);
+            const SimplifyParams params = params_of(metric, solver);
+            const auto three = matrix_quadrics<3>(grid, rings, FeaturePatch{grid.feature}, params);
+            const auto any = matrix_quadrics<kAnyChannels>(wide, rings, FeaturePatch{wide.feature}, params);
+            same(three, any);
+            same(matrix_quadrics(rings, three, params), matrix_quadrics(rings, any, params));
         }
 }
