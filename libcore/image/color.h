@@ -41,10 +41,10 @@ enum class Gamut {
 /// L*u*v* leaves the gamut by a lot.)
 Vec3f in_gamut(const Vec3f& luv, Gamut gamut = Gamut::kDisplay);
 
-/// Returns the linear RGB of in_gamut(luv) that a container keeps: 16-bit codes, or quantized_hdr() for HDR.
+/// Returns what a container keeps of `luv` as L*u*v*: in_gamut(luv) with 16-bit codes, or quantized_hdr().
 /// quantized_color(quantized_color(x)) == quantized_color(x), bit for bit.
 Vec3f quantized_color(const Vec3f& luv, Gamut gamut = Gamut::kDisplay);
-/// Converts the linear RGB of a quantised colour to its 16-bit codes, and back.
+/// Converts an L*u*v* colour to the 16-bit codes of its linear RGB, and codes back to L*u*v*.
 std::array<std::uint16_t, 3> color_codes(const Vec3f& luv);
 Vec3f color_from_codes(const std::array<std::uint16_t, 3>& codes);
 
@@ -53,7 +53,7 @@ Vec3f color_from_codes(const std::array<std::uint16_t, 3>& codes);
 inline constexpr float kMaxHdr = 1 << 20;
 
 /// Returns the linear RGB of in_gamut(luv, kHdr), rounded to 16 bits of the largest of the three, at least to
-/// 2^-20. This is fine enough for any eye; quantized_color() gives the same bits when repeated.
+/// 2^-20. This is fine enough for any eye, and converting to L*u*v* and back gives the same bits.
 Vec3f quantized_hdr(const Vec3f& luv);
 
 /// Returns kHdr for a float image with a linear value above 1 in some pixel of the mask, else kDisplay.

@@ -80,7 +80,7 @@ FeatureSpace feature_space(const Image& image, const std::vector<ChannelChoice>&
     if (choices.empty()) return space;
     space.auxiliary = split.auxiliary;
     for (const std::string& name : space.auxiliary)
-        space.plain_weight.push_back(static_cast<float>(weight_of(choices, name)));
+        space.auxiliary_weight.push_back(static_cast<float>(weight_of(choices, name)));
     return space;
 }
 
@@ -97,12 +97,12 @@ FeatureImage extract_features(const Image& image, const FeatureSpace& space, con
         for (std::size_t c = 0; c < from.size(); ++c) {
             const float value =
                 image.data[i * static_cast<std::size_t>(image.channels) + static_cast<std::size_t>(from[c])];
-            const float feature = mask.contains(i) ? value * space.plain_weight[c] : 0;
+            const float feature = mask.contains(i) ? value * space.auxiliary_weight[c] : 0;
             if (!(std::abs(feature) <= kLargestFeature)) {
                 const auto width = static_cast<std::size_t>(image.width);
                 throw Error(ErrorKind::kUnsupported,
                             cat("channel ", space.auxiliary[c], " is ", value, " at pixel (", i % width, ", ",
-                                i / width, "); times its weight ", space.plain_weight[c], " at most ",
+                                i / width, "); times its weight ", space.auxiliary_weight[c], " at most ",
                                 kLargestFeature, " is supported"));
             }
             out.data.push_back(feature);

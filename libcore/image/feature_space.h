@@ -15,16 +15,16 @@ inline constexpr int kMaxFeatures = 16;
 /// The features of an image in their order: L*, u*, v* of its colour, then auxiliary channels, each times its
 /// weight.
 struct FeatureSpace {
-    bool color = true;                   ///< the first three features are L*, u*, v*
-    Gamut gamut = Gamut::kDisplay;       ///< the colours that are possible
-    float color_weight = 1;              ///< of L*, u* and v*; > 0
-    std::vector<std::string> auxiliary;  ///< names of the channels after the colour
-    std::vector<float> plain_weight;     ///< of each auxiliary channel; > 0
+    bool color = true;                    ///< the first three features are L*, u*, v*
+    Gamut gamut = Gamut::kDisplay;        ///< the colours that are possible
+    float color_weight = 1;               ///< of L*, u* and v*; > 0
+    std::vector<std::string> auxiliary;   ///< names of the channels after the colour
+    std::vector<float> auxiliary_weight;  ///< of each auxiliary channel; > 0
 
     int features() const { return (color ? 3 : 0) + static_cast<int>(auxiliary.size()); }
     float weight(int feature) const {
         if (color && feature < 3) return color_weight;
-        return plain_weight[static_cast<std::size_t>(feature - (color ? 3 : 0))];
+        return auxiliary_weight[static_cast<std::size_t>(feature - (color ? 3 : 0))];
     }
 };
 

@@ -33,19 +33,19 @@ std::vector<FaceField> face_fields(const BaseMesh& mesh) {
 }
 
 AuxiliaryFields auxiliary_fields(const BaseMesh& mesh, const std::vector<FaceField>& fields) {
-    AuxiliaryFields further{static_cast<std::size_t>(std::max(0, mesh.channels - 3)), {}};
-    further.values.reserve(fields.size() * further.features * 3);
-    for (std::size_t f = 0; further.features > 0 && f < fields.size(); ++f) {
+    AuxiliaryFields auxiliary{static_cast<std::size_t>(std::max(0, mesh.channels - 3)), {}};
+    auxiliary.values.reserve(fields.size() * auxiliary.features * 3);
+    for (std::size_t f = 0; auxiliary.features > 0 && f < fields.size(); ++f) {
         const auto [a, b, c] = mesh.faces[f];
         const FaceField& field = fields[f];
         for (int k = 3; k < mesh.channels; ++k) {
             const float fa = mesh.feature_of(a)[k], ab = mesh.feature_of(b)[k] - fa,
                         ac = mesh.feature_of(c)[k] - fa;
             for (const float value : {fa, field.ux * ab + field.vx * ac, field.uy * ab + field.vy * ac})
-                further.values.push_back(value);
+                auxiliary.values.push_back(value);
         }
     }
-    return further;
+    return auxiliary;
 }
 
 Id locate_face(const Vec2f& p, Id face, const std::vector<FaceField>& fields,

@@ -104,7 +104,7 @@ struct Sweep {
     const std::vector<Face>& neighbors;
     const FeatureImage& feature;
     float mu;
-    const AuxiliaryFields& further;
+    const AuxiliaryFields& auxiliary;
 
     void move_pixel(int x, int y) const {
         const int w = pixels.width, h = pixels.height;
@@ -131,8 +131,8 @@ struct Sweep {
         const float* color = feature.pixel(index);
         NewtonStep<float> step(px, py, rest_x + mean_x / count, rest_y + mean_y / count, mu);
         step.add_fields(&field.ax, color, std::min(3, feature.channels), px, py);
-        const float* f = further.of(pixels.face[index]);
-        for (std::size_t c = 0; c < further.features; ++c, f += 3)
+        const float* f = auxiliary.of(pixels.face[index]);
+        for (std::size_t c = 0; c < auxiliary.features; ++c, f += 3)
             step.add(f[1], f[2], f[0] + f[1] * (px - field.ax) + f[2] * (py - field.ay) - color[3 + c]);
         step.solve(sx, sy);
         if (pixels.pinned_x(x, y)) sx = 0;
@@ -289,9 +289,9 @@ PixelEmbedding resting_pixels(const PixelMap& trivial, const Mask& mask) {
 }
 
 void relax(PixelEmbedding& pixels, const std::vector<FaceField>& fields, const std::vector<Face>& neighbors,
-           const FeatureImage& feature, float smoothness, int sweeps, const AuxiliaryFields& further) {
-    assert(static_cast<int>(further.features) == std::max(0, feature.channels - 3));
-    const Sweep sweep{pixels, fields, neighbors, feature, smoothness, further};
+           const FeatureImage& feature, float smoothness, int sweeps, const AuxiliaryFields& auxiliary) {
+    assert(static_cast<int>(auxiliary.features) == std::max(0, feature.channels - 3));
+    const Sweep sweep{pixels, fields, neighbors, feature, smoothness, auxiliary};
     auto move_row = &Sweep::move_row_portably;
 #if defined(__x86_64__)
     if (__builtin_cpu_supports("avx2")) move_row = &Sweep::move_row_avx2;

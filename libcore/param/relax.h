@@ -61,11 +61,11 @@ inline constexpr float kLeastMovingArea = 0.05f;
 /// count, and a pixel that would leave the mesh waits.
 ///
 /// feature    the image, size of `pixels`; both sides at least 2
-/// further    auxiliary_fields() if it has more than three features
+/// auxiliary  auxiliary_fields() if it has more than three features
 /// smoothness mu [feature^2 / px^2], > 0
 /// Pixels of one parity of (x, y) move at once and do not depend on each other, so the result is the same for
 /// any number of threads.
 void relax(PixelEmbedding& pixels, const std::vector<FaceField>& fields, const std::vector<Face>& neighbors,
-           const FeatureImage& feature, float smoothness, int sweeps, const AuxiliaryFields& further = {});
+           const FeatureImage& feature, float smoothness, int sweeps, const AuxiliaryFields& auxiliary = {});
 
 }  // namespace imgmesh

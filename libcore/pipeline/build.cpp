@@ -32,7 +32,7 @@ std::vector<std::string> used_channels(const Image& image, const std::vector<Cha
     return names;
 }
 
-// Returns features as a reader gets them: colours without their weight and on the colours' grid, other
+// Turns features into what a reader gets: colours without their weight and on the colours' grid, other
 // channels in their own unit.
 void take_weights_out(BaseMesh& mesh, const FeatureSpace& space) {
     for (Id v = 0; v < mesh.vertex_count(); ++v) {
@@ -57,7 +57,7 @@ std::int64_t largest_patch(const Level& level) {
     return *std::max_element(pixels.begin(), pixels.end());
 }
 
-// Returns an empty mask if all pixels are inside.
+// Checks the mask. Returns an empty one if all pixels are inside.
 Mask checked(Mask mask, const Image& image) {
     if (mask.empty()) return mask;
     if (mask.width != image.width || mask.height != image.height)

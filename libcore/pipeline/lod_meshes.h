@@ -20,8 +20,8 @@ class LodMeshes {
     LodMeshes(const GridMesh& grid, std::function<SimplifyParams(std::int64_t)> params,
               const Progress& progress);
 
-    /// Returns the mesh with at most `vertices` (>= 4), at least 1.5 % fewer, or the coarsest possible; keeps
-    /// up to a third finer ones. Without `lods` it has exactly as many, and none is kept.
+    /// Returns a mesh with at most `vertices` (>= 4) and at most about 1.5 % fewer, or the coarsest; keeps up
+    /// to a third finer ones. Without `lods` it has exactly as many, and none is kept.
     SimplifyResult mesh(std::int64_t vertices, bool lods);
 
     /// Returns how often the collapse has started.

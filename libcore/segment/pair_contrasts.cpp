@@ -88,8 +88,8 @@ double population_distance(const Vec3d& mean_a, const Vec3d& variance_a, const V
                            const Vec3d& variance_b) {
     double sum = 0, ratio = 1;
     for (int c = 0; c < 3; ++c) {
-        const double a = variance_a[c] + kPlainSpread * kPlainSpread,
-                     b = variance_b[c] + kPlainSpread * kPlainSpread;
+        const double a = variance_a[c] + kUniformDeviation * kUniformDeviation,
+                     b = variance_b[c] + kUniformDeviation * kUniformDeviation;
         const double step = mean_a[c] - mean_b[c];
         sum += step * step / (4 * (a + b));
         ratio *= (a + b) * (a + b) / (4 * a * b);
@@ -98,7 +98,7 @@ double population_distance(const Vec3d& mean_a, const Vec3d& variance_a, const V
 }
 
 double color_equivalent(double population_distance) {
-    return kPlainSpread * std::sqrt(8 * population_distance);
+    return kUniformDeviation * std::sqrt(8 * population_distance);
 }
 
 PairContrasts pair_contrasts(const FeatureImage& picture, const Cells& cells) {

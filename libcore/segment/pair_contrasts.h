@@ -8,11 +8,11 @@ namespace imgmesh {
 
 /// The standard deviation of uniform colours, from noise, shading and compression [L*u*v*]. Texture is above
 /// it and lowers contrasts. Chosen on photographs: docs/decisions/0009-segmentation.md.
-inline constexpr double kPlainSpread = 6.0;
+inline constexpr double kUniformDeviation = 6.0;
 
 /// Bhattacharyya's distance of two colour populations. Each is a normal distribution with independent
-/// channels, of the given mean and variance plus kPlainSpread^2. The distance grows with the difference of
-/// means relative to the deviations, and with the ratio of deviations. It is 0 for equal populations.
+/// channels, of the given mean and variance plus kUniformDeviation^2. The distance grows with the difference
+/// of means relative to the deviations, and with the ratio of deviations. It is 0 for equal populations.
 double population_distance(const Vec3d& mean_a, const Vec3d& variance_a, const Vec3d& mean_b,
                            const Vec3d& variance_b);
 

@@ -23,9 +23,10 @@ struct OutputSize {
 ///   footprint longer than 64 is sampled 64 times.
 /// - Folds: of several triangles over one point, those with four drawn pixels win over the boundary's, then
 ///   those not turned over, then the later row, then the later column.
-/// - Alpha is a weight in all means. Transparent are the area more than half a pixel outside the outermost
-///   centres, and pixels outside the mask. Sides that move get the share of the pixel that the image covers.
-///   The drawing has the image's channels, and also A if something is transparent.
+/// - Alpha is a weight in all means. The area more than half a pixel outside the outermost centres, and
+/// pixels
+///   outside the mask, are transparent. Sides that move get the share of the pixel that the image covers. The
+///   drawing has the image's channels, and also A if something is transparent.
 /// - If the centre of an output pixel is that of a source pixel in an unstretched cell, it is that pixel to
 ///   the bit. Without any move the drawing is the image; outside the mask it keeps its colours but is
 ///   transparent. If all pixels move by the same whole numbers, the drawing is the image shifted.

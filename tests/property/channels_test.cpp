@@ -46,11 +46,11 @@ FeatureImage waves(int width, int height, int channels) {
     return out;
 }
 
-FeatureSpace plain_space(int channels) {
+FeatureSpace auxiliary_space(int channels) {
     FeatureSpace space;
     space.color = false;
     space.auxiliary.assign(static_cast<std::size_t>(channels), "x");
-    space.plain_weight.assign(static_cast<std::size_t>(channels), 1.0f);
+    space.auxiliary_weight.assign(static_cast<std::size_t>(channels), 1.0f);
     return space;
 }
 
@@ -77,7 +77,7 @@ TEST_CASE("channels: features that are zero everywhere change nothing, to the bi
         const Fitted expected = fitted(color, 40, {});
         for (const int more : {1, 5, 13}) {
             INFO(name_of(kind) << ", " << more << " more");
-            FeatureSpace space = plain_space(more);
+            FeatureSpace space = auxiliary_space(more);
             space.color = true;
             const Fitted got = fitted(joined(color, zeros(45, 34, more)), 40, space);
             CHECK(got.mesh.position == expected.mesh.position);
@@ -98,7 +98,7 @@ TEST_CASE("channels: any number gives a sound mesh, and a map without a fold tha
     for (const int channels : {1, 2, 3, 4, 8, 9, 16}) {
         INFO(channels << " channels");
         const FeatureImage feature = waves(40, 30, channels);
-        const Fitted got = fitted(feature, 60, plain_space(channels));
+        const Fitted got = fitted(feature, 60, auxiliary_space(channels));
         CHECK(got.mesh.channels == channels);
         CHECK(mesh_quality(got.mesh).flipped_faces == 0);
         CHECK(mesh_quality(got.mesh).euler == 1);
@@ -106,7 +106,7 @@ TEST_CASE("channels: any number gives a sound mesh, and a map without a fold tha
         BaseMesh still = got.mesh;
         FitParams rest;
         rest.color_weight = 0;
-        rest.space = plain_space(channels);
+        rest.space = auxiliary_space(channels);
         const PixelMap trivial = fit_map(still, feature, rest);
         CHECK(map_rms(got.mesh, got.map, feature) < map_rms(still, trivial, feature));
     }
@@ -118,14 +118,14 @@ TEST_CASE("channels: the same channel sixteen times counts as one of four times 
     FeatureImage large = one, many = zeros(40, 30, 16);
     for (float& x : large.data) x *= 4;
     for (std::size_t i = 0; i < many.pixel_count(); ++i) std::fill_n(many.pixel(i), 16, one.pixel(i)[0]);
-    const Fitted a = fitted(large, 60, plain_space(1)), b = fitted(many, 60, plain_space(16));
+    const Fitted a = fitted(large, 60, auxiliary_space(1)), b = fitted(many, 60, auxiliary_space(16));
     CHECK(map_rms(a.mesh, a.map, large) == doctest::Approx(map_rms(b.mesh, b.map, many)).epsilon(0.05));
 }
 
 TEST_CASE("channels: a constant one is reproduced exactly enough") {
     FeatureImage feature = joined(waves(30, 20, 1), zeros(30, 20, 1));
     for (std::size_t i = 0; i < feature.pixel_count(); ++i) feature.pixel(i)[1] = 1e4f;
-    const Fitted got = fitted(feature, 30, plain_space(2));
+    const Fitted got = fitted(feature, 30, auxiliary_space(2));
     for (Id v = 0; v < got.mesh.vertex_count(); ++v)
         CHECK(got.mesh.feature_of(v)[1] == doctest::Approx(1e4).epsilon(1e-6));
 }

@@ -74,10 +74,10 @@ inline PixelMap random_map(int width, int height, std::size_t faces, WeightPreci
 }
 
 /// Takes the colours away or makes them light of any brightness, and adds channels of any values.
-inline void change_channels(MeshImage& image, bool color, bool light, const std::vector<std::string>& plain,
-                            std::mt19937& random) {
+inline void change_channels(MeshImage& image, bool color, bool light,
+                            const std::vector<std::string>& auxiliary, std::mt19937& random) {
     image.source.gamut = color && light ? Gamut::kHdr : Gamut::kDisplay;
-    image.source.channel_names = plain;
+    image.source.channel_names = auxiliary;
     if (color) image.source.channel_names.insert(image.source.channel_names.begin(), {"R", "G", "B"});
     if (light) image.source.sample_type = SampleType::kFloat;
     for (Level& level : image.levels) {
@@ -89,7 +89,7 @@ inline void change_channels(MeshImage& image, bool color, bool light, const std:
             const float scale = std::pow(10.0f, static_cast<float>(random() % 10) - 4);
             if (light) luv = quantized_color(luv_from_linear(linear_from_luv(luv) * scale), Gamut::kHdr);
             if (color) level.mesh.feature.insert(level.mesh.feature.end(), luv.data(), luv.data() + 3);
-            for (std::size_t c = 0; c < plain.size(); ++c)
+            for (std::size_t c = 0; c < auxiliary.size(); ++c)
                 level.mesh.feature.push_back(scale * (static_cast<float>(random() % 2001) / 1000 - 1));
         }
     }

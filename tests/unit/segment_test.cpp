@@ -89,9 +89,9 @@ TEST_CASE("population distance: the textbook's values") {
     CHECK(population_distance(zero, zero, zero, zero) == 0.0);
     // Equal spreads s: |step|^2 / 8 s^2.
     CHECK(population_distance(zero, zero, step, zero) ==
-          doctest::Approx(25 / (8 * kPlainSpread * kPlainSpread)));
+          doctest::Approx(25 / (8 * kUniformDeviation * kUniformDeviation)));
     // Equal means, variances in the ratio 4 in one channel: ln((1 + 4)^2 / (4 * 4)) / 4.
-    const Vec3d wide(3 * kPlainSpread * kPlainSpread, 0, 0);
+    const Vec3d wide(3 * kUniformDeviation * kUniformDeviation, 0, 0);
     CHECK(population_distance(step, zero, step, wide) == doctest::Approx(std::log(25.0 / 16) / 4));
     CHECK(color_equivalent(population_distance(zero, zero, step, zero)) == doctest::Approx(5));
 }
@@ -111,7 +111,7 @@ TEST_CASE("contour distance of two plain halves is that of their colours") {
     const Cells cells = cut_cells(map);
     const PairContrasts contrasts = pair_contrasts(picture, cells);
     CHECK(double(contrasts.right[kSide / 2 - 1]) ==
-          doctest::Approx(1 - std::exp(-25 / (8 * kPlainSpread * kPlainSpread))));
+          doctest::Approx(1 - std::exp(-25 / (8 * kUniformDeviation * kUniformDeviation))));
     const RegionGraph graph = region_graph(cells, map, picture, contrasts);
     REQUIRE(graph.borders.size() == 1);
     CHECK(graph.borders[0].length == kSide);
