@@ -30,6 +30,8 @@ TBB = re.compile(r"(oneapi/)?tbb(/|\.h$)")
 FILE_LIBRARIES = re.compile(r"OpenEXR/|Imath/|Imf\w*\.h|OpenImageIO/|png\.h$|libdeflate\.h$|draco/|tiny_gltf|tinygltf|nlohmann/|webp/|json/")
 COMMAND_LINE = re.compile(r"CLI/|CLI11")
 STREAMS = re.compile(r"(fstream|filesystem|cstdio|stdio\.h)$")
+# A header that a comment names.
+MENTION = re.compile(r"[\w/]*\w\.h\b")
 
 
 def against_ranks(rank_of, path, include):
@@ -110,6 +112,11 @@ def public_findings(root):
         for include in includes(root / header):
             if "/" in include and include not in headers and not include.startswith("Eigen/"):
                 yield f"{header} is public and includes {include}, which is not"
+        # Who reads an installed header finds only installed ones.
+        text = (root / header).read_text(encoding="utf-8")
+        for named in MENTION.findall(INCLUDE.sub("", text)):
+            if not any(f"/{other}".endswith(f"/{named}") for other in headers):
+                yield f"{header} is public and its comments refer to {named}, which is not"
 
 
 def findings(root):
@@ -187,6 +194,8 @@ PUBLIC_CASES = [
     ("libcore/mesh/a.h", "#include <boost/any.hpp>\n", True),
     ("libcore/mesh/a.h libcore/mesh/gone.h", "", True),
     ("libcore/mesh/a.h formats/mesh/a.h", "", True),
+    ("libcore/mesh/a.h", "// As b.h has it.\n", True),
+    ("libcore/mesh/a.h libcore/mesh/b.h", "// As b.h and mesh/b.h have it.\n", False),
     ("libcore/mesh/b.h", '#include "libcore/mesh/b.h"\n', False),
 ]
 

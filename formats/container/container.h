@@ -12,42 +12,47 @@
 
 namespace imgmesh {
 
-/// An image that viewers put on the meshes, instead of the vertices' colours.
+/// An image that viewers put on the meshes instead of the vertices' colours.
 struct Texture {
-    std::vector<std::uint8_t> picture;  ///< a PNG or JPEG file in sRGB; empty for no texture
-    /// Where in it the vertices of each level are: from (0, 0), the corner of the top-left pixel, to (1, 1)
+    std::vector<std::uint8_t>
+        picture;  ///< the bytes of a PNG or JPEG file in sRGB (encode_texture()); empty for none
+    /// For each level the place of every vertex in it, from (0, 0), the top-left pixel's corner, to (1, 1).
     std::vector<std::vector<Vec2f>> coords;
 };
 
 /// Texture::coords with every vertex at its own place: ((x + 0.5) / W, (y + 0.5) / H).
 std::vector<std::vector<Vec2f>> texture_coords(const MeshImage& mesh_image);
 
+/// How write_container() writes.
 struct ContainerOptions {
     DracoMode draco = DracoMode::kEdgebreaker;
-    bool overwrite = true;  ///< replace what stands at the path; other files are never replaced
-    /// files that stay although the .gltf that is replaced refers to them: those that were read
+    bool overwrite = true;  ///< replace the file at the path; other files are never replaced
+    /// Files that stay although the .gltf that is replaced refers to them, such as those just read.
     std::vector<std::string> keep = {};
-    bool layers = true;    ///< false: the meshes alone, a plain glTF asset that read_container refuses
+    bool layers = true;    ///< false: without pixel maps, a plain glTF asset that read_container() refuses
     Texture texture = {};  ///< with the coordinates of all vertices of all levels
 };
 
 /// Writes `mesh_image`; the extension of `path` (.glb or .gltf) decides the spelling.
 ///
-/// Loses nothing of a MeshImage whose positions lie on kPositionStep, whose colours are 16-bit linear codes
-/// (quantized_color, libcore/image/color.h) and whose weights lie on the map's precision grid: read_container
-/// gives the same mesh and map back, up to the order of vertices and faces and the rotation of corners, which
-/// Draco chooses, and vertices without a face. The .gltf gets its name after what it refers to, and the files
-/// of a container that it replaces go last: at any moment the old container stands there or the new one.
-/// Throws Error: kBadArgument for another extension; kIo where a file cannot be written.
+/// Nothing is lost of what build_mesh_image() returns, nor of any MeshImage whose positions lie on
+/// kPositionStep, whose colours are those of quantized_color() and whose weights lie on the grid of the map's
+/// precision. read_container() gives the same meshes and maps back, but Draco chooses the order of vertices
+/// and faces and the first corner of each face, and vertices without a face are dropped.
+///
+/// A .gltf appears after the files that it refers to, and the files of a container that it replaces go last:
+/// at any moment the old container stands there or the new one. Same bytes for the same mesh image and
+/// options. Takes O(pixels + faces) time. Throws Error: kBadArgument for another extension; kIo if a file
+/// cannot be written.
 void write_container(const std::string& path, const MeshImage& mesh_image,
                      const ContainerOptions& options = {});
 
-/// The names that write_container prefers for the files of `path`, itself first: a .gltf has a .bin and a
-/// .exr beside it, which get names with a hash where other files have these. Throws Error(kBadArgument) for
-/// another extension.
+/// The files that write_container() writes for `path`, itself first. A .gltf has a .bin and a .exr beside it;
+/// where other files have these names already, they get names with a hash instead. Throws Error(kBadArgument)
+/// for another extension.
 std::vector<std::string> container_files(const std::string& path);
 
-/// Facts of the file that a MeshImage does not hold.
+/// Facts about the files that a MeshImage does not hold.
 struct ContainerFacts {
     std::string version;  ///< of the extension
     DracoMode draco = DracoMode::kOff;
@@ -58,16 +63,20 @@ struct ContainerFacts {
     std::uint64_t texture_bytes = 0;
 };
 
+/// What read_container() returns.
 struct Container {
     MeshImage mesh_image;
     ContainerFacts facts;
-    Texture texture;  ///< as it is stored; not looked into
+    Texture texture;  ///< as stored, its picture not decoded
 };
 
-/// Reads and checks a container: topology hash, ranges, simplex, limits; URIs stay in the container's folder.
-/// Throws Error: kIo where a file cannot be read; kBadFile for the first finding, or kUnsupported for a newer
-/// version, with its code (formats/findings/finding_codes.h), as in "x.glb: [layers.face_range] ...".
-/// Parameters come back sorted by name.
+/// Reads a container and checks all of it: sizes against `limits` before memory is taken, indices, weights,
+/// and by a hash whether the pixel maps were made for these meshes. Other files are read from the container's
+/// own folder only. Safe for any bytes. Parameters come back sorted by name. Takes O(bytes + pixels) time.
+///
+/// Throws Error: kIo if a file cannot be read; kUnsupported for a newer version; kBadFile for anything
+/// else that is wrong. The text has the code of the finding (finding_codes.h): "x.glb: [layers.face_range]
+/// ...".
 Container read_container(const std::string& path, const ContainerLimits& limits = {});
 
 }  // namespace imgmesh

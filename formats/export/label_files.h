@@ -1,4 +1,4 @@
-// Label images and contour maps as files. Target imgmesh_pictures.
+// Writes label images and contour maps. Target imgmesh::pictures.
 #pragma once
 
 #include <span>
@@ -8,16 +8,19 @@
 
 namespace imgmesh {
 
-/// Returns whether write_labels() knows this path's extension: .exr or .png.
+/// Whether write_labels() can write a file of this extension: .exr or .png.
 bool can_write_labels(const std::string& path);
 
-/// Writes one label for each pixel, rows from top to bottom, kNone for none. `.exr`: one UINT channel `id`.
-/// `.png`: 16-bit grey, where 65535 is none, so labels are the same numbers in both. Atomic; the same labels
-/// give the same bytes. Throws Error: kBadArgument for another extension or a label above 65534 in a .png;
-/// kIo if the file cannot be written.
+/// Writes one label a pixel, such as LabelImage::labels: width * height of them, rows from top to bottom,
+/// kNone for none. An .exr gets one UINT channel `id`; a .png is 16-bit grey, with 65535 for none.
+///
+/// The file appears whole or not at all; same bytes for the same labels. Throws Error: kBadArgument for
+/// another extension and, in a .png, for a label above 65534; kIo if the file cannot be written, or exists
+/// and `overwrite` is false.
 void write_labels(const std::string& path, int width, int height, std::span<const Id> labels, bool overwrite);
 
-/// Writes an EXR with one FLOAT channel of that name. Throws Error(kIo) if it cannot be written.
+/// Writes one value a pixel, such as ContourMap::values, as an EXR with one FLOAT channel of that name.
+/// Throws Error(kIo) as write_labels() does.
 void write_float_layer(const std::string& path, const std::string& channel, int width, int height,
                        std::span<const float> values, bool overwrite);
 

@@ -1,4 +1,5 @@
-// A level's mesh in the text formats of other programs. The same mesh gives the same bytes.
+// Base meshes in text formats of other programs. The same mesh gives the same bytes. All take O(vertices +
+// faces) time.
 #pragma once
 
 #include <string>
@@ -7,12 +8,12 @@
 
 namespace imgmesh {
 
-/// PLY, ASCII: vertices at (x, -y, 0) [pixels] with 8-bit sRGB colours, faces as lists. Throws
-/// Error(kUnsupported) for a mesh without colour, as the next function does.
+/// PLY, ASCII: vertices at (x, -y, 0) [pixels] with sRGB colours of 8 bits, faces as lists. Throws
+/// Error(kUnsupported) for a mesh without colour.
 std::string ply_from_mesh(const BaseMesh& mesh);
 
 /// Wavefront OBJ: vertices at (x, -y, 0) [pixels] with sRGB colours in [0, 1] after the position, texture
-/// coordinates with v up, faces.
+/// coordinates with v up, faces. Throws Error(kUnsupported) for a mesh without colour.
 std::string obj_from_mesh(const BaseMesh& mesh, const SourceInfo& source);
 
 /// TexturePacker's JSON with polygon outlines, as Pixi reads it: one frame, the whole image `image`, with

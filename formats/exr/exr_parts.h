@@ -1,4 +1,4 @@
-// Several float images as the parts of one EXR file. Target imgmesh_pictures.
+// Writes several images as the parts of one EXR file. Target imgmesh::pictures.
 #pragma once
 
 #include <string>
@@ -8,15 +8,19 @@
 
 namespace imgmesh {
 
+/// An image and the name of its part.
 struct NamedImage {
     std::string name;
     Image image;
 };
 
-/// Writes the images as parts with these names, in this order, atomically: scanlines, ZIP, FLOAT channels
-/// under their names, unchanged numbers (no colour space, no premultiplied alpha). Each image is its part's
-/// data window. The display window of all parts is the first image, as OpenEXR requires. There is at least
-/// one image; names differ. Throws Error(kIo) if the file cannot be written.
+/// Writes the images, at least one, as parts in this order: scanlines, ZIP, FLOAT channels of the images'
+/// names. Values are written as they are, without a colour space and without alpha multiplied in. No two
+/// names may be equal. An image is the data window of its part; the display window of all parts is the first
+/// image, as OpenEXR demands.
+///
+/// The file appears whole or not at all. Throws Error(kIo) if it cannot be written, or exists and
+/// `overwrite` is false.
 void write_exr_parts(const std::string& path, const std::vector<NamedImage>& parts, bool overwrite);
 
 }  // namespace imgmesh

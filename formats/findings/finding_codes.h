@@ -1,5 +1,5 @@
-// Everything that can be said against a container, by code: the one table. docs/format.md lists it; messages
-// and reports carry the codes.
+// The findings: everything that can be wrong with a container, each with a code that never changes its
+// meaning. Messages and reports carry the codes; docs/format.md explains them.
 #pragma once
 
 #include <string_view>
@@ -8,14 +8,15 @@
 
 namespace imgmesh {
 
-/// A reader refuses errors. Warnings are what a careful writer does otherwise, infos what a reader ignores.
+/// Readers refuse a container with an error. A warning is something that a careful writer would do otherwise,
+/// an info something that readers ignore.
 enum class Severity { kError, kWarning, kInfo };
 
-/// One kind of defect: a stable code for machines and what it means. `error` counts for errors alone.
+/// One kind of defect: its code and what it means.
 struct Finding {
     std::string_view code;
     std::string_view meaning;
-    ErrorKind error = ErrorKind::kBadFile;
+    ErrorKind error = ErrorKind::kBadFile;  ///< of the Error that read_container() throws for it
     Severity severity = Severity::kError;
 };
 
@@ -26,7 +27,7 @@ constexpr Finding info(std::string_view code, std::string_view meaning) {
     return {code, meaning, ErrorKind::kBadFile, Severity::kInfo};
 }
 
-/// All of them, from the outside of a file inwards: the errors, then what a validator tells besides.
+/// All findings: first the errors, from the outside of a file inwards, then the warnings and infos.
 inline constexpr Finding kFindings[] = {
     {"limits.bytes", "the files are larger than the limit"},
     {"limits.pixels", "the image is larger than the limit"},

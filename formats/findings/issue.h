@@ -1,4 +1,4 @@
-// One finding in a file, and its place.
+// What validate_container() returns: findings in a file.
 #pragma once
 
 #include <cstdint>
@@ -9,12 +9,12 @@
 
 namespace imgmesh {
 
-/// One finding in one file.
+/// One finding in a file. A defect that occurs many times, such as at many pixels, is one issue.
 struct Issue {
-    const Finding* finding;  ///< of kFindings
-    std::string text;        ///< one line: what was found
-    Place place;             ///< the first of `count` places
-    std::uint64_t count = 1;
+    const Finding* finding;   ///< its kind, a member of kFindings
+    std::string text;         ///< what was found, in one line
+    Place place;              ///< where it occurs first
+    std::uint64_t count = 1;  ///< how often it occurs
 };
 
 }  // namespace imgmesh

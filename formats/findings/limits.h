@@ -1,17 +1,18 @@
-// Limits that a reader of containers checks before it takes memory.
+// Limits on the size of containers.
 #pragma once
 
 #include <cstdint>
 
 namespace imgmesh {
 
-/// The defaults admit what this version can write on an ordinary machine.
+/// Readers refuse a larger container with Error(kBadFile) before they take memory for it. The defaults admit
+/// what this version writes on a machine of ordinary size; who reads files of strangers sets lower ones.
 struct ContainerLimits {
-    std::uint64_t max_bytes = std::uint64_t{8} << 30;
-    std::int64_t max_pixels = std::int64_t{1} << 28;
-    std::int64_t max_faces = std::int64_t{1} << 28;
-    int max_levels = 32;
-    int max_json_depth = 64;
+    std::uint64_t max_bytes = std::uint64_t{8} << 30;  ///< of all files together
+    std::int64_t max_pixels = std::int64_t{1} << 28;   ///< of the image
+    std::int64_t max_faces = std::int64_t{1} << 28;    ///< of each level
+    int max_levels = 32;                               ///< of the pyramid
+    int max_json_depth = 64;                           ///< of objects and arrays in each other
 };
 
 }  // namespace imgmesh

@@ -1,4 +1,4 @@
-// The place of a finding in a container.
+// Places in a container.
 #pragma once
 
 #include <cstdint>
@@ -8,18 +8,18 @@
 
 namespace imgmesh {
 
-/// Members that do not apply are empty.
+/// Where in a container something was found. Members that do not apply are empty.
 struct Place {
-    /// JSON pointer into the glTF document (RFC 6901). In a FindingError, one without a leading / is relative
-    /// to the pointer given to Findings::attempt().
+    /// JSON pointer into the glTF document (RFC 6901), such as "/nodes/0/mesh".
     std::string pointer;
-    std::string part;                                              ///< of the EXR
-    std::string channel;                                           ///< of that part
+    std::string part;                                              ///< name of a part of the EXR
+    std::string channel;                                           ///< name of a channel of that part
     std::optional<std::pair<std::uint64_t, std::uint64_t>> pixel;  ///< x, y
-    std::string bytes_of;                                          ///< "file", "draco" or "layers"
-    std::optional<std::uint64_t> byte;                             ///< offset in it
+    std::string bytes_of;               ///< what `byte` counts in: "file", "draco" or "layers"
+    std::optional<std::uint64_t> byte;  ///< offset, from 0
 };
 
+/// A place with only these members.
 inline Place at_pointer(std::string pointer) {
     Place place;
     place.pointer = std::move(pointer);

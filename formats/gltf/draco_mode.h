@@ -3,7 +3,11 @@
 
 namespace imgmesh {
 
-/// kSequential keeps the order of vertices and faces; kEdgebreaker changes it and halves the size.
-enum class DracoMode { kEdgebreaker, kSequential, kOff };
+/// Both Draco modes lose nothing.
+enum class DracoMode {
+    kEdgebreaker,  ///< about half the size of kSequential; reorders vertices and faces
+    kSequential,   ///< keeps the order of vertices and faces
+    kOff           ///< no compression
+};
 
 }  // namespace imgmesh

@@ -1,5 +1,5 @@
 // Images from and to files: PNG, EXR and WebP through their own libraries, the rest through OpenImageIO,
-// which is loaded when it is first needed (oiio_module.h). Target imgmesh_pictures.
+// which is loaded when it is first needed. Target imgmesh::pictures.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,7 @@
 
 namespace imgmesh {
 
-/// What read_image refuses before it takes memory.
+/// read_image() refuses larger images before it takes memory for them.
 struct ImageLimits {
     std::int64_t max_pixels = std::int64_t{1} << 28;  ///< 268 megapixels
     int max_side = 65535;
@@ -28,15 +28,16 @@ struct ImageLimits {
 /// sRGB for integers and linear for floats. An EXR's image is its display window; pixels outside the data
 /// window are 0.
 ///
-/// Throws Error: kIo where the file cannot be read; kBadFile for content that is no image, broken or
+/// Throws Error: kIo if the file cannot be read; kBadFile for content that is no image, broken or
 /// truncated, over the limits, or with samples that are not finite; kUnsupported for what imgmesh has no use
 /// for (deep and subsampled EXR, camera raw, CIELAB, signed integers, EXR primaries other than Rec.709's
 /// unless `color_space` is given). Never aborts, whatever the bytes.
 Image read_image(const std::string& path, std::optional<ColorSpace> color_space = {},
                  const ImageLimits& limits = {});
 
+/// How write_image() writes.
 struct WriteImageOptions {
-    bool overwrite = true;
+    bool overwrite = true;                  ///< false: Error(kIo) if the file exists
     std::optional<SampleType> sample_type;  ///< none: the image's, or the nearest that the format can hold
 };
 
@@ -49,14 +50,15 @@ struct WriteImageOptions {
 ///
 /// Throws Error: kBadArgument for an extension that cannot be written, and for what its format cannot hold:
 /// the sample type asked for, channels other than grey or colour, transparency (an opaque alpha is left out),
-/// WebP's and JPEG's size; kIo where the file cannot be written.
+/// WebP's and JPEG's size; kIo if the file cannot be written.
 void write_image(const std::string& path, const Image& image, const WriteImageOptions& options = {});
 
-/// What write_image would write into a file of that name, which is not looked at beyond its extension.
+/// The bytes that write_image() would write into a file of that name; only the extension counts. Throws as
+/// write_image() does.
 std::vector<std::uint8_t> encode_image(const std::string& path, const Image& image,
                                        std::optional<SampleType> sample_type = {});
 
-/// Whether write_image knows this path's extension.
+/// Whether write_image() can write a file of this extension.
 bool can_write_image(const std::string& path);
 
 }  // namespace imgmesh

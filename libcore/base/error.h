@@ -7,7 +7,7 @@
 
 namespace imgmesh {
 
-/// What kind of thing is wrong. Tools give each kind an exit code (tools/common/exit_code.h).
+/// What kind of thing is wrong. The tools give each kind an exit code of its own.
 enum class ErrorKind {
     kInternal,     ///< our own mistake, or a library that failed for no reason of the user's
     kBadArgument,  ///< a parameter is out of range, or parameters contradict each other

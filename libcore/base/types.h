@@ -13,7 +13,7 @@ using Vec3f = Eigen::Vector3f;
 using Vec2d = Eigen::Vector2d;
 using Vec3d = Eigen::Vector3d;
 
-/// Ids of vertices, faces and pixels; kNone means "no such thing".
+/// Ids of vertices, faces and pixels, counted from 0. kNone stands for "no vertex", "no face" and so on.
 using Id = std::uint32_t;
 inline constexpr Id kNone = 0xFFFFFFFFu;
 

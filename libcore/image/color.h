@@ -41,10 +41,12 @@ enum class Gamut {
 /// L*u*v* leaves the gamut by a lot.)
 Vec3f in_gamut(const Vec3f& luv, Gamut gamut = Gamut::kDisplay);
 
-/// Returns what a container keeps of `luv` as L*u*v*: in_gamut(luv) with 16-bit codes, or quantized_hdr().
+/// Returns the colour, again L*u*v*, that a container keeps of in_gamut(luv): its linear RGB is rounded to
+/// 16-bit codes, or as quantized_hdr() does for HDR.
 /// quantized_color(quantized_color(x)) == quantized_color(x), bit for bit.
 Vec3f quantized_color(const Vec3f& luv, Gamut gamut = Gamut::kDisplay);
-/// Converts an L*u*v* colour to the 16-bit codes of its linear RGB, and codes back to L*u*v*.
+/// Returns the 16-bit codes (65535 is 1) of the linear RGB of in_gamut(luv), and converts codes to L*u*v*.
+/// The codes of a quantised colour give the same colour back, bit for bit.
 std::array<std::uint16_t, 3> color_codes(const Vec3f& luv);
 Vec3f color_from_codes(const std::array<std::uint16_t, 3>& codes);
 
@@ -63,7 +65,8 @@ Gamut gamut_of(const Image& image, const Mask& mask = {});
 enum class Range { kAny, kClipped, kHdr };
 
 /// Returns the colour of every pixel as L*u*v*. One channel (grey) counts as R = G = B; alpha is ignored.
-/// Throws Error(kUnsupported) if the image has neither R, G, B nor Y.
+/// The result is the same for any number of threads. Throws Error(kUnsupported) if the image has neither R,
+/// G, B nor Y.
 FeatureImage luv_image(const Image& image, Range range = Range::kAny);
 
 }  // namespace imgmesh

@@ -45,7 +45,7 @@ inline double signed_area2(const Vec2f& a, const Vec2f& b, const Vec2f& c) {
     return aby * acx - abx * acy;
 }
 
-/// Returns every edge once, its lower vertex first, in ascending order.
+/// Returns every edge once, its lower vertex first, in ascending order. Takes O(F log F) time.
 std::vector<std::pair<Id, Id>> mesh_edges(const BaseMesh& mesh);
 
 }  // namespace imgmesh

@@ -13,14 +13,14 @@
 
 namespace imgmesh {
 
-/// One parameter that shaped the result, by the name of its option.
+/// Name and value of a parameter that shaped the result, such as {"vertices", 4000}.
 using BuildParameter = std::pair<std::string, std::variant<bool, std::int64_t, double, std::string>>;
 
-/// One level of the pyramid.
+/// One level of the pyramid: a base mesh and the pixel map onto it.
 struct Level {
     BaseMesh mesh;
     PixelMap map;      ///< every face id < mesh.faces.size(), or kNone
-    double error = 0;  ///< largest quadric error accepted by the collapse so far [feature units^2 px^2]
+    double error = 0;  ///< largest quadric error that a collapse down to here has had [feature^2 px^2]
 };
 
 /// The image that a MeshImage was made from.
@@ -37,10 +37,12 @@ struct SourceInfo {
     Gamut gamut = Gamut::kDisplay;  ///< of the meshes' colours
 };
 
+/// The whole of it. read_container() returns one that is sound; whoever fills one keeps to the comments here
+/// and in BaseMesh and PixelMap.
 struct MeshImage {
     SourceInfo source;
     std::vector<Level> levels;  ///< 0 is the finest; at least one
-    std::vector<Id> visits;     ///< the paper's visit map, size width * height, or empty
+    std::vector<Id> visits;     ///< how often the collapse touched each pixel, size width * height; or empty
     std::string generator;      ///< e.g. "imgmesh-build 0.1.0"
     std::vector<BuildParameter> parameters;
 };

@@ -14,6 +14,7 @@ struct Bins {
     int count = 1;
 };
 
+/// A summary of many numbers.
 struct Distribution {
     std::int64_t count = 0;  ///< number of values; if it is 0, all figures except the histogram are NaN
     double mean = 0;
@@ -29,7 +30,8 @@ struct Distribution {
     std::int64_t above = 0;               ///< values above bins.high
 };
 
-/// Leaves out NaNs; other values must be finite. bins.low < bins.high, bins.count >= 1. Takes O(n) time.
+/// Summarises `values`. Leaves out NaNs; other values must be finite. bins.low < bins.high, bins.count >= 1.
+/// Takes O(n) time.
 Distribution distribution(std::vector<float> values, const Bins& bins);
 
 }  // namespace imgmesh

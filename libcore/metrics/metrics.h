@@ -48,15 +48,17 @@ struct MapQuality {
 };
 
 /// Measures any map, valid or not. If has_mask, pixels with face kNone are outside the image, not unmapped.
+/// Takes O(pixels) time.
 MapQuality map_quality(const BaseMesh& mesh, const PixelMap& map, bool has_mask = false);
 
 /// Returns where each pixel lands: the positions of map.coords in `mesh`, width * height. They are NaN if the
 /// face is kNone or out of range.
 std::vector<Vec2d> mapped_positions(const BaseMesh& mesh, const PixelMap& map);
 
-/// Returns the root mean square, over the pixels, of the Euclidean distance in feature space between the
-/// map's interpolated features and `reference`. Pixels with face kNone are left out; the result is 0 if all
-/// are. Face ids must be valid. Throws Error(kBadArgument) if sizes or channels differ.
+/// The error of a reconstruction. Returns the root mean square, over the pixels, of the Euclidean distance in
+/// feature space between the map's interpolated features and `reference`. Pixels with face kNone are left
+/// out; the result is 0 if all are. Face ids must be valid. Throws Error(kBadArgument) if sizes or channels
+/// differ.
 double map_rms(const BaseMesh& mesh, const PixelMap& map, const FeatureImage& reference);
 
 /// The same for a single feature.

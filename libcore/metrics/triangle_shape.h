@@ -5,8 +5,9 @@
 
 namespace imgmesh {
 
-/// Sources: Field, "Qualitative measures for initial meshes", 2000 (edge ratio, radius ratio, shape);
-/// Shewchuk, "Delaunay refinement algorithms for triangular mesh generation", 2002 (radius-edge ratio).
+/// Measures of one triangle. Sources: Field, "Qualitative measures for initial meshes", 2000 (edge ratio,
+/// radius ratio, shape); Shewchuk, "Delaunay refinement algorithms for triangular mesh generation", 2002
+/// (radius-edge ratio).
 struct TriangleShape {
     double edge_ratio = 0;         ///< longest edge / shortest edge; best 1, grows
     double aspect_ratio = 0;       ///< sqrt(3)/2 longest edge / shortest altitude; best 1, grows

@@ -13,19 +13,19 @@
 namespace imgmesh {
 
 struct FitParams {
-    double color_weight = 1.0 / 30;  ///< of colour against smoothness (1 / mu of relax()); 0: the trivial map
-    std::optional<WeightPrecision> bary;  ///< none: half where the map stays a bijection so, else float
-    int rounds = 4;                       ///< of relaxation; colours are refitted after each
-    int sweeps = 4;                       ///< of relaxation in each round
+    double color_weight = 1.0 / 30;  ///< of colour against smoothness [px^2 / feature^2]; 0: the trivial map
+    std::optional<WeightPrecision> bary;  ///< none: half where the map stays a bijection with it, else float
+    int rounds = 4;                       ///< of relaxation, colours refitted after each
+    int sweeps = 4;                       ///< of relaxation a round
     FeatureSpace space;                   ///< of the image
-    bool keep_colors = false;             ///< the mesh's features stay, except for rounding
-    double gouraud_share =
-        0.1;  ///< how much the drawing without the map counts in the fit of colours, 0 to 1
+    bool keep_colors = false;             ///< keep the mesh's features, but for rounding
+    double gouraud_share = 0.1;  ///< weight of the drawing without the map in the fit of colours, 0 to 1
 };
 
-/// Finds the pixel map (relax.h, quantize_map.h) and replaces the mesh's features by the least-squares ones
-/// (unless params.keep_colors), with colours rounded to what a container holds. The map is a bijection of the
-/// pixel grid onto the mesh.
+/// Finds the pixel map of any base mesh over an image: every pixel moves a little to where the mesh has its
+/// colour, while the grid of pixels stays a grid without a fold. The map is a bijection, rounded to what a
+/// container holds. Unless params.keep_colors, the mesh's features become the least-squares ones for that
+/// map, colours rounded likewise. Same result for any number of threads. Takes O(pixels) time in each sweep.
 ///
 /// mesh     covers the image's rectangle, or every pixel inside the mask; positions on kPositionStep
 /// mask     empty(), or of the image's size: pixels outside get no face
@@ -34,8 +34,8 @@ struct FitParams {
 PixelMap fit_map(BaseMesh& mesh, const FeatureImage& feature, const FitParams& params,
                  const Progress& progress = {}, const Mask& mask = {});
 
-/// The same for an existing map, made by a tracker. Its weights are rounded to the grid, its folds stay.
-/// Halves are used unless their step would be an eighth of a pixel in some face.
+/// The same for a map that is there already: its weights are rounded to the grid, and folds stay. Without a
+/// choice the grid is that of halves, unless a face is so large that a step would be an eighth of a pixel.
 PixelMap fit_given_map(BaseMesh& mesh, const FeatureImage& feature, PixelMap map, const FitParams& params,
                        const Mask& mask = {});
 

@@ -14,24 +14,29 @@ enum class DrawMode {
     kWire,     ///< the edges of the base mesh over the (lightened) Gouraud drawing
     kPatches,  ///< each patch (the pixels of one face) in a colour different from its neighbours'
     kFlat,     ///< each face in one colour, the mean of its corners' colours
-    kVisits    ///< how often the collapse touched each pixel; few visits are bright (visit_lightness.h)
+    kVisits    ///< how often the collapse touched each pixel; few visits are bright (paper fig. 2)
 };
 
 struct DrawParams {
     DrawMode mode = DrawMode::kMap;
-    double scale = 1;  ///< output size / image size; only gouraud, wire and flat allow values other than 1
+    double scale = 1;  ///< output size / image size; kMap, kPatches and kVisits allow only 1
 };
 
-/// Draws level `level_index` in the source's sample type and colour space (HDR meshes in linear RGB),
-/// clamped to [0, 1] unless the space is linear. Channels are RGB, and A if the source has a mask: 0
-/// outside the mask for map, patches and visits, outside the mesh for the others. The size is round(scale
-/// * source size), at least 1; the centre of output pixel i is at (i + 0.5) / scale - 0.5 of the source.
-/// Throws Error(kBadArgument) for a level that does not exist or a scale that the mode does not allow,
-/// Error(kUnsupported) for a mesh without colour, or for visits if there are none. Only level 0 has
-/// visits.
+/// Draws level `level_index`, 0 being the finest.
+///
+/// return  channels R, G, B in the source's sample type and colour space (HDR meshes in linear RGB), clamped
+///         to [0, 1] unless the space is linear. A as well if the source has a mask: 0 outside the mask for
+///         map, patches and visits, outside the mesh for the other modes. A side has
+///         round(scale * source side) pixels, at least 1; the centre of output pixel i is at
+///         (i + 0.5) / scale - 0.5 of the source.
+///
+/// The result is the same for any number of threads. Takes O(pixels drawn + faces) time.
+/// Throws Error(kBadArgument) for a level that does not exist, for a scale that the mode does not allow and
+/// for more than 2^28 pixels; Error(kUnsupported) for a mesh without colour, and for visits if the mesh image
+/// has none or the level is not 0.
 Image draw(const MeshImage& mesh_image, int level_index, const DrawParams& params);
 
-/// Returns the scale, after draw()'s checks of it.
+/// Returns params.scale. Throws Error(kBadArgument) if draw() would refuse it.
 double checked_scale(const SourceInfo& source, const DrawParams& params);
 
 /// Returns the wire drawing (only the edges, on nothing) or the flat drawing as an SVG document in sRGB. One

@@ -1,4 +1,4 @@
-// What segmentation joins: the connected parts of patches.
+// Cells: the connected parts of patches, which segmentation joins to regions.
 #pragma once
 
 #include <vector>
@@ -18,6 +18,7 @@ struct Cells {
     std::size_t count() const { return face.size(); }
 };
 
+/// Cuts the patches of a map into cells. Takes O(pixels) time.
 Cells cut_cells(const PixelMap& map);
 
 }  // namespace imgmesh

@@ -22,7 +22,8 @@ struct ContourMap {
     std::vector<float> values;  ///< size width * height
 };
 
-/// Takes O(pixels + borders log cells) time.
+/// Returns the contour map of an image; `hierarchy` has the merges of `cells`. Takes O(pixels + borders log
+/// cells) time.
 ContourMap contour_map(const Cells& cells, const Hierarchy& hierarchy);
 
 }  // namespace imgmesh

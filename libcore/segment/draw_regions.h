@@ -9,6 +9,8 @@ namespace imgmesh {
 
 /// Draws each region in one L*u*v* colour, for example its mean. The result has RGB in the source's colour
 /// space and sample type. If some pixel is outside the mask, it also has A, which is 0 there.
+///
+/// colors  one for each region, such as RegionFacts::color
 Image draw_flat(const LabelImage& labels, const std::vector<Vec3f>& colors, const SourceInfo& source);
 
 /// Draws `picture` (L*u*v*) with lines one pixel wide along the regions' borders. A line is drawn on pixels

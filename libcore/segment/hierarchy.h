@@ -8,27 +8,26 @@
 
 namespace imgmesh {
 
-/// One merge: the region that holds cell a and the region that holds cell b become one.
+/// One merge: the regions that hold cells a and b become one.
 struct Merge {
     Id a = kNone;
     Id b = kNone;
-    float height = 0;  ///< the two are one for every threshold above: the largest distance merged so far
+    float height = 0;  ///< the threshold above which the two are one: the largest distance merged so far
 };
 
-/// All merges of an image's cells (cells.h), closest regions first; heights never fall. Without a mask all
-/// cells end up in one region, with a mask of k islands in k.
+/// All merges of an image's cells (cells.h), closest regions first. Heights never fall. Cells on different
+/// islands of a mask never merge, so k islands leave k regions in the end.
 struct Hierarchy {
     std::size_t cells = 0;
     std::vector<Merge> merges;
-    /// The first so many merges have height 0: they join regions smaller than SegmentParams::min_size.
-    std::size_t forced = 0;
+    std::size_t forced = 0;  ///< this many merges come first, at height 0, because of a least size
 };
 
-/// The number of merges whose height is below `threshold`. O(log merges).
+/// Returns the number of merges whose height is below `threshold`. Takes O(log merges) time.
 std::size_t merges_below(const Hierarchy& hierarchy, double threshold);
 
-/// The region of every cell after the first `merges` merges (at most hierarchy.merges.size()). Regions are
-/// numbered from 0 in the order of their lowest cells. O(cells).
+/// Returns each cell's region after the first `merges` merges, at most hierarchy.merges.size(). Regions are
+/// numbered from 0 by their first cell. Takes O(cells + merges) time.
 std::vector<Id> regions_after(const Hierarchy& hierarchy, std::size_t merges);
 
 }  // namespace imgmesh

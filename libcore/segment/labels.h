@@ -25,9 +25,10 @@ struct LabelImage {
     }
 };
 
-/// Returns the regions after the first `merges` merges of the cells' hierarchy.
+/// Returns the regions after the first `merges` merges of the cells' hierarchy. Takes O(pixels) time.
 LabelImage labels_after(const Cells& cells, const Hierarchy& hierarchy, std::size_t merges);
 
+/// What is known about one region.
 struct RegionFacts {
     std::int64_t pixels = 0;
     Vec3f color = Vec3f::Zero();                         ///< mean, L*u*v*
@@ -35,7 +36,8 @@ struct RegionFacts {
     std::vector<std::pair<Id, std::int64_t>> neighbors;  ///< sorted: region, pixel pairs across
 };
 
-/// Returns the facts of every region. The image is L*u*v*, of the labels' size.
+/// Returns the facts of every region, by its number. The image is L*u*v*, of the labels' size. Takes
+/// O(pixels) time.
 std::vector<RegionFacts> region_facts(const LabelImage& labels, const FeatureImage& picture);
 
 }  // namespace imgmesh

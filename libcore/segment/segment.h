@@ -11,8 +11,9 @@
 namespace imgmesh {
 
 enum class DistanceRule {
-    kContour,  ///< contrast along the border, colour, texture, size and shape: contour_distance()
-    kPaper     ///< the difference of weighted mean colours: paper_distance()
+    kContour,  ///< contrast along the border, colour, texture, size and shape
+               ///< (docs/decisions/0009-segmentation.md)
+    kPaper     ///< the difference of weighted mean colours (paper sec. 4.1)
 };
 
 /// Where merging stops. Give at most one of `segments` and `superpixels`; without them `threshold` counts.
@@ -25,6 +26,7 @@ struct SegmentParams {
     std::int64_t min_size = 1;  ///< no region has fewer pixels, except islands of a mask; >= 1
 };
 
+/// Regions, and all that leads to them.
 struct Segmentation {
     Cells cells;
     Hierarchy hierarchy;  ///< all merges, also those after the labels' threshold
@@ -32,12 +34,14 @@ struct Segmentation {
     LabelImage labels;  ///< after the first `merges` merges
 };
 
-/// Draws the image of a level through its map: L*u*v*, zero outside the mask. Throws Error(kUnsupported) for
-/// a mesh without colour.
+/// Draws the image of a level through its map: L*u*v*, zero outside the mask. For segment(), if the image
+/// itself is not at hand. Throws Error(kUnsupported) for a mesh without colour.
 FeatureImage reconstruct_luv(const Level& level);
 
-/// Cuts patches that are not connected into cells, and merges cells until `params` says stop. The image is
-/// L*u*v*, of the map's size. The result is the same for any number of threads.
+/// Segments an image (paper sec. 4.1): cuts patches that are not connected into cells, and merges cells,
+/// closest first, until `params` says stop. The image is L*u*v* (luv_image, reconstruct_luv), of the map's
+/// size. The result is the same for any number of threads. Takes O(pixels + borders log borders) time for
+/// photographs.
 ///
 /// Throws Error(kBadArgument) for a parameter out of range, an image of another size, more regions than there
 /// are cells (of at least min_size pixels), or fewer than the mask has islands; Error(kUnsupported) for an

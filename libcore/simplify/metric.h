@@ -1,4 +1,4 @@
-// By which error edges collapse, and how the least error of a sum of quadrics is found.
+// The error that decides which edges collapse, and the way its minimum is found.
 #pragma once
 
 #include <string_view>
@@ -12,7 +12,7 @@ enum class Metric {
     kGarland     ///< Garland and Heckbert 1998: distance to the face's plane among positions and features
 };
 
-/// How A v = -b is solved for the minimiser (paper, table 1).
+/// How A v = -b is solved for the vertex v of least error (paper, table 1).
 enum class Solver {
     kClosed,  ///< features eliminated first; what remains is 2x2
     kSvd,     ///< singular value decomposition of the whole matrix

@@ -1,4 +1,5 @@
-// As-rigid-as-possible deformation of a base mesh.
+// As-rigid-as-possible deformation of a base mesh, for programs that drag handles. solve_edits.h solves whole
+// edits.
 #pragma once
 
 #include <memory>
@@ -9,9 +10,10 @@
 namespace imgmesh {
 
 /// Moves a mesh so that given vertices reach given places, and every one-ring is turned but hardly stretched.
-/// It is the local/global iteration of Sorkine and Alexa 2007 in the plane, where the best rotation of a
-/// one-ring is one arc tangent. The matrix depends on the mesh and on *which* vertices are fixed. It is
-/// factorised once for all calls of solve(), so dragging a handle costs only the iterations.
+/// It is the local/global iteration of Sorkine and Alexa 2007, "As-rigid-as-possible surface modeling", in
+/// the plane, where the best rotation of a one-ring is one arc tangent. The matrix depends on the mesh and on
+/// *which* vertices are fixed. It is factorised once for all calls of solve(), so dragging a handle costs
+/// only the iterations, each O(V log V).
 ///
 /// Connected parts of the mesh without a fixed vertex stay where they are.
 class ArapSolver {
@@ -22,10 +24,13 @@ class ArapSolver {
     ArapSolver(ArapSolver&&) noexcept;
     ArapSolver& operator=(ArapSolver&&) noexcept;
 
+    /// The moves that solve() finds.
     struct Result {
         std::vector<Vec2d> moves;  ///< of every vertex [pixels]
         int iterations = 0;
     };
+    /// Returns the moves of all vertices for given moves of the fixed ones.
+    ///
     /// moves  of the fixed vertices, in their order [pixels]
     /// Iterates until no vertex moves by more than `tolerance` [pixels] in an iteration, or for
     /// `max_iterations`. The result does not depend on earlier calls. If all moves are equal, the whole mesh

@@ -1,4 +1,4 @@
-// How far every pixel moves.
+// The displacement field: how far every pixel moves.
 #pragma once
 
 #include <vector>
@@ -9,6 +9,7 @@
 
 namespace imgmesh {
 
+/// What a pixel does in a warp.
 enum class PixelRole : std::uint8_t {
     kOutside,  ///< not drawn
     kGhost,    ///< beside the image's boundary: moves along with it, so the boundary is soft
@@ -34,15 +35,19 @@ struct DisplacementField {
 /// the pixel has exactly their move. Pixels with a face in level 0 are kInside.
 ///
 /// moves  one for each level of `mesh_image`, as solve_edits() returns them
+///
+/// The result is the same for any number of threads. Takes O(pixels) time for each level with moves.
 DisplacementField displacement_field(const MeshImage& mesh_image, const std::vector<VertexMoves>& moves);
 
 /// Gives pixels outside the mask a move, ring by ring outwards: the mean of their (up to eight) neighbours
 /// that have one. The first ring becomes kGhost. A pixel outside whose own alpha is neither 0 nor 1 is a soft
 /// boundary: it becomes kInside, and the ring goes around it. `alpha` (size W * H, or empty) becomes 0 for
-/// pixels that stay outside. Without a mask nothing changes.
+/// pixels that stay outside. Without a mask nothing changes. warp_image() and inverse_map() do this
+/// themselves.
 void extend_outside(DisplacementField& field, std::vector<float>& alpha);
 
-/// Returns how many cells of four drawn pixels are turned over or have no area in some part.
+/// Returns the number of cells, each between four drawn pixels, that are turned over or have no area in some
+/// part: there the warp folds. Takes O(pixels) time.
 std::int64_t folded_cells(const DisplacementField& field);
 
 }  // namespace imgmesh

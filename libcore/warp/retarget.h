@@ -15,15 +15,15 @@ namespace imgmesh {
 /// falls with the face's area. s is the face's own best scale, found alternately with the places as in Wang
 /// et al. 2008, "Optimized scale-and-stretch". The linear systems are over the mesh and factorised once.
 ///
-/// Throws Error(kBadArgument) for a size outside what warp_image() draws.
+/// Throws Error(kBadArgument) for a size that warp_image() does not draw.
 VertexMoves retarget_moves(const BaseMesh& mesh, int width, int height, const OutputSize& size);
 
-/// Returns the field that draws level 0 with these moves. Pixels move with the face that covers them, not
-/// through the pixel map, which follows edges too closely for moves this large. Throws as retarget_moves()
-/// does, and Error(kUnsupported) for a masked image, which has no sides.
+/// Returns the field that draws level 0 with these moves, for warp_image(image, field, size). Pixels move
+/// with the face that covers them, not through the pixel map, which follows edges too closely for moves this
+/// large. Throws as retarget_moves() does, and Error(kUnsupported) for a masked image, which has no sides.
 DisplacementField retarget_field(const MeshImage& mesh_image, const OutputSize& size);
 
-/// Returns the sum of two fields of one image.
+/// Adds the moves of `field` to those of `sum`. Both are fields of one image.
 void add_field(DisplacementField& sum, const DisplacementField& field);
 
 }  // namespace imgmesh

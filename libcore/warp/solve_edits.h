@@ -1,4 +1,4 @@
-// From edits to the moves of every vertex of every level.
+// Solves edits: how far every vertex of every level moves.
 #pragma once
 
 #include <vector>
@@ -12,7 +12,8 @@ namespace imgmesh {
 using VertexMoves = std::vector<Vec2f>;
 
 /// Returns one VertexMoves for each level: the sums of what its edits ask for (paper sec. 4.2). Vertices that
-/// no edit moves have exactly 0.
+/// no edit moves have exactly 0. Takes O(vertices) time for each direct edit, and that of an ArapSolver
+/// (arap.h) for each other one.
 ///
 /// Throws Error(kBadFile) for a level or vertex that does not exist, a circle or box without a vertex, a
 /// vertex that is both pinned and in a handle, and moves that are not finite. The text begins with the

@@ -1,4 +1,4 @@
-// Edits of a warp as values: which vertices of which level move where.
+// Edits of a warp: which vertices of which level move where. solve_edits.h turns them into moves.
 #pragma once
 
 #include <array>

@@ -23,17 +23,18 @@ struct OutputSize {
 ///   footprint longer than 64 is sampled 64 times.
 /// - Folds: of several triangles over one point, those with four drawn pixels win over the boundary's, then
 ///   those not turned over, then the later row, then the later column.
-/// - Alpha is a weight in all means. The area more than half a pixel outside the outermost centres, and
-/// pixels
-///   outside the mask, are transparent. Sides that move get the share of the pixel that the image covers. The
-///   drawing has the image's channels, and also A if something is transparent.
+/// - Alpha is a weight in all means. The area more than half a pixel outside the outermost centres is
+///   transparent, and so are pixels outside the mask. Sides that move get the share of the pixel that the
+///   image covers. The drawing has the image's channels, and also A if something is transparent.
 /// - If the centre of an output pixel is that of a source pixel in an unstretched cell, it is that pixel to
 ///   the bit. Without any move the drawing is the image; outside the mask it keeps its colours but is
 ///   transparent. If all pixels move by the same whole numbers, the drawing is the image shifted.
 ///
 /// image  of the field's size
-/// The result is the same for any number of threads. Throws Error(kBadFile) for an image of another size,
-/// Error(kBadArgument) for an output size below 1, above 2^28 pixels, or above 65535 on a side.
+///
+/// The result is the same for any number of threads. Takes O(pixels of the image + samples of the drawing)
+/// time. Throws Error(kBadFile) for an image of another size, Error(kBadArgument) for an output size below 1,
+/// above 2^28 pixels, or above 65535 on a side.
 Image warp_image(const Image& image, const DisplacementField& field, const OutputSize& size = {});
 
 /// Returns the image's own alpha, of size width * height, or empty if it has none.
@@ -47,7 +48,8 @@ struct InverseMap {
     std::vector<float> coverage;  ///< share of the pixel that the image covers; 0 outside the mask
 };
 
-/// Returns the map of the drawing that warp_image() makes. `alpha` is alpha_of() the image.
+/// Returns the points of the image that the drawing of warp_image() shows. `alpha` is alpha_of() the image.
+/// Throws as warp_image() does.
 InverseMap inverse_map(const DisplacementField& field, std::vector<float> alpha, const OutputSize& size = {});
 
 }  // namespace imgmesh

@@ -1,4 +1,4 @@
-// A warp as images that compositors read.
+// Warps as images that compositing programs read. write_image() writes both as EXR.
 #pragma once
 
 #include "libcore/image/image.h"

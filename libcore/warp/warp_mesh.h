@@ -1,4 +1,4 @@
-// The warped image as meshes.
+// Warps the meshes instead of the image.
 #pragma once
 
 #include "libcore/mesh/mesh_image.h"

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Only the public headers are installed, and each compiles alone.
+"""Only the public headers are installed, each compiles alone, and docs/library.md lists them all.
 
 headers_test.py ROOT INSTALLED COMPILER [INCLUDE...]
     ROOT       of the repository: cmake/public_headers.cmake lists the headers
@@ -7,6 +7,7 @@ headers_test.py ROOT INSTALLED COMPILER [INCLUDE...]
     INCLUDE    folders with the headers of others
 """
 import os
+import re
 import subprocess
 import sys
 import tempfile
@@ -47,6 +48,18 @@ def compile_alone(names, include, folder, compiler, others):
         return [text for text in pool.map(failure, names) if text]
 
 
+def page_failures(root, names):
+    """What docs/library.md lacks: a header, or the example as it is now."""
+    page = (root / "docs" / "library.md").read_text(encoding="utf-8")
+    listed = set(re.findall(r"^\| `<(imgmesh/[^>]+)>` \|", page, re.MULTILINE)) | {"imgmesh/imgmesh.h"}
+    failed = [f"docs/library.md does not list {name}" for name in sorted(names - listed)]
+    failed += [f"docs/library.md lists {name}, which is not public" for name in sorted(listed - names)]
+    for example in ("CMakeLists.txt", "main.cpp"):
+        if (root / "examples" / "library" / example).read_text(encoding="utf-8") not in page:
+            failed.append(f"docs/library.md has another {example} than examples/library")
+    return failed
+
+
 def main():
     root, installed, compiler, *others = sys.argv[1:]
     expected = {f"imgmesh/{header.partition('/')[2]}" for header in public_headers(Path(root))} | {"imgmesh/imgmesh.h"}
@@ -55,6 +68,7 @@ def main():
     failed = [f"not installed: {name}" for name in sorted(expected - found)]
     failed += [f"installed, but not public: {name}" for name in sorted(found - expected)]
 
+    failed += page_failures(Path(root), expected)
     with tempfile.TemporaryDirectory() as folder:
         failed += compile_alone(sorted(expected & found), include, Path(folder), compiler, others)
     print("\n".join(failed) or f"{len(expected)} headers")
