@@ -67,7 +67,7 @@ struct ContainerFacts {
 struct Container {
     MeshImage mesh_image;
     ContainerFacts facts;
-    Texture texture;  ///< as stored, its picture not decoded
+    Texture texture;  ///< as stored, its image file not decoded
 };
 
 /// Reads a container and checks all of it: sizes against `limits` before memory is taken, indices, weights,

@@ -13,9 +13,9 @@ namespace imgmesh {
 /// colors  one for each region, such as RegionFacts::color
 Image draw_flat(const LabelImage& labels, const std::vector<Vec3f>& colors, const SourceInfo& source);
 
-/// Draws `picture` (L*u*v*) with lines one pixel wide along the regions' borders. A line is drawn on pixels
+/// Draws `image` (L*u*v*) with lines one pixel wide along the regions' borders. A line is drawn on pixels
 /// whose right or lower neighbour belongs to another region or is outside the mask. The result has the
 /// channels of draw_flat().
-Image draw_outlines(const LabelImage& labels, const FeatureImage& picture, const SourceInfo& source);
+Image draw_outlines(const LabelImage& labels, const FeatureImage& image, const SourceInfo& source);
 
 }  // namespace imgmesh

@@ -33,7 +33,7 @@ Case mesh_case(const std::function<void(StoredMesh&)>& edit) {
     return c;
 }
 
-// With a mask that a pixel is outside of, faces need not cover the picture.
+// With a mask that a pixel is outside of, faces need not cover the image.
 Case masked_case(const std::function<void(StoredMesh&)>& edit) {
     Case c = mesh_case(edit);
     c.sample.asset.source.has_mask = true;

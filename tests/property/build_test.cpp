@@ -251,7 +251,7 @@ TEST_CASE("build: progress rises from 0 to 1") {
     CHECK(last == 1);
 }
 
-// L*u*v* of negative light has no bound, so an unclipped sample would outweigh the whole picture.
+// L*u*v* of negative linear RGB has no bound, so one unclipped sample would outweigh the whole image.
 TEST_CASE("build: light below 0 is clipped, and above 1 too in images of integers") {
     Image clipped = make_image(24, 18, 3);
     clipped.color_space = ColorSpace::kLinear;

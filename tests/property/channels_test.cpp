@@ -17,7 +17,7 @@ using namespace imgmesh::test;
 
 namespace {
 
-// The features with those of `other` behind.
+// The features followed by those of `other`.
 FeatureImage joined(const FeatureImage& first, const FeatureImage& second) {
     FeatureImage out{first.width, first.height, first.channels + second.channels, {}};
     for (std::size_t i = 0; i < first.pixel_count(); ++i) {
@@ -33,7 +33,7 @@ FeatureImage zeros(int width, int height, int channels) {
     return out;
 }
 
-// Independent smooth waves with a step each.
+// Independent smooth waves, each with a step.
 FeatureImage waves(int width, int height, int channels) {
     FeatureImage out = zeros(width, height, channels);
     for (std::size_t i = 0; i < out.pixel_count(); ++i)
@@ -70,7 +70,7 @@ Fitted fitted(const FeatureImage& feature, std::int64_t vertices, const FeatureS
 
 }  // namespace
 
-// The code for other numbers than three is another one; features of zero error must not be seen by any of it.
+// Other numbers than three have other code; features of zero error must make no difference to any of it.
 TEST_CASE("channels: features that are zero everywhere change nothing, to the bit") {
     for (const Kind kind : {Kind::kDisc, Kind::kGradient, Kind::kNoise}) {
         const FeatureImage color = sample_feature(kind, 45, 34);
@@ -112,7 +112,7 @@ TEST_CASE("channels: any number gives a sound mesh, and a map without a fold tha
     }
 }
 
-// Twice the features is twice the errors; a weight of four is sqrt(16) times the same one.
+// Twice the features give twice the errors; a weight of four equals sqrt(16) copies of the feature.
 TEST_CASE("channels: the same channel sixteen times counts as one of four times the size") {
     const FeatureImage one = waves(40, 30, 1);
     FeatureImage large = one, many = zeros(40, 30, 16);
@@ -139,7 +139,7 @@ namespace {
 
 constexpr int kWidth = 64, kHeight = 48;
 
-// Grey that changes slowly, and a depth with one oblique step that the colour knows nothing of.
+// Grey that changes slowly, and a depth with one oblique step that the colour does not show.
 Image picture_with_depth() {
     Image image = make_image(kWidth, kHeight, 4);
     image.channel_names = {"R", "G", "B", "depth.Z"};
@@ -186,11 +186,11 @@ TEST_CASE("channels: the mesh follows an edge of depth that is none of colour") 
     all.push_back({"depth.Z", 50});
     const BuildResult without = build_mesh_image(image, chosen(color)),
                       with = build_mesh_image(image, chosen(all));
-    // The step is straight, so a few vertices on it are enough, but none off it are.
+    // The step is straight, so a few vertices on it are enough; vertices off it are useless.
     CHECK(share_at_step(without.mesh_image.levels[0].mesh) < 0.1);
     CHECK(share_at_step(with.mesh_image.levels[0].mesh) > 0.25);
     CHECK(with.mesh_image.source.channel_names == std::vector<std::string>{"R", "G", "B", "depth.Z"});
-    // In the depth's own unit, whatever its weight: a step of 2 is off by far less in the mean.
+    // In the depth's own unit, whatever its weight: a step of 2 has a far smaller mean error.
     REQUIRE(with.report.levels[0].auxiliary_rms.size() == 1);
     CHECK(with.report.levels[0].auxiliary_rms[0] < 0.06);
 

@@ -43,7 +43,7 @@ double area2(const Vec2f& p, const Vec2f& q, const Vec2f& r) {
     return a.x() * b.y() - a.y() * b.x();
 }
 
-// Over all triples of pixels inside of one cell, in the grid's sense of turning.
+// The least twice-area over all triples of pixels inside of one cell, in the grid's orientation.
 double least_area2(const Scene& s) {
     double least = 1;
     for (int y = 0; y + 1 < s.mask.height; ++y)
@@ -64,15 +64,17 @@ double least_area2(const Scene& s) {
     return least;
 }
 
-// A pixel whose four neighbours are inside, and no two diagonal ones between two of them out, is free; on a
-// straight side of the mask it may slide; else it rests. Told by rows of the mask, not by fans.
+// A pixel is free if its four neighbours are inside and no two diagonal ones between two of them are outside.
+// On a straight side of the mask it may slide; otherwise it rests. Found from rows of the mask, not from
+// fans.
 bool straight_side(const Mask& m, int x, int y, int dx, int dy) {
     const auto side = [&](int s) {  // all three pixels on one side
         const int sx = dy * s, sy = dx * s;
         return m.at(x + sx, y + sy) + m.at(x + sx + dx, y + sy + dy) + m.at(x + sx - dx, y + sy - dy);
     };
     if (!m.at(x + dx, y + dy) || !m.at(x - dx, y - dy)) return false;
-    // Triangles fill one side, and the other has none: the pixel across is out, and no cell there has three.
+    // Triangles fill one side, and the other has none: the pixel across is outside, and no cell there has
+    // three.
     const auto full = [&](int s) { return side(s) >= 1 && m.at(x + dy * s, y + dx * s); };
     const auto bare = [&](int s) { return side(s) == 0; };
     return (full(1) && bare(-1)) || (full(-1) && bare(1));
@@ -154,7 +156,7 @@ TEST_CASE("masked images: a mask with all pixels inside relaxes as if there were
     CHECK(s.pixels.face == t.pixels.face);
 }
 
-// Without the bit that says that they are free, all pixels go one by one.
+// Without the bit for free pixels, all pixels move one by one.
 TEST_CASE("masked images: eight at a time is one at a time") {
     std::vector<NamedMask> masks = sample_masks(80);
     masks.push_back(
@@ -190,7 +192,8 @@ TEST_CASE("masked images: what is stored has the mask to the pixel and no fold")
             CHECK(q.pixels == mask.count());
             CHECK(q.unmapped + q.outside_simplex + q.flipped_triangles == 0);
             CHECK(q.min_area2 >= 0.0099);
-            // Not a law, as the fit serves the drawing without the map too; but nothing may come close.
+            // Not a law, because the fit also serves the drawing without the map; but errors must not be
+            // close.
             const PixelMap trivial = trivial_map(mesh, mask.width, mask.height, mask);
             CHECK(map_rms(mesh, map, feature) <= 1.02 * map_rms(mesh, trivial, feature) + 1e-3);
         }

@@ -37,8 +37,8 @@ BaseMesh coarse_mesh(const GridMesh& grid, std::int64_t vertices) {
     return simplify(grid, {}, SimplifyTarget{.vertices = vertices}).mesh;
 }
 
-// Straight from the rule: two triangles for a cell of four, one for three; n pixels of a bare run make 2 (n -
-// 1), a bare pixel alone makes 2. By flags a cell, and not by looking around a pixel.
+// Directly from the rule: two triangles for a cell of four, one for three; n pixels of a bare run make 2 (n -
+// 1), and a bare pixel alone makes 2. Counted by flags of cells, not by the surroundings of a pixel.
 std::int64_t expected_faces(const Mask& m, double& area) {
     std::int64_t faces = 0;
     std::vector<bool> covered(m.inside.size());
@@ -64,7 +64,7 @@ std::int64_t expected_faces(const Mask& m, double& area) {
     return faces;
 }
 
-// Nothing that the dense mesh covers is left bare, and nothing is covered twice.
+// Everything that the dense mesh covers stays covered, exactly once.
 void check_hull(const BaseMesh& mesh, const BaseMesh& dense, const Mask& mask) {
     const std::vector<int> before = faces_over_points(dense, mask.width, mask.height),
                            after = faces_over_points(mesh, mask.width, mask.height);
@@ -95,7 +95,7 @@ void check_covers(const BaseMesh& mesh, const Mask& mask) {
 
 }  // namespace
 
-// Small enough to count by hand. Vertices, faces, components, and Euler characteristic.
+// Small enough to count by hand: vertices, faces, components and Euler characteristic.
 TEST_CASE("masked images: the dense mesh of small masks") {
     struct Case {
         std::vector<std::string> rows;
@@ -202,8 +202,8 @@ TEST_CASE("masked images: masks at random keep topology, pixels and distance") {
     }
 }
 
-// A ring around a circle of radius r and one pixel thick has room for pi / acos(1 - 1 / r) edges at the
-// least, 16 for this disc, a rounded one of pixels for some more. Stairs of every slope become straight.
+// A ring one pixel thick around a circle of radius r has room for at least pi / acos(1 - 1 / r) edges: 16 for
+// this disc, a few more for one made of pixels. Stairs of every slope become straight.
 TEST_CASE("masked images: boundaries become simple") {
     const GridMesh disc = masked_grid(sample_masks(120)[0].mask, Kind::kConstant);
     CHECK(coarse_mesh(disc, 0).vertex_count() <= 55);
@@ -263,7 +263,7 @@ TEST_CASE("masked images: the same mesh every time, with any number of threads")
     }
 }
 
-// Red outside would show in the gradients, and so in where vertices go, if it did bleed in.
+// If red outside bled in, it would show in the gradients, and so in the places of vertices.
 TEST_CASE("masked images: colours outside do not count") {
     const Mask mask = sample_masks(40)[2].mask;
     FeatureImage one = sample_feature(Kind::kGradient, 40, 40), other = one;

@@ -62,8 +62,8 @@ TEST_CASE("metrics: with rebuilt quadrics and total priority as well, each a mes
     }
 }
 
-// One function, two forms and three solvers: what differs is rounding and, with it, ties. The disc has flat
-// parts, whose edges all tie, so the meshes need not be the same; their error must be.
+// One function, two forms and three solvers differ by rounding and thus in ties. The disc has flat parts,
+// whose edges all tie, so the meshes need not be equal; their errors must be.
 TEST_CASE("metrics: solvers and forms differ by rounding alone") {
     const FeatureImage feature = sample_feature(Kind::kNoise, 32, 24);
     for (const Metric metric : kMetrics) {
@@ -78,8 +78,8 @@ TEST_CASE("metrics: solvers and forms differ by rounding alone") {
     }
 }
 
-// Hoppe's metric sees nothing but colour, so that a linear image costs nothing however far it is reduced,
-// and keeps its colours; the paper's counts the way that vertices move.
+// Hoppe's metric measures only colour, so a linear image costs nothing however far it is reduced, and keeps
+// its colours. The paper's metric also counts how far vertices move.
 TEST_CASE("metrics: a linear image is free of error to all but the flattened metric") {
     FeatureImage feature{20, 16, 3, {}};
     const auto color = [](float x, float y) { return Vec3f(20 + 2 * x + y, 3 * y - x, 5 - x); };
@@ -103,8 +103,8 @@ TEST_CASE("metrics: a linear image is free of error to all but the flattened met
     }
 }
 
-// The flat half's edges cost nothing at all: the windows of the queue start with the smallest cost there is,
-// and must still come to what the noisy half costs, and soon.
+// The flat half's edges cost nothing at all. The windows of the queue start at the smallest possible cost,
+// and must still reach the noisy half's costs soon.
 TEST_CASE("metrics: hoppe's on an image that is flat in one half") {
     FeatureImage feature = sample_feature(Kind::kNoise, 120, 80);
     for (int y = 0; y < 80; ++y)
@@ -150,7 +150,7 @@ TEST_CASE("metrics: masked images keep their topology") {
         }
 }
 
-// Features of a number that is padded.
+// A number of features that is padded.
 TEST_CASE("metrics: any number of features") {
     FeatureImage five{20, 16, 5, {}};
     const FeatureImage color = sample_feature(Kind::kNoise, 20, 16);

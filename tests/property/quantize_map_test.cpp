@@ -67,7 +67,7 @@ void check_storable(const Scene& s, const PixelMap& map, WeightPrecision precisi
     CHECK(q.min_area2 >= kLeastStoredArea);
 }
 
-// Weights rounded one by one, whatever becomes of the triangles.
+// Rounds weights one by one and ignores the triangles.
 PixelMap carelessly_rounded(const Scene& s) {
     PixelMap map{s.pixels.width, s.pixels.height, {}, WeightPrecision::kHalf};
     for (int y = 0; y < map.height; ++y)
@@ -81,7 +81,7 @@ PixelMap carelessly_rounded(const Scene& s) {
     return map;
 }
 
-// Largest distance between where a pixel was and where it is stored.
+// Returns the largest distance between a pixel's place and its stored place.
 double largest_move(const Scene& s, const PixelMap& map) {
     const std::vector<Vec2d> positions = mapped_positions(s.mesh, map);
     double largest = 0;

@@ -1,4 +1,4 @@
-// The fast collapse against the plain one.
+// The fast collapse against the simple one.
 #include <doctest/doctest.h>
 
 #include "formats/picture/image_io.h"
@@ -45,8 +45,8 @@ TEST_CASE("reference collapse: its meshes are sound, too") {
         }
 }
 
-// Buckets, windows and tiles change the order of collapses, single precision their cost; neither may cost
-// quality. The mean is over images, as a single one scatters by a few percent either way.
+// Buckets, windows and tiles change the order of collapses; single precision changes their costs. Neither may
+// reduce quality. The mean is over images, because one image varies by a few percent in either direction.
 TEST_CASE("collapse: as good as the plain one with an exactly sorted queue") {
     std::vector<FeatureImage> pictures;
     for (const char* name : {"/kodim05.png", "/kodim23.png"}) {
@@ -55,7 +55,7 @@ TEST_CASE("collapse: as good as the plain one with an exactly sorted queue") {
         for (const auto& [left, top] : {std::pair(60, 40), {330, 90}, {170, 300}, {560, 330}})
             pictures.push_back(crop(whole, left, top, 160, 120));
     }
-    // By total error the plain one has been 0.8 to 0.9 % better, and at a single size it scatters more.
+    // By total error the simple one has been 0.8 to 0.9 % better, and at a single size it varies more.
     // Neither tiles nor windows are the reason.
     for (const auto& [total, allowed] : {std::pair(false, 1.005), {true, 1.015}}) {
         double ratio = 0;

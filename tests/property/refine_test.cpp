@@ -45,7 +45,8 @@ void check_sound(const BaseMesh& mesh, std::size_t vertices, int width, int heig
 
 }  // namespace
 
-// Every step is taken only if it lowers the error, so this is a law; and the error told is the one drawn.
+// A step is taken only if it lowers the error, so this is a law; and the reported error is that of the
+// drawing.
 TEST_CASE("refine: the error never rises, and the mesh stays sound") {
     for (const Kind kind : kAllKinds)
         for (const auto& [w, h] :
@@ -80,8 +81,8 @@ TEST_CASE("refine: without rounds the colours alone are fitted") {
     CHECK(report.error[0] == doctest::Approx(drawn_error(mesh, feature)).epsilon(1e-4));
 }
 
-// A roof: two planes that meet in a ridge at x = 20. A mesh whose middle column stands two pixels beside the
-// ridge can be moved onto it, and then nothing is left.
+// A roof: two planes that meet in a ridge at x = 20. The middle column of the mesh is two pixels beside the
+// ridge. It can be moved onto the ridge, and then no error is left.
 TEST_CASE("refine: vertices find a ridge") {
     FeatureImage roof{41, 41, 3, {}};
     for (int y = 0; y < 41; ++y)
@@ -130,7 +131,7 @@ TEST_CASE("refine: edges flip along the image's edges") {
     CHECK(report.error.back() < 1e-3);
 }
 
-// Noise in one corner, nothing elsewhere, and vertices spread evenly: they go where they are needed.
+// Noise in one corner, nothing elsewhere, and vertices spread evenly: they move to where they are needed.
 TEST_CASE("refine: vertices are relocated to where the error is") {
     FeatureImage feature = sample_feature(Kind::kConstant, 64, 64);
     const FeatureImage detail = sample_feature(Kind::kDisc, 20, 20);
@@ -202,7 +203,7 @@ TEST_CASE("refine: the same bytes for any number of threads, in the range of col
     for (const float f : first.feature) CHECK((f >= 0 && f <= 1));
 }
 
-// What is remembered of vertices must be what a fresh look tells, whatever has changed in between.
+// What is remembered about vertices must equal a fresh evaluation, whatever has changed in between.
 TEST_CASE("refine: remembered removals are those that are found anew") {
     const FeatureImage feature = sample_feature(Kind::kDisc, 90, 70);
     RefineParams params;
@@ -233,7 +234,7 @@ TEST_CASE("refine: remembered removals are those that are found anew") {
     check("an exchange");
 }
 
-// Pixels outside the mask have no say, the boundary stays where it is, and the map stays one to one.
+// Pixels outside the mask do not count, the boundary stays, and the map stays one to one.
 TEST_CASE("refine: masked images keep boundary and topology") {
     for (const auto& [name, mask] : sample_masks(40)) {
         INFO(name);
@@ -253,7 +254,7 @@ TEST_CASE("refine: masked images keep boundary and topology") {
         const MapQuality map = map_quality(refined.mesh, refined.map, true);
         CHECK(map.unmapped + map.outside_simplex + map.flipped_triangles == 0);
 
-        // Whatever the colours outside are, they change nothing.
+        // The colours outside change nothing.
         for (std::size_t i = 0; i < image.pixel_count(); ++i)
             if (!mask.contains(i)) std::fill_n(&image.data[3 * i], 3, 1.0f);
         const Level other = build_mesh_image(image, params, {}, mask).mesh_image.levels[0];

@@ -1,4 +1,4 @@
-// What must hold for the relaxed pixel map of any picture.
+// What must hold for the relaxed pixel map of any image.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -95,7 +95,7 @@ double rms(const Scene& s) {
     return std::sqrt(sum / static_cast<double>(s.pixels.face.size()));
 }
 
-// Rounding of positions moves an area by that much at most in images this small.
+// In images this small, rounding of positions changes an area by at most that much.
 constexpr double kSlack = 1e-4;
 
 }  // namespace
@@ -114,8 +114,7 @@ TEST_CASE("relax: no triangle of pixels folds or thins out, however soft or hard
         }
 }
 
-// Grey images with steep diagonals make J'J singular and large: all is left to mu, which rounding may
-// drown.
+// Grey images with steep diagonals make J'J singular and large: only mu remains, and rounding may hide it.
 TEST_CASE("relax: a steep grey edge against the softest grid") {
     FeatureImage feature{32, 32, 3, std::vector<float>(3 * 32 * 32)};
     for (int y = 0; y < 32; ++y)
@@ -187,8 +186,8 @@ TEST_CASE("relax: the same bits for any number of threads") {
     }
 }
 
-// Pixels far enough from a side move eight at a time, the others one by one. In one sweep a pixel learns
-// nothing from further away than its neighbours' neighbours: cut off there, the same pixels move one by one.
+// Pixels far enough from a side move eight at a time, the others one by one. In one sweep a pixel depends on
+// nothing farther away than its neighbours' neighbours: cut off there, the same pixels move one by one.
 TEST_CASE("relax: eight pixels at a time move like one by one, to the bit") {
     constexpr int kNarrow = 17;  // no room for eight
     for (const Kind kind : {Kind::kNoise, Kind::kDisc, Kind::kCheckerboard})

@@ -1,4 +1,4 @@
-// The search for an error, on errors made up, and in the whole pipeline.
+// The search for an error, on artificial errors and in the whole pipeline.
 #include <doctest/doctest.h>
 #include <optional>
 
@@ -16,7 +16,7 @@ using namespace imgmesh::test;
 
 namespace {
 
-// Errors of a made-up picture.
+// Errors of an artificial image.
 class MadeUpMeshes : public MeasuredMeshes {
   public:
     std::function<double(std::int64_t)> error;
@@ -54,7 +54,7 @@ TEST_CASE("rms search: as few vertices as the error allows, found with few meshe
                     CHECK(meshes.estimates <= 2);
                     CHECK(found == (meshes.error(vertices) <= rms));
                     CHECK(found == (meshes.kept > 0));
-                    // Those that only the densest or the coarsest mesh ends, or that are far from the guess,
+                    // Searches that end only at the densest or the coarsest mesh, or start far from the goal,
                     // take a few more.
                     CHECK(meshes.finishes <= 8);
                     if (!found) continue;
@@ -66,7 +66,7 @@ TEST_CASE("rms search: as few vertices as the error allows, found with few meshe
                 }
 }
 
-// An edge that only so many vertices can follow, errors that rise and fall, and none at all.
+// An edge that needs a certain number of vertices, errors that rise and fall, and no error at all.
 TEST_CASE("rms search: errors that follow no law") {
     MadeUpMeshes jump;
     jump.error = [](std::int64_t n) { return n >= 777 ? 1.0 : 30.0; };
@@ -87,7 +87,7 @@ TEST_CASE("rms search: errors that follow no law") {
     CHECK(flat.kept == 4);
     CHECK(flat.finishes <= 3);
 
-    // No mesh is coarser than 600: limits of the collapse have ended it.
+    // No mesh is coarser than 600: limits of the collapse end it there.
     MadeUpMeshes limited;
     limited.least = 600;
     limited.error = [](std::int64_t n) { return 300 / std::sqrt(double(n)); };
@@ -98,7 +98,7 @@ TEST_CASE("rms search: errors that follow no law") {
     CHECK(limited.error(limited.kept) <= 7);
 }
 
-// What is handed out is the mesh asked for; a little finer ones are there still, others begin anew.
+// The returned mesh is the requested one. Slightly finer ones are kept; others need a new collapse.
 TEST_CASE("mesh lods: meshes of any number of vertices, from as few runs as possible") {
     const FeatureImage feature = sample_feature(Kind::kNoise, 150, 120);
     const GridMesh grid = grid_mesh(feature);

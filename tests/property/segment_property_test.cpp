@@ -1,4 +1,4 @@
-// Segmentation: laws that hold for every picture.
+// Segmentation: laws that hold for every image.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -22,8 +22,8 @@ struct Sample {
     FeatureImage picture;
 };
 
-// Patches as blobs around random seeds, some torn, colours of a few kinds with noise; with a mask about a
-// fifth of the pixels are outside.
+// Patches are blobs around random seeds, some torn, with colours of a few kinds and noise. With a mask about
+// a fifth of the pixels are outside.
 Sample sample(int width, int height, int patches, bool mask, std::uint32_t seed) {
     std::mt19937 random(seed);
     const auto below = [&](int n) { return static_cast<int>(random() % static_cast<unsigned>(n)); };
@@ -41,7 +41,7 @@ Sample sample(int width, int height, int patches, bool mask, std::uint32_t seed)
             std::size_t best = 0;
             for (std::size_t i = 0; i < centers.size(); ++i)
                 if ((centers[i] - at).squaredNorm() < (centers[best] - at).squaredNorm()) best = i;
-            // Two blobs share a face every now and then: a patch in several parts.
+            // Sometimes two blobs share a face: a patch in several parts.
             faces.push_back(mask && below(5) == 0 ? kNone
                                                   : static_cast<Id>(best / 2 * 2 % 7 == 0 ? best / 2 : best));
             for (int c = 0; c < 3; ++c) picture.data.push_back(colors[best][c] + float(below(1000)) / 250);
@@ -55,7 +55,7 @@ Sample sample(int width, int height, int patches, bool mask, std::uint32_t seed)
     return {level_of(std::move(map)), std::move(picture)};
 }
 
-// Connected parts of a graph over the pixels, numbered by their first pixel; kNone stays.
+// Returns the connected parts of a graph over the pixels, numbered by their first pixel; kNone stays.
 std::vector<Id> parts(std::size_t count, const std::vector<std::pair<std::size_t, std::size_t>>& joined,
                       const std::vector<Id>& inside) {
     std::vector<std::size_t> parent(count);
@@ -94,7 +94,7 @@ std::vector<Id> regions_of_map(const ContourMap& map, double threshold, const st
     return parts(inside.size(), joined, inside);
 }
 
-// Regions made anew, pixel by pixel, before every choice.
+// Computes regions anew, pixel by pixel, before every choice.
 std::vector<std::vector<Id>> slow_merges(const Sample& s, const RegionDistance& distance,
                                          const PairContrasts& contrasts, std::int64_t min_size) {
     Cells cells = cut_cells(s.level.map);
@@ -142,8 +142,8 @@ TEST_CASE("merging agrees with regions made anew at every step") {
     }
 }
 
-// The promise of the map: one file instead of a run for every threshold. Thresholds at, just above and
-// between the heights that there are.
+// The promise of the map: one file instead of a run for every threshold. It is tested at, just above and
+// between the existing heights.
 TEST_CASE("contour map: any threshold gives the regions of the tool") {
     for (std::uint32_t seed = 1; seed <= 8; ++seed) {
         const Sample s = sample(23, 19, 30, seed % 2 == 0, seed);

@@ -1,4 +1,4 @@
-// What must hold for the base mesh of any picture.
+// What must hold for the base mesh of any image.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -61,7 +61,7 @@ TEST_CASE("collapse: the target is met") {
             for (const std::int64_t target : {pixels / 2, pixels / 4, std::max<std::int64_t>(8, pixels / 40)})
                 CHECK(collapse(feature, to_vertices(target)).mesh.vertex_count() ==
                       static_cast<std::size_t>(target));
-            // One collapse takes two faces, or one at the border.
+            // One collapse removes two faces, or one at the border.
             for (const std::int64_t target : {pixels, pixels / 2, std::max<std::int64_t>(8, pixels / 20)}) {
                 const auto faces =
                     static_cast<std::int64_t>(collapse(feature, {.faces = target}).mesh.faces.size());
@@ -96,14 +96,14 @@ TEST_CASE("collapse: no vertex costs more than the largest error allowed") {
             CHECK(result.mesh.vertex_count() <= vertices_before);
             vertices_before = result.mesh.vertex_count();
         }
-        // Every vertex has a distance to the centroids around it, so nothing is free.
+        // Every vertex has a distance to the centroids around it, so no collapse is free.
         CHECK(collapse(feature, {.max_error = 0}).collapses == 0);
-        // And without a limit much is paid.
+        // And without a limit the error is large.
         CHECK(collapse(feature, to_vertices(20)).error > 10);
     }
 }
 
-// Large enough for several tiles each way, worked off one by one, and for the whole image after them.
+// Large enough for several tiles in each direction, one after the other, and for the whole image after them.
 TEST_CASE("collapse: tiles make a sound mesh, the same every time, with any number of threads") {
     for (const Kind kind : {Kind::kNoise, Kind::kCheckerboard, Kind::kDisc}) {
         constexpr Size kLarge{230, 170};
@@ -121,7 +121,7 @@ TEST_CASE("collapse: tiles make a sound mesh, the same every time, with any numb
     }
 }
 
-// A limit reached half way through the tiles would leave some of them fine and others coarse.
+// A limit reached in the middle of the tiles would leave some of them fine and others coarse.
 TEST_CASE("collapse: no part of an even image is favoured") {
     for (const Kind kind : {Kind::kConstant, Kind::kNoise})
         for (const std::int64_t target : {9000, 1000, 200}) {
@@ -137,7 +137,7 @@ TEST_CASE("collapse: no part of an even image is favoured") {
         }
 }
 
-// All planes agree, so every merge keeps the colour on the one plane, wherever it puts the vertex.
+// All planes agree, so every merge keeps the colour on that plane, at any position.
 TEST_CASE("collapse: a linear image keeps its colours at every vertex") {
     FeatureImage feature{24, 18, 3, {}};
     const auto color = [](float x, float y) { return Vec3f(20 + 2 * x + y, 3 * y - x, 5 - x); };
@@ -146,7 +146,7 @@ TEST_CASE("collapse: a linear image keeps its colours at every vertex") {
             const Vec3f c = color(static_cast<float>(x), static_cast<float>(y));
             feature.data.insert(feature.data.end(), c.data(), c.data() + 3);
         }
-    // Without smoothing, whose repeated borders would bend the gradients there.
+    // Without smoothing, because its repeated borders would bend the gradients there.
     const BaseMesh mesh = collapse(feature, to_vertices(30), {.smoothing = 0}).mesh;
     for (Id v = 0; v < mesh.vertex_count(); ++v) {
         const Vec3f expected = color(mesh.position[v].x(), mesh.position[v].y());
@@ -154,7 +154,7 @@ TEST_CASE("collapse: a linear image keeps its colours at every vertex") {
     }
 }
 
-// A large lambda asks for even spacing, so shape improves where the image has nothing to say for it.
+// A large lambda asks for even spacing, so shape improves where the image is uniform.
 TEST_CASE("collapse: more geometry weight makes rounder triangles") {
     const FeatureImage feature = sample_feature(Kind::kNoise, 40, 30);
     const auto roundness = [&](float geometry_weight) {
@@ -178,7 +178,7 @@ TEST_CASE("collapse: progress never falls and stays within 0 and 1") {
     CHECK(calls > 0);
 }
 
-// The coarser level goes on from the finer one: the finer must not depend on what comes after it.
+// The coarser level continues from the finer one; the finer one must not depend on later levels.
 TEST_CASE("collapse: levels of one run are what single runs give, each coarser than the one before") {
     const FeatureImage feature = sample_feature(Kind::kDisc, 40, 30);
     const SimplifyTarget targets[] = {{.vertices = 300}, {.vertices = 120}, {.faces = 60}};
@@ -222,7 +222,7 @@ TEST_CASE("collapse: rebuilt quadrics and total priority give sound meshes of th
     }
 }
 
-// On the dense mesh both say the same: the mesh is the picture.
+// On the dense mesh both agree: the mesh is the image.
 TEST_CASE("quadrics of the current mesh are those of the dense one before anything has collapsed") {
     const GridMesh grid = grid_mesh(sample_feature(Kind::kNoise, 9, 7));
     const auto dense = vertex_quadrics<3>(grid, FeaturePatch{grid.feature}, 2.5f);

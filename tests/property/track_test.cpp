@@ -42,7 +42,7 @@ std::vector<std::int64_t> many_levels(int pixels, std::int64_t last) {
     return out;
 }
 
-// The simplex, a face for each pixel, and pixels of a side on that side, exactly.
+// The simplex, a face for each pixel, and pixels of a side exactly on that side.
 void check_map(const BaseMesh& mesh, const PixelMap& map) {
     const MapQuality q = map_quality(mesh, map);
     CHECK(q.unmapped == 0);
@@ -82,7 +82,7 @@ TEST_CASE("track: weights stay in the simplex and sides on their side over a who
         }
 }
 
-// Where the metric is the plane's, flattening changes nothing, so carrying neither does.
+// With the plane's own metric flattening changes nothing, so carrying changes nothing either.
 TEST_CASE("track: without colour every pixel stays where it is") {
     for (const Kind kind : {Kind::kConstant, Kind::kGradient, Kind::kDisc}) {
         INFO(name_of(kind));
@@ -95,7 +95,7 @@ TEST_CASE("track: without colour every pixel stays where it is") {
                     CHECK(q.flipped_triangles == 0);
                 });
     }
-    // Nor does any weight of a colour that is everywhere the same.
+    // Nor does any weight of a colour that is the same everywhere.
     TrackParams heavy;
     heavy.color_weight = 100;
     tracked(sample_feature(Kind::kConstant, 40, 31), heavy, {200, 20},
@@ -118,7 +118,7 @@ TEST_CASE("track: in the plane every pixel is where it was, whatever the image, 
     }
 }
 
-// The tracked map is there to follow colours.
+// The purpose of the tracked map is to follow colours.
 TEST_CASE("track: colour weight brings a map that is closer to the image than none") {
     const FeatureImage feature = sample_feature(Kind::kDisc, 60, 50);
     double with = 0, without = 0;
@@ -132,7 +132,7 @@ TEST_CASE("track: colour weight brings a map that is closer to the image than no
     CHECK(with < 0.8 * without);
 }
 
-// Colours as far apart as the pixels of noise, weighed as heavily as here, give layouts that fold.
+// Noise has colours so far apart and so heavily weighted here that layouts fold.
 TEST_CASE("track: collapses are rejected where the flattened mesh would degenerate") {
     TrackParams params;
     params.color_weight = 1e4;
@@ -168,7 +168,7 @@ TEST_CASE("track: a pixel counts as an end, and whenever it is projected anew") 
         expected[12] = expected[13] = 2;
         expected[17] = 1;
         CHECK(tracker.visits() == expected);
-        // Far from all that: 1 slides to 2 along the side.
+        // Far from the rest: 1 slides to 2 along the side.
         REQUIRE(tracker.collapse(1, 2, {1.5f, 0.0f}, grey));
         expected[1] = expected[2] = 1;
         CHECK(tracker.visits()[1] == 1);
@@ -177,7 +177,7 @@ TEST_CASE("track: a pixel counts as an end, and whenever it is projected anew") 
     }
 }
 
-// A follower that forbids nothing changes nothing.
+// A hook that rejects nothing changes nothing.
 TEST_CASE("collapse hooks: called for each collapse in order, and their word counts") {
     const FeatureImage feature = sample_feature(Kind::kNoise, 30, 20);
     const GridMesh grid = grid_mesh(feature);

@@ -63,7 +63,7 @@ TEST_CASE("tracked build: all kinds and sizes of images, and both precisions") {
             }
 }
 
-// Halves step 1/2048 of an edge: up to 256 px that is an eighth of a pixel at most.
+// Halves step by 1/2048 of an edge: for edges up to 256 px that is at most an eighth of a pixel.
 TEST_CASE("tracked build: halves serve small faces, floats large ones") {
     for (const int width : {200, 300}) {
         BaseMesh mesh;
@@ -95,7 +95,7 @@ TEST_CASE("tracked build: each level has its own map, closer to the image than t
         CHECK(tracked.report.levels[k].map_rms == map_rms(level.mesh, level.map, feature));
         CHECK(tracked.report.levels[k].map_rms < trivial.report.levels[k].map_rms);
     }
-    // The trivial map has nothing but rounding between a pixel and its place.
+    // In the trivial map only rounding separates a pixel from its place.
     const Level& level = trivial.mesh_image.levels[1];
     CHECK(map_quality(level.mesh, level.map).max_displacement < 0.1);
 }
@@ -153,7 +153,7 @@ TEST_CASE("tracked build: visits belong to the finest level and leave the relaxe
     const MeshImage three = build_mesh_image(image, params).mesh_image;
     CHECK(one.visits == three.visits);
     CHECK(map_quality(one.levels[0].mesh, one.levels[0].map).flipped_triangles == 0);
-    // 90 % of the vertices are removed, so that nearly all pixels were an end, and some were touched again.
+    // 90 % of the vertices are removed, so nearly all pixels were an end, and some were touched again.
     std::int64_t sum = 0;
     for (const Id v : one.visits) sum += v;
     CHECK(sum > 2 * 40 * 30);

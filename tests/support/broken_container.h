@@ -1,4 +1,4 @@
-// Containers that are changed after they were written, and what a reader says of them.
+// Containers that are changed after they were written, and how a reader refuses them.
 #pragma once
 
 #include <doctest/doctest.h>
@@ -34,7 +34,8 @@ inline void write_text(const std::string& path, const std::string& text) {
     write_bytes(path, {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
 }
 
-/// The code in the message of the Error, "" for none; a message must be one line that names the file.
+/// Returns the code in the message of the Error, or "" if there is none. A message must be one line that
+/// names the file.
 inline std::string refusal(const std::string& path, const ContainerLimits& limits = {}) {
     try {
         read_container(path, limits);

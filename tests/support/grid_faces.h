@@ -1,5 +1,5 @@
-// The triangles of a grid mesh and the rings of a triangle list, written down a second time and without any
-// cleverness: what the fast ones are compared with.
+// The triangles of a grid mesh and the rings of a triangle list, written a second time in the simplest way,
+// as the reference for the fast ones.
 #pragma once
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// What a mesh covers of the plane, and where its boundary is, told by looking at every face.
+// The area that a mesh covers, and the place of its boundary, found by examining every face.
 #pragma once
 
 #include <algorithm>
@@ -30,7 +30,7 @@ inline std::vector<Segment> boundary(const BaseMesh& mesh) {
     return out;
 }
 
-// The largest distance from a point of `from`, looked at every quarter of a pixel, to `to`.
+// Returns the largest distance to `to` from points of `from`, taken every quarter of a pixel.
 inline double distance_from_to(const std::vector<Segment>& from, const std::vector<Segment>& to) {
     double largest = 0;
     for (const auto& [a, b] : from) {
@@ -45,8 +45,8 @@ inline double distance_from_to(const std::vector<Segment>& from, const std::vect
     return largest;
 }
 
-// How many faces are over each point of a fine grid that no edge runs through (irrational numbers to all
-// practical purposes).
+// Counts the faces over each point of a fine grid through which no edge runs (its offsets are practically
+// irrational).
 inline std::vector<int> faces_over_points(const BaseMesh& mesh, int width, int height) {
     std::vector<int> counts;
     for (double y = -1 + 0.14159265; y < height + 1; y += 0.2718281828)

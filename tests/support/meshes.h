@@ -17,7 +17,8 @@ inline BaseMesh jittered_grid(double left, double top, double right, double bott
     std::mt19937 random(seed);
     BaseMesh mesh;
     const auto place = [&](double low, double high, int i, int n) {
-        // A quarter of a cell either way keeps both triangles of every cell positive, whatever the diagonal.
+        // A quarter of a cell in any direction keeps both triangles of every cell positive, with either
+        // diagonal.
         const double jitter = i == 0 || i == n ? 0 : (double(random() % 1001) / 1000 - 0.5) * 0.45;
         const double at = low + (high - low) * (i + jitter) / n;
         return static_cast<float>(std::clamp(std::floor(at / kPositionStep) * kPositionStep, low, high));

@@ -47,7 +47,7 @@ inline void write_with_oiio(const std::string& path, const imgmesh::Image& image
     REQUIRE(out->close());
 }
 
-/// The code of the Error that `call` throws, nothing if it throws none; its text goes to `text`.
+/// Returns the kind of the Error that `call` throws, nothing if it throws none; its text goes to `text`.
 inline std::optional<imgmesh::ErrorKind> error_of(const std::function<void()>& call,
                                                   std::string* text = nullptr) {
     try {

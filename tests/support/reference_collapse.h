@@ -1,5 +1,5 @@
-// The collapse written down a second time without any cleverness: a list of faces, quadrics as matrices in
-// image coordinates, every edge in one exactly sorted queue, no tiles. What the fast one is compared with.
+// The collapse written a second time in the simplest way, as the reference for the fast one: a list of faces,
+// quadrics as matrices in image coordinates, every edge in one exactly sorted queue, no tiles.
 #pragma once
 
 #include <Eigen/Dense>
@@ -54,7 +54,7 @@ class ReferenceCollapse {
         left_ = vertices_.size();
     }
 
-    /// Collapses the cheapest edge that may go until so many vertices are left, or none may.
+    /// Collapses the cheapest possible edge until that many vertices are left, or no edge is possible.
     void run(std::size_t target) {
         std::set<std::pair<Id, Id>> edges;
         for (const Face& f : faces_)
@@ -63,7 +63,7 @@ class ReferenceCollapse {
         std::vector<std::pair<Id, Id>> refused;
         while (left_ > target) {
             if (queue_.empty()) {
-                // What was refused may go now that its surroundings have changed.
+                // A rejected edge may be possible now that its surroundings have changed.
                 if (refused.empty() || !collapsed_) break;
                 collapsed_ = false;
                 for (const auto& [i, j] : refused)
@@ -101,7 +101,7 @@ class ReferenceCollapse {
 
         double value(const Eigen::Matrix<double, 5, 1>& v) const { return v.dot(a * v) + 2 * b.dot(v) + c; }
         Eigen::Matrix<double, 5, 1> minimiser() const { return a.ldlt().solve(-b); }
-        // With the best colours for a position, and with the best place for fixed coordinates.
+        // With the best colours for a position, and the best place for fixed coordinates.
         Eigen::Matrix<double, 5, 1> at(const Vec2d& p) const {
             Eigen::Matrix<double, 5, 1> v;
             v << p, a.bottomRightCorner<3, 3>().ldlt().solve(-b.tail<3>() - a.bottomLeftCorner<3, 2>() * p);
@@ -143,7 +143,7 @@ class ReferenceCollapse {
         return out;
     }
 
-    // Corners stay, side vertices stay on their side; false where both cannot be.
+    // Corners stay, side vertices stay on their side; returns false if both are impossible.
     bool place(Id i, Id j, const Vec2d& wanted, Vec2d& out) const {
         out = {double{snapped(static_cast<float>(wanted.x()))},
                double{snapped(static_cast<float>(wanted.y()))}};
@@ -196,7 +196,7 @@ class ReferenceCollapse {
         cost_of_.erase(found);
     }
 
-    // Every face around the edge but those that go keeps its shape's least.
+    // Every face around the edge, except those that are removed, keeps the least shape.
     bool star_allows(Id i, Id j, const Vec2d& p) const {
         const std::vector<Id> removed = shared(i, j);
         for (const Id v : {i, j})

@@ -1,4 +1,4 @@
-// Masks for tests, each nasty in its own way.
+// Difficult masks for tests.
 #pragma once
 
 #include <cmath>
@@ -27,8 +27,8 @@ inline Mask mask_of(const std::vector<std::string>& rows) {
     });
 }
 
-/// A small mask at random: noise, blobs, or blobs with noise; the same for the same seed; never without a
-/// pixel inside.
+/// Returns a small random mask: noise, blobs, or blobs with noise. The same seed gives the same mask; some
+/// pixel is always inside.
 inline Mask random_mask(std::uint32_t seed) {
     std::mt19937 random(seed);
     const auto below = [&](unsigned n) { return static_cast<int>(random() % n); };

@@ -1,4 +1,4 @@
-// Small images, each nasty in its own way, for tests of what must hold for every picture.
+// Small difficult images, for tests of what must hold for every image.
 #pragma once
 
 #include <cmath>

@@ -1,4 +1,4 @@
-// Pixel maps for tests of segmentation, which looks at which pixels share a face and not at the mesh.
+// Pixel maps for tests of segmentation, which depends on the pixels that share a face and not on the mesh.
 #pragma once
 
 #include <utility>
@@ -8,7 +8,7 @@
 
 namespace imgmesh::test {
 
-/// All weights a third, but for pixels outside.
+/// All weights are a third, except for pixels outside.
 inline PixelMap map_of_faces(int width, int height, const std::vector<Id>& faces) {
     PixelMap map{width, height, {}, WeightPrecision::kFloat};
     for (const Id face : faces)

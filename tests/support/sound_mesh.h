@@ -1,4 +1,4 @@
-// What every base mesh of a rectangle must be.
+// What must hold for every base mesh of a rectangle.
 #pragma once
 
 #include <doctest/doctest.h>

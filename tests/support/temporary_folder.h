@@ -1,4 +1,4 @@
-// A folder of its own for each test, removed with all it holds, and its files as bytes.
+// A folder for each test, removed with its content, and its files as bytes.
 #pragma once
 
 #include <cstdint>

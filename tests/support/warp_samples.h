@@ -49,7 +49,7 @@ inline DisplacementField field_of(int width, int height, const std::function<Vec
     return field;
 }
 
-/// Independent samples from -1 to 2, of which integer images can hold a third.
+/// Independent samples from -1 to 2; integer images can hold a third of them.
 inline Image noise_image(int width, int height, int channels, std::uint32_t seed = 1) {
     std::mt19937 random(seed);
     Image image = make_image(width, height, channels);

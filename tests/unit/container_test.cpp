@@ -246,7 +246,7 @@ TEST_CASE("container: .glb and .gltf turn into each other without loss, and writ
     CHECK(bytes_of(folder / "a.glb") == bytes_of(folder / "b.glb"));
 }
 
-// The check above must be able to fail: pixels mapped through a wrong permutation are not the same picture.
+// The check above must be able to fail: pixels mapped through a wrong permutation are not the same image.
 TEST_CASE("container: a wrong face, a wrong rotation and a swapped weight are all noticed") {
     const MeshImage image = random_mesh_image(30, 20, 1, WeightPrecision::kFloat, false, 7);
     const Level& level = image.levels[0];

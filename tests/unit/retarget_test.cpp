@@ -1,4 +1,4 @@
-// Another shape for a picture.
+// Other proportions for an image.
 #include "libcore/warp/retarget.h"
 
 #include <doctest/doctest.h>
