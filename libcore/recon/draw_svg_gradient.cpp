@@ -2,7 +2,6 @@
 // one direction. The gradient used here is the nearest to the affine interpolation of the three corners'
 // colours, by least squares over the triangle.
 #include <Eigen/LU>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 
@@ -20,8 +19,10 @@ struct Gradient {
     Vec3d from_rgb, to_rgb;  // encoded sRGB, as SVG blends
 };
 
-// The colour c(p) = mean + J (p - centre) has a 3 x 2 matrix J. The best approximation of J of rank one is s
-// a b^T with the largest singular value s. Along b the colour changes by s a, across b it does not change.
+// The colour c(p) = mean + J (p - centre) has a 3 x 2 matrix J. The best approximation of J of rank one is J
+// b b^T, where b is the eigenvector of J^T J with the larger eigenvalue. Along b the colour changes by J b,
+// across b it does not change. A symmetric matrix (xx, xy; xy, yy) has this eigenvector at half the angle of
+// the vector (xx - yy, 2 xy).
 Gradient fit_gradient(const std::array<Vec2d, 3>& p, const std::array<Vec3d, 3>& rgb) {
     const Vec2d centre = (p[0] + p[1] + p[2]) / 3;
     const Vec3d mean = (rgb[0] + rgb[1] + rgb[2]) / 3;
@@ -30,9 +31,10 @@ Gradient fit_gradient(const std::array<Vec2d, 3>& p, const std::array<Vec3d, 3>&
     Eigen::Matrix<double, 3, 2> changes;
     changes << rgb[1] - rgb[0], rgb[2] - rgb[0];
     const Eigen::Matrix<double, 3, 2> jacobian = changes * edges.inverse();  // faces have area
-    const Eigen::JacobiSVD<Eigen::MatrixXd> svd(jacobian, Eigen::ComputeThinU | Eigen::ComputeThinV);
-    const Vec2d direction = svd.matrixV().col(0);
-    const Vec3d change = svd.singularValues()[0] * svd.matrixU().col(0);
+    const Eigen::Matrix2d squares = jacobian.transpose() * jacobian;
+    const double angle = std::atan2(2 * squares(0, 1), squares(0, 0) - squares(1, 1)) / 2;
+    const Vec2d direction(std::cos(angle), std::sin(angle));
+    const Vec3d change = jacobian * direction;
     double least = 0, most = 0;
     for (const Vec2d& corner : p) {
         const double t = direction.dot(corner - centre);

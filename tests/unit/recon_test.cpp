@@ -321,3 +321,19 @@ TEST_CASE("draw_svg: two triangles, written out") {
         "<path fill=\"none\" stroke=\"#12263a\" stroke-width=\".6\" stroke-linecap=\"round\" d=\"\n"
         "M-.5 -.5L-.5 4.5M-.5 -.5L3.5 1.03M-.5 4.5L8.5 4.5M-.5 4.5L3.5 1.03M8.5 4.5L3.5 1.03\"/>\n</svg>\n");
 }
+
+// Colours that change along x alone are a linear gradient along x, from corner to corner.
+TEST_CASE("draw_svg_gradient: black on the left, white on the right") {
+    MeshImage m;
+    m.source.width = 9;
+    m.source.height = 5;
+    m.levels.resize(1);
+    BaseMesh& mesh = m.levels[0].mesh;
+    mesh.position = {{0, 0}, {0, 4}, {8, 4}};
+    mesh.faces = {{0, 1, 2}};
+    mesh.feature = {0, 0, 0, 0, 0, 0, 100, 0, 0};
+    const std::string svg = draw_svg_gradient(m, 0);
+    INFO(svg);
+    CHECK(svg.find(" x1=\"-.5\" y1=\"2.83\" x2=\"8.5\" y2=\"2.83\"><stop stop-color=\"#000000\"/>"
+                   "<stop offset=\"1\" stop-color=\"#ffffff\"/>") != std::string::npos);
+}
