@@ -29,6 +29,10 @@ IMGMESH_INLINE Float8 load8_every_other(const float* p) {
     return __builtin_shufflevector(load8(p), load8(p + 8), 0, 2, 4, 6, 8, 10, 12, 14);
 }
 
+/// Says whether functions built for AVX2 may be called. This is decided in one place, so that a test program
+/// can define its own and take the other path: results are the same bytes on both.
+bool has_avx2();
+
 /// Returns a number whose bit k is set if values[k] is `wanted`, for 0 <= k < 12.
 inline unsigned match12(const std::uint32_t* values, std::uint32_t wanted) {
 #if defined(__SSE2__)

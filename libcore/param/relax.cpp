@@ -294,7 +294,7 @@ void relax(PixelEmbedding& pixels, const std::vector<FaceField>& fields, const s
     const Sweep sweep{pixels, fields, neighbors, feature, smoothness, auxiliary};
     auto move_row = &Sweep::move_row_portably;
 #if defined(__x86_64__)
-    if (__builtin_cpu_supports("avx2")) move_row = &Sweep::move_row_avx2;
+    if (has_avx2()) move_row = &Sweep::move_row_avx2;
 #endif
     const int h = pixels.height;
     for (int n = 0; n < sweeps; ++n)

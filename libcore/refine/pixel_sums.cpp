@@ -163,10 +163,7 @@ __attribute__((target("avx2"))) FaceSums face_sums_avx2(const ImagePlanes& image
                                                         const Corner& b, const Corner& c) {
     return face_sums_of(image, a, b, c);
 }
-bool has_avx2() {
-    static const bool kAvx2 = __builtin_cpu_supports("avx2");
-    return kAvx2;
-}
+const bool kAvx2 = has_avx2();
 #endif
 
 }  // namespace
@@ -185,21 +182,21 @@ ImagePlanes::ImagePlanes(const FeatureImage& image, const Mask& mask)
 
 CornerSums corner_sums(const ImagePlanes& image, const Corner& a, const Corner& b, const Corner& c) {
 #if defined(__x86_64__)
-    if (has_avx2()) return corner_sums_avx2(image, a, b, c);
+    if (kAvx2) return corner_sums_avx2(image, a, b, c);
 #endif
     return corner_sums_of(image, a, b, c);
 }
 
 double squared_error(const ImagePlanes& image, const Corner& a, const Corner& b, const Corner& c) {
 #if defined(__x86_64__)
-    if (has_avx2()) return squared_error_avx2(image, a, b, c);
+    if (kAvx2) return squared_error_avx2(image, a, b, c);
 #endif
     return squared_error_of(image, a, b, c);
 }
 
 FaceSums face_sums(const ImagePlanes& image, const Corner& a, const Corner& b, const Corner& c) {
 #if defined(__x86_64__)
-    if (has_avx2()) return face_sums_avx2(image, a, b, c);
+    if (kAvx2) return face_sums_avx2(image, a, b, c);
 #endif
     return face_sums_of(image, a, b, c);
 }

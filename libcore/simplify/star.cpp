@@ -96,7 +96,7 @@ __attribute__((target("avx2"))) bool allowed_avx2(const StarLimits& limits, cons
                                                   float x, float y) {
     return allowed(limits, corners, faces, x, y);
 }
-const bool kAvx2 = __builtin_cpu_supports("avx2");
+const bool kAvx2 = has_avx2();
 #endif
 
 }  // namespace

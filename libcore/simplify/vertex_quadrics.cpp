@@ -203,7 +203,7 @@ int inner_row(const GridMesh& grid, const FeaturePatch& gradients, float lambda,
               Quadric<3>* out) {
     if (x < 1 || y < 1 || y + 1 >= grid.feature.height) return x;
 #if defined(__x86_64__)
-    static const bool kAvx2 = __builtin_cpu_supports("avx2");
+    static const bool kAvx2 = has_avx2();
     if (kAvx2) return row_avx2(grid, gradients, lambda, x, y, right, out);
 #endif
     return row_portably(grid, gradients, lambda, x, y, right, out);
