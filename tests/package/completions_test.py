@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""completions_test.py FOLDER: the shells complete what the completions in FOLDER/bash, zsh and fish say."""
+"""completions_test.py FOLDER SHELL...: the shells (bash, zsh, fish) complete what the completions in FOLDER/SHELL say."""
 import os
 import pathlib
 import pty
@@ -77,7 +77,7 @@ def main():
     with tempfile.TemporaryDirectory() as place:
         pathlib.Path(place, "photo.png").touch()
         os.chdir(place)
-        for shell in (bash, zsh, fish):
+        for shell in [{"bash": bash, "zsh": zsh, "fish": fish}[name] for name in sys.argv[2:]]:
             for line, wanted, unwanted in CASES:
                 answers = shell(folder, line)
                 print(shell.__name__, repr(line), answers)
