@@ -77,7 +77,7 @@ TEST_CASE("compare_images: symmetric, and the same for any number of threads") {
     CHECK(alone.ssim == d.ssim);
 }
 
-// The same light, written in two ways, is no difference; and linear light is compared as sRGB.
+// The same light in two encodings is no difference; linear RGB is compared as sRGB.
 TEST_CASE("compare_images: images of different colour spaces") {
     const Image srgb = random_image(20, 20, 3, 3);
     for (const ColorSpace space : {ColorSpace::kLinear, ColorSpace::kAdobeRgb, ColorSpace::kDisplayP3}) {
@@ -135,7 +135,7 @@ TEST_CASE("lab_from_linear: white, grey and the sRGB primaries") {
     CHECK((lab_from_linear({0, 0, 1}) - Vec3d(32.30, 79.19, -107.86)).norm() < 0.03);
 }
 
-// Table 1 of Sharma, Wu, Dalal 2005: all 34 pairs, which look into every branch of the formula.
+// Table 1 of Sharma, Wu, Dalal 2005: all 34 pairs, which cover every branch of the formula.
 TEST_CASE("ciede2000: the published test pairs") {
     struct Pair {
         Vec3d a, b;
@@ -215,7 +215,7 @@ TEST_CASE("mean_ssim: inverted contrast is below zero, no window is NaN, NaN lea
     CHECK(mean_ssim(a, b, 13, 11) < -0.9);
     CHECK(std::isnan(mean_ssim({a.data(), 110}, {b.data(), 110}, 10, 11)));
     CHECK(std::isnan(mean_ssim({a.data(), 110}, {b.data(), 110}, 11, 10)));
-    // Column 0 is in the first of the three windows only; what differs there no longer counts.
+    // Column 0 is only in the first of the three windows; differences there no longer count.
     b = a;
     b[0] = 1;
     CHECK(mean_ssim(a, b, 13, 11) < 1);

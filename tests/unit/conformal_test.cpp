@@ -74,7 +74,7 @@ double angle(const Point& pivot, const Point& a, const Point& b) {
 
 }  // namespace
 
-// What is flat already keeps its shape: the layout is it, turned and scaled.
+// A flat ring keeps its shape: the layout is the ring turned and scaled.
 TEST_CASE("conformal: the map of a flat neighbourhood is the identity up to a similarity") {
     std::mt19937 random(1);
     for (const bool open : {false, true})

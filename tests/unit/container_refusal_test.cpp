@@ -1,4 +1,4 @@
-// Everything that read_container refuses, starting from a good file and changing one thing.
+// Everything that read_container() refuses: a good file with one change at a time.
 #include <doctest/doctest.h>
 
 #include <filesystem>
@@ -87,7 +87,7 @@ TEST_CASE("refusals: the Draco extension in the JSON") {
     CHECK(file.with([&](json& d) { draco(d).erase("attributes"); }) == "gltf.structure");
     CHECK(file.with([&](json& d) { draco(d)["attributes"]["COLOR_0"] = 5; }) == "draco.attributes");
     CHECK(file.with([&](json& d) { draco(d) = 1; }) == "gltf.structure");
-    // A Draco mesh of whose size accessors and extension know nothing.
+    // A Draco mesh larger than accessors and extension say.
     CHECK(file.with([&](json& d) {
         const int faces = level(d, 0)["faces"].get<int>() + 1;
         level(d, 0)["faces"] = faces;
@@ -162,7 +162,7 @@ TEST_CASE("refusals: every invalid example of the schemas") {
         INFO(name);
         const Bytes text = read_bytes(entry.path().string());
         const json example = json::parse(text.begin(), text.end());
-        // At the node there are fewer vertices; what is wrong must be found before that.
+        // The node says that there are fewer vertices; the error must be found before that.
         const std::string code = file.with([&](json& d) { (at_root ? root(d) : level(d, 0)) = example; });
         CHECK((code.starts_with("ext.") || code.starts_with("limits.") || code == "uri.name" ||
                code == "mesh.counts"));
@@ -241,10 +241,10 @@ TEST_CASE("refusals: bytes, chunks, depth and limits") {
     CHECK(refusal(path) == "json.depth");
     write_text(path, "{\"asset\": {\"version\": \"2.0\xFF\"}}");
     CHECK(refusal(path) == "json.syntax");
-    // Some readers stop at a zero, others read on.
+    // Some readers stop at a zero, others continue.
     write_text(path, "{\"asset\": {\"version\": \"2.0\"}}" + std::string(1, '\0') + " ");
     CHECK(refusal(path) == "json.syntax");
-    // What a message quotes cannot break its line.
+    // A quoted name cannot break the message's line.
     write_text(path, R"({"asset": {"version": "1.0\nimgmesh: all is well\u001b[31m"}})");
     CHECK(refusal(path) == "gltf.version");
 }

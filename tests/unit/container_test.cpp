@@ -19,8 +19,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// What of a vertex is compared: its place, its colour as what is stored of it (16-bit codes or light), its
-// channels.
+// What is compared of a vertex: its place, its colour as stored (16-bit codes or HDR), and its channels.
 std::vector<double> stored_values(const MeshImage& image, const BaseMesh& mesh, Id v) {
     std::vector<double> out{double(mesh.position[v].x()), double(mesh.position[v].y())};
     const float* f = mesh.feature_of(v);
@@ -37,8 +36,8 @@ std::vector<double> stored_values(const MeshImage& image, const BaseMesh& mesh, 
     return out;
 }
 
-// Where a pixel is mapped to on the mesh and what it is there: the sums of weights times values, which do not
-// depend on how faces are numbered and corners rotated, as each sum is taken from its least term on.
+// A pixel's place on the mesh and its features there: sums of weights times values. They do not depend on the
+// numbering of faces and the rotation of corners, because each sum starts from its least term.
 struct Mapped {
     std::vector<double> sum;
     bool inside = false;
@@ -136,8 +135,7 @@ TEST_CASE("container: what is read back is what was written, for every spelling,
                     }
                     CHECK(back.facts.total_bytes == size);
                     CHECK(back.facts.mesh_bytes + back.facts.layer_bytes < size);
-                    // What was read is already in the order that Draco chose for it: everything is lossless
-                    // now.
+                    // The mesh that was read is already in Draco's order, so everything is lossless now.
                     const std::string again = folder / cat("again", extension);
                     write_container(again, back.mesh_image, {DracoMode::kOff, true});
                     check_same(image, read_container(again).mesh_image);
@@ -149,7 +147,7 @@ TEST_CASE("container: what is read back is what was written, for every spelling,
 TEST_CASE("container: channels and light are read back to the bit, in every mode") {
     const TemporaryFolder folder;
     std::mt19937 random(1);
-    // Names that become the same attribute, and names that other software has trouble with.
+    // Names that become the same attribute, and names that cause trouble in other software.
     const std::vector<std::string> odd = {"depth.Z", "depth z", "DEPTH_Z", "\u00fc", "A", "R"};
     std::vector<std::string> many;
     for (int c = 0; c < 13; ++c) many.push_back(cat("band", c));
@@ -195,8 +193,8 @@ TEST_CASE("container: faces that differ by a channel alone are told apart") {
     }
 }
 
-// Draco splits and reorders vertices; each keeps the coordinates that it has, which a warped mesh has not at
-// its place.
+// Draco splits and reorders vertices. Each keeps its texture coordinates, which differ from its place in a
+// warped mesh.
 TEST_CASE("container: a texture and its coordinates are read back to the bit, in every mode") {
     const TemporaryFolder folder;
     for (const bool light : {false, true})
@@ -208,7 +206,7 @@ TEST_CASE("container: a texture and its coordinates are read back to the bit, in
                 change_channels(image, true, light, {"Z"}, random);
                 ContainerOptions options{mode, true};
                 options.texture = {red_png(), texture_coords(image)};
-                // A function of the place, so that it can be told whatever the order.
+                // A function of the place, so that it can be checked in any order.
                 const auto moved = [](const Vec2f& c) { return Vec2f(c.y() * c.y(), 1 - c.x()); };
                 for (auto& level : options.texture.coords)
                     for (Vec2f& c : level) c = moved(c);
@@ -225,7 +223,7 @@ TEST_CASE("container: a texture and its coordinates are read back to the bit, in
                         CHECK(back.texture.coords[k][v] == moved(places[k][v]));
                 }
                 CHECK(validate_container(folder / name).empty());
-                // Without the texture it is as if there had never been one.
+                // Without the texture the container is as if there had never been one.
                 write_container(folder / name, back.mesh_image, {DracoMode::kOff, true});
                 CHECK(read_container(folder / name).texture.picture.empty());
                 check_same(image, read_container(folder / name).mesh_image);
@@ -303,7 +301,7 @@ TEST_CASE("container: usage and files that are there already") {
     const std::vector<std::string> files = read_container(folder / "photo.gltf").facts.files;
     CHECK(files[1] == folder / "photo.bin");
     CHECK(fs::path(files[2]).filename().string().size() == std::string("photo-0123456789abcdef.exr").size());
-    // The same again changes nothing, another container leaves nothing of the old one.
+    // The same container again changes nothing; another one leaves nothing of the old one.
     CHECK(code("photo.gltf", true) == std::nullopt);
     CHECK(read_container(folder / "photo.gltf").facts.files == files);
     write_container(folder / "photo.gltf", random_mesh_image(9, 9, 1, WeightPrecision::kHalf, false, 4));

@@ -1,4 +1,4 @@
-// The texture of a container: what the reader makes of one that is broken or of another kind.
+// The texture of a container: how the reader handles a broken one, or one of another kind.
 #include <doctest/doctest.h>
 
 #include <set>
@@ -48,7 +48,7 @@ TEST_CASE("refusals: the texture; one of another kind is for viewers alone") {
         d["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"]["index"] = 1;
     }) == "gltf.index");
     CHECK(file.with([](json& d) { d["textures"][0]["source"] = 7; }) == "gltf.index");
-    // A level that is not looked at for the image counts as well; a validator tells it once.
+    // A level whose image is not used counts as well; a validator reports it once.
     for (const std::size_t k : {0u, 1u}) {
         std::vector<Issue> issues;
         CHECK(file.with([&](json& d) { d["meshes"][k]["primitives"][0]["material"] = 7; },
@@ -68,7 +68,7 @@ TEST_CASE("refusals: the texture; one of another kind is for viewers alone") {
     CHECK(file.with([&](json& d) { texcoord(d)["byteOffset"] = 4; }) == "gltf.range");
     CHECK(file.with([](json& d) { d["meshes"][0]["primitives"][0]["attributes"].erase("_COLOR"); }) ==
           "gltf.attribute");
-    // What viewers make of it is for a validator to tell.
+    // What viewers do with it is for a validator to report.
     const auto advice = [&](const auto& change) {
         std::set<std::string_view> codes;
         file.with(change, [&] {

@@ -23,7 +23,7 @@ TEST_CASE("distribution: figures of five numbers, by hand") {
     CHECK(d.deviation == Approx(std::sqrt((0 + 16 + 4 + 36 + 0) / 5.0)));
     CHECK(d.min == 0);
     CHECK(d.max == 10);
-    // In order 0 2 4 4 10; the p-th lies at place 4 p, counted from 0.
+    // Sorted: 0 2 4 4 10; the p-th percentile is at place 4 p, counted from 0.
     CHECK(d.p5 == Approx(0.4));
     CHECK(d.p25 == Approx(2));
     CHECK(d.median == Approx(4));
@@ -34,7 +34,7 @@ TEST_CASE("distribution: figures of five numbers, by hand") {
     CHECK(d.above == 1);
 }
 
-// Halves and their bins are exact in binary, so that edges are where they seem to be.
+// Halves and their bins are exact in binary, so edges are exactly where they seem to be.
 TEST_CASE("distribution: edges of bins") {
     const Distribution d = distribution({-0.25f, 0, 0.25f, 0.5f, 1, 1.5f, 1.75f}, {0, 1.5, 3});
     CHECK(d.histogram == Counts{2, 1, 2});

@@ -86,7 +86,7 @@ TEST_CASE("topology hash: the published one of a known mesh, and every index and
 TEST_CASE("matching: coinciding vertices are told apart by colour, and a changed mesh is noticed") {
     std::mt19937 random(3);
     StoredMesh mesh = stored_from_base(random_mesh(9, 7, 4, 3, random));
-    // The same mesh once more on top, in other colours: only those tell a face from its twin.
+    // The same mesh again on top, in other colours: only they distinguish a face from its twin.
     StoredMesh twice = mesh;
     const auto count = static_cast<Id>(mesh.position.size());
     for (std::size_t v = 0; v < count; ++v) {

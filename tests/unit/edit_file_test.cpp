@@ -1,4 +1,4 @@
-// Files of edits: the reader agrees with the schema, and says where a file is wrong.
+// Files of edits: the reader agrees with the schema, and reports where a file is wrong.
 #include "formats/container/edit_file.h"
 
 #include <doctest/doctest.h>

@@ -143,7 +143,7 @@ TEST_CASE("layers: what does not fit the container is refused by its code") {
 }
 
 TEST_CASE("layers: files of other software") {
-    // Weights off the grid are rounded down to it, so the simplex holds still.
+    // Weights off the grid are rounded down to it, so u + v <= 1 still holds.
     const std::vector<LayerPart> parts = decode_exr_layers(Foreign().write(), Foreign().expected);
     const PixelCoord c = parts[0].map.coords[11];
     CHECK(parts[0].map.precision == WeightPrecision::kFloat);

@@ -59,7 +59,7 @@ TEST_CASE("feature space: values times weights, colour as L*u*v*") {
         CHECK(features.pixel(i)[3] == 2 * image.data[6 * i + 4]);
         CHECK(features.pixel(i)[4] == 100 * image.data[6 * i + 3]);
     }
-    // Nothing chosen: the colour alone, as ever.
+    // Nothing chosen: only the colour.
     CHECK(extract_features(image, feature_space(image, {})).data == luv.data);
     CHECK(extract_features(image, feature_space(image, {{"depth.Z"}})).data[1] == image.data[9]);
 }
@@ -113,7 +113,7 @@ TEST_CASE("gamut: light counts where floats have more than 1, in linear light") 
 
 namespace {
 
-// Light of all sizes and hues, some of one or two primaries alone.
+// HDR values of all sizes and hues, some of only one or two primaries.
 Vec3f random_light(std::mt19937& random) {
     Vec3f light;
     for (float& x : light) x = std::uniform_real_distribution<float>(0, 1)(random);

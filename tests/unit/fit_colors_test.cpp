@@ -75,7 +75,7 @@ TEST_CASE("fit colours: where the gamut does not matter, the dense least-squares
         REQUIRE(in_gamut(luv) == luv);
         std::copy_n(Vec3f(50, 0, 0).data(), 3, mesh.feature_of(v));
     }
-    // It iterates: called again from where it ended it comes as close as one likes.
+    // It iterates: repeated calls from its last result come arbitrarily close.
     for (int n = 0; n < 8; ++n) fit_colors(mesh, feature, terms);
     for (Id v = 0; v < mesh.vertex_count(); ++v)
         for (int c = 0; c < 3; ++c)
@@ -150,7 +150,7 @@ TEST_CASE("fit map: a constant image is reproduced by any mesh") {
             for (Id v = 0; v < mesh.vertex_count(); ++v)
                 std::copy_n(feature.data.data(), 3, mesh.feature_of(v));
             const PixelMap map = fit_map(mesh, feature, {});
-            // 16-bit codes are all that is lost.
+            // Only the rounding to 16-bit codes is lost.
             const Vec3f color(feature.data.data());
             CHECK(map_rms(mesh, map, feature) <= double((quantized_color(color) - color).norm()) + 2e-4);
         }

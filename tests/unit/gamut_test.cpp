@@ -8,7 +8,7 @@ using namespace imgmesh;
 
 namespace {
 
-// A little over half a 16-bit code: what the container's rounding makes nothing of.
+// A little over half a 16-bit code: differences that the container's rounding removes.
 constexpr float kSlack = 8e-6f;
 
 bool is_in_gamut(const Vec3f& luv) {
@@ -41,7 +41,7 @@ TEST_CASE("in_gamut: the result is in gamut, and a colour that exists") {
         INFO("L*u*v* " << luv.transpose());
         const Vec3f result = in_gamut(luv);
         CHECK(is_in_gamut(result));
-        // Black has no chroma: (0, u, v) is the colour of nothing.
+        // Black has no chroma: (0, u, v) is no real colour.
         CHECK((luv_from_linear(linear_from_luv(result)) - result).norm() < 1e-2f);
     }
 }
@@ -65,7 +65,7 @@ TEST_CASE("in_gamut: never further away than clamped channels") {
     }
 }
 
-// Where a fit of colours overshoots: dark, and a little beyond.
+// Where a fit of colours overshoots: dark, and slightly outside.
 TEST_CASE("in_gamut: much closer than clamped channels where colours are dark") {
     std::mt19937 random(3);
     const auto uniform = [&](float low, float high) {
@@ -87,7 +87,7 @@ TEST_CASE("quantized colours: storing twice is storing once, from anywhere") {
         INFO("L*u*v* " << luv.transpose());
         CHECK(quantized_color(once) == once);
         CHECK(color_codes(once) == color_codes(luv));
-        // Rounding to 16 bits is all that separates it from the colour in gamut.
+        // Only rounding to 16 bits separates it from the colour in gamut.
         CHECK((linear_from_luv(once) - linear_from_luv(in_gamut(luv))).cwiseAbs().maxCoeff() < 1.2e-5f);
     }
 }

@@ -10,9 +10,9 @@
 
 using namespace imgmesh;
 
-// A thread that waits for an inner loop would otherwise begin further outer blocks on top of the one it is
-// in, each with all its memory. Two threads never get there, so the arena has six, whatever the machine has;
-// blocks of uneven length make some wait for others.
+// A thread that waits for an inner loop would otherwise start more outer blocks on top of its own, each with
+// all its memory. Two threads never get there, so the arena has six on any machine. Blocks of uneven length
+// make some threads wait for others.
 TEST_CASE("parallel_blocks: a thread is in one outer block at a time") {
     static thread_local int depth = 0;
     std::mutex mutex;

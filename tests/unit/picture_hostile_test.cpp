@@ -48,8 +48,7 @@ long peak_kilobytes() {
 
 }  // namespace
 
-// Never half an image: a prefix is an error, or (where only what follows the pixels is removed) the whole
-// picture.
+// Never half an image: a prefix is an error, or the whole image if only bytes after the pixels are removed.
 TEST_CASE("hostile: truncated files at many lengths") {
     const TemporaryFolder folder;
     for (const std::string name : kNames) {
@@ -147,7 +146,7 @@ TEST_CASE("hostile: absurd sizes are refused before memory is taken") {
         for (const Bytes& part : parts)
             files.back().second.insert(files.back().second.end(), part.begin(), part.end());
     };
-    // The right checksum, so that nothing but the size is wrong.
+    // The checksum is right, so only the size is wrong.
     add("png",
         {bytes_of(
              {"\x89PNG\r\n\x1a\n\0\0\0\x0DIHDR\0\x01\x86\xA0\0\x01\x86\xA0\x08\x02\0\0\0\x27\x30\x9C\x9F",
@@ -273,7 +272,7 @@ TEST_CASE("hostile: paths that lead to no image") {
     if (::geteuid() != 0) CHECK(error_of([&] { read_image(folder / "secret.tif"); }) == ErrorKind::kIo);
 }
 
-// Found by fuzzing: OpenImageIO goes to where the header says, also before the file's begin.
+// Found by fuzzing: OpenImageIO seeks to where the header says, even before the start of the file.
 TEST_CASE("hostile: a BMP whose pixels are outside the file") {
     const TemporaryFolder folder;
     const Bytes good = sample_file(folder, "a.bmp");
@@ -285,7 +284,7 @@ TEST_CASE("hostile: a BMP whose pixels are outside the file") {
     }
 }
 
-// Found by fuzzing: OpenImageIO reads runs of indices into a palette that is not there.
+// Found by fuzzing: OpenImageIO looks up runs of indices in a palette that does not exist.
 TEST_CASE("hostile: a BMP's compression is one for its depth") {
     const TemporaryFolder folder;
     // 4 x 2 pixels, palette {10, 20, 30}, {40, 50, 60}: a run of four of the second, then four of the first.

@@ -1,4 +1,4 @@
-// What read_image makes of files that other software wrote.
+// How read_image() reads files that other software wrote.
 #include <OpenEXR/ImfChannelList.h>
 #include <OpenEXR/ImfFrameBuffer.h>
 #include <OpenEXR/ImfHeader.h>
@@ -177,7 +177,7 @@ TEST_CASE("read: the colour space is the caller's, else the profile's, else the 
     };
     CHECK(with_gamma(2.2f).color_space == ColorSpace::kGamma22);
     CHECK(max_difference(with_gamma(2.2f), made) < 1e-4f);
-    // Another gamma is brought to 2.2: the light, value^gamma, stays.
+    // Another gamma is converted to 2.2; the light, value^gamma, stays.
     const Image other = with_gamma(1.8f);
     CHECK(other.color_space == ColorSpace::kGamma22);
     for (std::size_t i = 0; i < made.data.size(); ++i)
@@ -241,7 +241,7 @@ TEST_CASE("read: CMYK, bits and palettes become RGB or grey") {
     CHECK(max_difference(read_image(folder / "bits.tif"), bits) == 0);
     CHECK(read_image(folder / "bits.tif").channel_names == Names{"Y"});
 
-    // GIF is palette all through; the first frame is the picture.
+    // A GIF is all palettes; the first frame is the image.
     const auto out = OIIO::ImageOutput::create("gif");
     const std::vector<OIIO::ImageSpec> specs(2, OIIO::ImageSpec(4, 4, 3, OIIO::TypeUInt8));
     REQUIRE(out->open(folder / "two.gif", 2, specs.data()));
@@ -322,7 +322,7 @@ TEST_CASE("read: an EXR's channels come colour first, then by name") {
     CHECK(read.pixel(1, 1)[0] == doctest::Approx(311.0 / 11));
 }
 
-// Attributes of other software are no hindrance, whatever their type.
+// Attributes of other software do no harm, whatever their type.
 TEST_CASE("read: an EXR with a preview and unusual attributes") {
     const TemporaryFolder folder;
     Imf::Header header(2, 2);

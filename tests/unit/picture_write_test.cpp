@@ -74,7 +74,7 @@ TEST_CASE("write: floats come back from EXR and TIFF, with alpha and any channel
     CHECK(read_image(folder / "f.exr").data[4] <= 65504);  // the largest half, not infinity
 }
 
-// Whatever the format does to the numbers, the light stays.
+// The format may change the numbers; the light stays.
 TEST_CASE("write: colour spaces are noted or converted, and colours stay") {
     const TemporaryFolder folder;
     for (const ColorSpace space : {ColorSpace::kSrgb, ColorSpace::kLinear, ColorSpace::kRec709,
@@ -172,7 +172,7 @@ TEST_CASE("write: the same image gives the same bytes") {
     }
 }
 
-// The limit on a file's size stands for a full disk: both fail in write().
+// The limit on a file's size simulates a full disk: both fail in write().
 TEST_CASE("write: a full disk, a missing folder and an existing file are errors that leave nothing") {
     const TemporaryFolder folder;
     const Image image = random_picture(100, 100, 3);

@@ -1,4 +1,4 @@
-// PNG against OpenImageIO, which reads what we write and what we read.
+// PNG compared with OpenImageIO, which reads what we write and what we read.
 #include <doctest/doctest.h>
 #include <png.h>
 
@@ -48,7 +48,7 @@ void write_png(const std::string& path, int width, int height, const Kind& kind,
     png_write_info(png, info);
     std::vector<png_byte> bytes(png_get_rowbytes(png, info) * static_cast<std::size_t>(height));
     std::vector<png_bytep> rows;
-    // Small samples, so that the transparent colour is met.
+    // Small samples, so that the transparent colour occurs.
     for (png_byte& b : bytes) b = static_cast<png_byte>(kind.bits < 8 ? random() : random() % 3);
     for (int y = 0; y < height; ++y)
         rows.push_back(bytes.data() + png_get_rowbytes(png, info) * static_cast<std::size_t>(y));

@@ -17,7 +17,7 @@ namespace {
 
 constexpr float kLambda = 3;
 
-// The sum that a vertex's quadric stands for, term by term in double: over its faces, area times (lambda
+// The sum that a vertex's quadric represents, term by term in double: over its faces, area times (lambda
 // times the squared distance to the centroid, plus the squared distance to the plane through the vertex's own
 // colour with the face's gradient).
 struct BruteForce {
@@ -125,7 +125,7 @@ TEST_CASE("vertex quadrics: of a strip one pixel wide") {
     }
 }
 
-// What a collapse does over and over: rounding must not pile up.
+// A collapse merges again and again: rounding must not accumulate.
 TEST_CASE("merged: the sum of many vertices' quadrics is the sum of all of their faces") {
     std::mt19937 random(3);
     for (const Kind kind : kAllKinds) {
@@ -186,7 +186,7 @@ TEST_CASE("merged_minimum: the increment is the least error of the sum less both
     }
 }
 
-// Against the formula for one pair, of which the last ones are singular.
+// Compared with the formula for one pair; the last pairs are singular.
 TEST_CASE("star increments: those of merged_minimum, to the bit, for any number of neighbours") {
     std::mt19937 random(6);
     for (const Kind kind : kAllKinds) {
@@ -216,7 +216,7 @@ TEST_CASE("star increments: those of merged_minimum, to the bit, for any number 
     }
 }
 
-// Every rule once for each triangle of a random star, and written down for one triangle at a time.
+// Every rule for each triangle of a random star, written for one triangle at a time.
 TEST_CASE("star limits: no triangle of the star too thin, too large, too far from regular, or turned over") {
     std::mt19937 random(8);
     const auto number = [&] { return static_cast<float>(random() % 1000) / 100; };
@@ -252,7 +252,7 @@ TEST_CASE("star limits: no triangle of the star too thin, too large, too far fro
     CHECK(allowed < 3600);
 }
 
-// With lambda 0 and one common gradient every position along the plane is as good: take the middle.
+// With lambda 0 and one common gradient every position along the plane is equally good: take the middle.
 TEST_CASE("merged_minimum: a singular pair meets half way") {
     Quadric<3> i, j;
     i.weight = j.weight = 1;

@@ -59,7 +59,7 @@ TEST_CASE("rasterize: random meshes agree with brute force and leave no pixel ou
     }
 }
 
-// All pixel centres lie on vertices or edges here: nothing but ties.
+// All pixel centres lie on vertices or edges here: every one is a tie.
 TEST_CASE("rasterize: the full pixel grid, where every sample is a tie") {
     BaseMesh mesh = test::jittered_grid(0, 0, 12, 9, 12, 9, 5);
     for (Vec2f& p : mesh.position) p = {std::round(p.x()), std::round(p.y())};

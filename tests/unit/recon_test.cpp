@@ -94,7 +94,7 @@ TEST_CASE("LuvEncoder: as the plain form, in and out of gamut, for every space a
     }
 }
 
-// Keeping every pixel as a vertex keeps every pixel: the case where the reconstruction must be exact.
+// With every pixel as a vertex the reconstruction must be exact.
 TEST_CASE("draw map: a mesh of all pixels gives the image back") {
     MeshImage m = random_mesh_image(17, 11, 16, 10, 1);
     BaseMesh& mesh = m.levels[0].mesh;

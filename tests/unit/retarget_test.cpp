@@ -13,7 +13,7 @@ using namespace imgmesh::test;
 
 namespace {
 
-// A grid whose columns and rows are eight times as dense in the middle: what a collapse leaves around an
+// A grid whose columns and rows are eight times as dense in the middle, as a collapse leaves them around an
 // object.
 MeshImage object_in_the_middle(int side) {
     MeshImage m = grid_pyramid(side, side, {24});
@@ -52,7 +52,7 @@ TEST_CASE("retarget_moves: sides stay sides, and no face turns over, whatever th
     }
 }
 
-// The reason for all this.
+// The purpose of retargeting.
 TEST_CASE("retarget_field: detail keeps its proportions, the rest gives way") {
     const MeshImage m = object_in_the_middle(101);
     const DisplacementField field = retarget_field(m, {61, 101});

@@ -61,7 +61,7 @@ bool may_merge(const std::vector<Face>& faces, const RingMesh& rings, Id i, Id j
            ring <= static_cast<std::size_t>(kMaxValence);
 }
 
-// Merges random edges until none may go.
+// Merges random edges until none is possible.
 void merge_all(RingMesh rings, std::uint32_t seed) {
     std::mt19937 random(seed);
     for (;;) {

@@ -59,7 +59,7 @@ TEST_CASE("paper: a patch's colour is weighted by the least weight") {
           doctest::Approx(std::sqrt(25 * 25 + 9 + 36)));
 }
 
-// Grey steps 0, 4, 10, 20 in a row. 0 and 4 merge first and become 2, so 10 is 8 away from them, not 6; then
+// Grey steps 0, 4, 10, 20 in a row. 0 and 4 merge first and become 2, so 10 is 8 away from them, not 6. Then
 // the three are 14/3, and 20 is 15.33 away.
 TEST_CASE("paper: closest first, colours averaged anew, strictly below the threshold") {
     const PixelMap map = map_of_faces(4, 1, {0, 1, 2, 3});
@@ -75,7 +75,7 @@ TEST_CASE("paper: closest first, colours averaged anew, strictly below the thres
     CHECK(regions(15.4) == std::vector<Id>{0, 0, 0, 0});
 }
 
-// Equal steps everywhere: of equal distances the lower regions go first.
+// All steps are equal: among equal distances the lower regions merge first.
 TEST_CASE("ties go to the lower regions") {
     const PixelMap map = map_of_faces(4, 1, {3, 2, 1, 0});
     const FeatureImage picture{4, 1, 3, {0, 0, 0, 1, 0, 0, 0, 0, 0, 1, 0, 0}};
@@ -96,7 +96,7 @@ TEST_CASE("population distance: the textbook's values") {
     CHECK(color_equivalent(population_distance(zero, zero, step, zero)) == doctest::Approx(5));
 }
 
-// Two plain halves of a square image: every part of the formula is then their colours' distance.
+// Two uniform halves of a square image: every part of the formula then gives their colours' distance.
 TEST_CASE("contour distance of two plain halves is that of their colours") {
     constexpr int kSide = 32;
     PixelMap map = map_of_faces(kSide, kSide, std::vector<Id>(kSide * kSide, 0));
@@ -119,7 +119,7 @@ TEST_CASE("contour distance of two plain halves is that of their colours") {
           doctest::Approx(5).epsilon(1e-4));
 }
 
-// What lies outside the mask has colours too, but no say.
+// Pixels outside the mask have colours too, but do not count.
 TEST_CASE("contrasts see nothing outside the mask") {
     const PixelMap map = map_of_faces(6, 1, {0, 0, 0, 1, 1, kNone});
     FeatureImage picture{6, 1, 3, std::vector<float>(18, 10.0f)};
@@ -145,7 +145,7 @@ TEST_CASE("min size: small regions go to their closest neighbour first") {
     CHECK_THROWS_AS(segment(level_of(map), picture, params), Error);
 }
 
-// An island smaller than the least size has no neighbour to go to.
+// An island smaller than the least size has no neighbour to merge with.
 TEST_CASE("islands of a mask stay apart") {
     const PixelMap map = map_of_faces(5, 1, {0, 0, kNone, 0, 1});
     const FeatureImage picture{5, 1, 3, std::vector<float>(15, 0.0f)};

@@ -43,7 +43,7 @@ TEST_CASE("texture: grey becomes colour, other spaces sRGB, light and shadow are
             CHECK(texture.data[3 * i + c] == doctest::Approx(expected[i]).epsilon(1e-6));
 }
 
-// Nothing that lies outside, here green, may mix in at the masked image's edge.
+// Colours outside, here green, must not mix in at the masked image's edge.
 TEST_CASE("texture: pixels outside of a masked image are transparent and have the colours inside") {
     for (const int side : {1, 3, 41}) {
         Image image = make_image(side, side, 3);

@@ -10,7 +10,7 @@ using namespace imgmesh::test;
 
 namespace {
 
-// Where b begins in a when both are read around; -1 where they are no rotation of each other.
+// Returns the place of b's start in the cycle a; -1 if they are not rotations of each other.
 int rotation(const std::vector<Id>& a, const std::vector<Id>& b) {
     for (std::size_t k = 0; k < a.size(); ++k) {
         std::vector<Id> turned = a;
@@ -24,7 +24,7 @@ bool close(float a, float b) {
     return std::abs(a - b) <= 1e-3f + 2e-4f * std::abs(b);
 }
 
-// The tiles together must be the dense mesh as ring_mesh() and initial_quadrics() make it whole.
+// The tiles together must be the dense mesh that ring_mesh() and initial_quadrics() make as a whole.
 void check_tiles(const GridMesh& grid) {
     const SimplifyParams params;
     const FeaturePatch gradients = smoothed_patch(grid, params.smoothing, whole_rect(grid));

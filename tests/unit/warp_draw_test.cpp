@@ -27,7 +27,7 @@ struct Hit {
     Vec2d source{0, 0};
 };
 
-// The drawing as it is defined, by trying every triangle for every pixel: no bands, no fast paths, doubles.
+// The drawing by its definition, trying every triangle for every pixel: no bands, no fast paths, doubles.
 // Places are rounded to 1/4096 first, so all products are exact.
 std::vector<Hit> slow_map(const DisplacementField& field, int width, int height) {
     const double sx = double(width) / field.width, sy = double(height) / field.height;
@@ -41,7 +41,7 @@ std::vector<Hit> slow_map(const DisplacementField& field, int width, int height)
     const auto cross = [](const Vec2d& p, const Vec2d& q, const Vec2d& r) {
         return (q.x() - p.x()) * (r.y() - p.y()) - (q.y() - p.y()) * (r.x() - p.x());
     };
-    // Whether r, moved a hair to the right and a hair of that hair down, is left of p to q.
+    // Whether r, moved slightly to the right and far less down, is left of p to q.
     const auto inside = [&](const Vec2d& p, const Vec2d& q, const Vec2d& r) {
         const double e = cross(p, q, r);
         return e > 0 || (e == 0 && (q.y() < p.y() || (q.y() == p.y() && q.x() > p.x())));
@@ -168,7 +168,7 @@ TEST_CASE("inverse_map: undoes a turn with scaling") {
     CHECK(seen > 200);
 }
 
-// Bilinear interpolation reproduces what is linear in x and y.
+// Bilinear interpolation reproduces functions that are linear in x and y.
 TEST_CASE("warp_image: colours are those of where a pixel comes from") {
     Image image = make_image(30, 20, 2);
     for (int y = 0; y < 20; ++y)
@@ -203,7 +203,7 @@ TEST_CASE("warp_image: half the size is the mean of two by two pixels") {
             }
 }
 
-// Places are rounded to 1/4096 pixel, which must not show as a clear side.
+// Places are rounded to 1/4096 pixel, which must not show as a transparent side.
 TEST_CASE("warp_image: another size alone leaves nothing clear") {
     for (const auto& [w, h] : kShapes)
         for (const OutputSize size : {OutputSize{1, 1}, {100, 7}, {5, 90}, {29, 31}, {230, 170}}) {
@@ -258,8 +258,7 @@ TEST_CASE("warp_image: sides that move cover shares of pixels") {
     CHECK(out.pixel(0, 3)[1] == doctest::Approx(0.5f));
 }
 
-// The footprint of what is pressed against a side that rests reaches beyond it; the side is where it is all
-// the same.
+// Pixels pressed against a resting side have footprints that reach beyond it; the side is still where it was.
 TEST_CASE("warp_image: a side that rests is opaque") {
     const auto pressed = [](int at, int side) {
         const int from = std::min(at, side - 1 - at);
@@ -306,7 +305,7 @@ TEST_CASE("warp_image: masked images keep their alpha, soft boundaries included"
         }
 }
 
-// Colours outside must not bleed in, wherever the boundary goes.
+// Colours outside must not bleed in, wherever the boundary moves.
 TEST_CASE("warp_image: what is outside shows nowhere") {
     MeshImage m = grid_pyramid(40, 30, {6});
     apply_mask(m, [](int x, int y) { return (x / 3 + y / 4) % 2 == 0 && x != 20; });

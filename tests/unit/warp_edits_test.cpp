@@ -105,7 +105,7 @@ TEST_CASE("displacement_field: a vertex moves its one-ring, smoothly, and nothin
     const Vec2d move(5, -3);
     const auto moves = solve_edits(m, {move_near({30, 25}, move)});
     const DisplacementField field = displacement_field(m, moves);
-    // How fast a weight can change: 1 / the least height of a triangle of the ring.
+    // The fastest change of a weight: 1 / the least height of a triangle of the ring.
     double steepest = 0;
     Id handle = 0;
     while (moves[0][handle].isZero()) ++handle;
@@ -130,7 +130,7 @@ TEST_CASE("displacement_field: a vertex moves its one-ring, smoothly, and nothin
             CHECK(step <= move.norm() * steepest + 1e-5);
         }
     CHECK(moved > 100);
-    // The handle's own pixel goes all the way.
+    // The handle's own pixel moves the whole way.
     float most = 0;
     for (const Vec2f& d : field.move) most = std::max(most, d.norm());
     CHECK(most > 0.9 * move.norm());
@@ -152,7 +152,7 @@ TEST_CASE("displacement_field: edits of several levels add up") {
     CHECK(worst < 1e-5);
 }
 
-// A ring: the hole keeps what is pulled on one side from the other.
+// A ring: the hole keeps a pull on one side away from the other.
 TEST_CASE("warp_image: pulling one side of an annulus leaves the far side untouched") {
     MeshImage m = grid_pyramid(64, 64, {6});
     const auto radius = [](int x, int y) { return std::hypot(x - 31.5, y - 31.5); };
@@ -226,7 +226,7 @@ TEST_CASE("ArapSolver: a bar bends without shrinking") {
     CHECK(bent / rest == doctest::Approx(1).epsilon(0.05));
     CHECK(worst < 0.5);
     for (std::size_t i = 0; i < fixed.size(); ++i) CHECK(result.moves[fixed[i]] == moves[i]);
-    // Kept factors know nothing of what was solved with them.
+    // The kept factors do not depend on earlier solutions.
     solver.solve(std::vector<Vec2d>(fixed.size(), Vec2d(1, 2)));
     CHECK(solver.solve(moves, 1e-4, 2000).moves == result.moves);
 }

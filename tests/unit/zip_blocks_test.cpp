@@ -41,8 +41,8 @@ TEST_CASE("zip blocks: unpack(pack(x)) == x for every length and kind of bytes")
     CHECK(packer.pack(Bytes(4096, 9)).size() < 60);
 }
 
-// By hand: 10 20 30 40 50 sorts to 10 30 50 20 40; differences plus 128 are 10 148 148 98 148. Unpacking
-// bytes that others have deflated without packing them ("stored", RFC 1950 and 1951) gives the block back.
+// By hand: 10 20 30 40 50 sorts to 10 30 50 20 40; differences plus 128 are 10 148 148 98 148. Bytes that
+// others have deflated without compression ("stored", RFC 1950 and 1951) give the block back.
 TEST_CASE("zip blocks: bytes at even places first, then differences") {
     const Bytes stored = {0x78, 0x01, 0x01, 0x05, 0x00, 0xFA, 0xFF, 10,
                           148,  148,  98,   148,  0x05, 0x9B, 0x02, 0x29};
