@@ -20,7 +20,7 @@ run(${CMAKE_COMMAND} -S ${EXAMPLES}/library -B ${WORK}/library -G Ninja -DCMAKE_
 run(${CMAKE_COMMAND} --build ${WORK}/library)
 run(${WORK}/library/imgmesh-example ${DATA}/kodim23.png ${WORK}/results)
 expect_files(${WORK}/results image.glb drawn.png warped.png)
-# The drawing is close to the image, the warped image is another one: about 6 and 30 in L*u*v*.
+# The drawing is close to the image, the warped image is another one: RMS of 3.6 and 21.6 in L*u*v*.
 run(imgmesh-compare --quiet --tolerance 12 ${DATA}/kodim23.png ${WORK}/results/drawn.png)
 execute_process(COMMAND imgmesh-compare --quiet --tolerance 12 ${DATA}/kodim23.png ${WORK}/results/warped.png
   RESULT_VARIABLE _code)
@@ -30,8 +30,8 @@ endif()
 
 # The chains, on two small images, one of either kind.
 file(MAKE_DIRECTORY ${WORK}/images)
-run(imgmesh-reconstruct --quiet ${WORK}/results/image.glb --mode gouraud --scale 0.125 ${WORK}/images/a.png)
-run(imgmesh-reconstruct --quiet ${WORK}/results/image.glb --mode flat --scale 0.125 "${WORK}/images/b.jpg")
+run(imgmesh-reconstruct --quiet ${WORK}/results/image.glb --mode gouraud --scale 0.125 -o ${WORK}/images/a.png)
+run(imgmesh-reconstruct --quiet ${WORK}/results/image.glb --mode flat --scale 0.125 -o ${WORK}/images/b.jpg)
 set(_results a.glb a.drawn.png a.json b.glb b.drawn.png b.json)
 function(expect_comparison path)
   file(READ ${path} _json)
