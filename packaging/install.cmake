@@ -23,7 +23,7 @@ install(FILES
 include(cmake/public_headers.cmake)
 install(DIRECTORY schemas/ DESTINATION ${CMAKE_INSTALL_DATADIR}/imgmesh/schemas FILES_MATCHING PATTERN "*.schema.json"
   PATTERN examples EXCLUDE)
-install(FILES README.md CHANGELOG.md LICENSE docs/format.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(FILES README.md CHANGELOG.md LICENSE docs/format.md docs/library.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
 
 # Man pages and completions say what --help says.
 find_program(IMGMESH_PYTHON3 python3 PATHS /usr/bin NO_DEFAULT_PATH REQUIRED)

@@ -1,0 +1,14 @@
+# What only building imgmesh needs: the tools and the OpenImageIO module. Programs that link the libraries do without.
+find_package(CLI11 CONFIG REQUIRED)
+
+# Debian's OpenImageIO names include folders (/usr/include/opencv4) that its package does not bring; CMake would
+# refuse to generate. Keep those that exist.
+find_package(OpenImageIO CONFIG REQUIRED)
+get_target_property(_dirs OpenImageIO::OpenImageIO INTERFACE_INCLUDE_DIRECTORIES)
+set(_existing "")
+foreach(_dir IN LISTS _dirs)
+  if(IS_DIRECTORY ${_dir})
+    list(APPEND _existing ${_dir})
+  endif()
+endforeach()
+set_target_properties(OpenImageIO::OpenImageIO PROPERTIES INTERFACE_INCLUDE_DIRECTORIES "${_existing}")
