@@ -293,7 +293,7 @@ TEST_CASE("glTF JSON: read(write(x)) == x") {
             l.indices = {400, 480};
             l.positions = {880, 360};
             l.colors = {1240, 240};
-            l.light = {1480, 360};
+            l.hdr = {1480, 360};
             l.channels[0] = {1840, 120};
         }
     }
