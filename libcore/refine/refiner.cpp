@@ -9,7 +9,7 @@
 
 namespace imgmesh {
 
-// No new triangle is thinner than the collapse allows (simplify/star_limits.h).
+// No new triangle is thinner than the collapse allows (simplify/kernel/shape_limits.h).
 constexpr double kFatness = 0.05;
 
 void Refiner::add_shape(Cost& cost, const Vec2f& a, const Vec2f& b, const Vec2f& c) const {

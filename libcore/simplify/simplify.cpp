@@ -9,18 +9,13 @@
 
 #include "libcore/base/error.h"
 #include "libcore/image/channel_count.h"
-#include "libcore/simplify/simplifier.h"
+#include "libcore/simplify/kernel/simplifier.h"
 
 namespace imgmesh {
 
 // Compiled in simplifier_matrix.cpp.
 extern template class Simplifier<MatrixQuadric<3>>;
 extern template class Simplifier<MatrixQuadric<kAnyChannels>>;
-
-struct SimplifyRun::Engine {
-    virtual ~Engine() = default;
-    virtual SimplifyResult to(const SimplifyTarget& target, const Progress& progress) = 0;
-};
 
 namespace {
 
@@ -34,28 +29,14 @@ std::vector<float> with_channels(const std::vector<float>& values, int from, int
     return out;
 }
 
-template <class Q>
-class EngineOf : public SimplifyRun::Engine {
-  public:
-    EngineOf(const GridMesh& grid, const SimplifyParams& params, const SimplifyHooks& hooks)
-        : simplifier_(grid, params, hooks) {}
-    SimplifyResult to(const SimplifyTarget& target, const Progress& progress) override {
-        simplifier_.run(target, progress);
-        return simplifier_.snapshot();
-    }
-
-  private:
-    Simplifier<Q> simplifier_;
-};
-
 // For a grid whose features are fewer than the quadrics have room for.
 template <class Q>
-class PaddedEngine : public SimplifyRun::Engine {
+class PaddedSimplifier : public AnySimplifier {
   public:
-    PaddedEngine(const GridMesh& grid, const SimplifyParams& params, const SimplifyHooks& hooks)
-        : channels_(grid.feature.channels), wide_(padded(grid)), engine_(wide_, params, hooks) {}
+    PaddedSimplifier(const GridMesh& grid, const SimplifyParams& params, const SimplifyHooks& hooks)
+        : channels_(grid.feature.channels), wide_(padded(grid)), simplifier_(wide_, params, hooks) {}
     SimplifyResult to(const SimplifyTarget& target, const Progress& progress) override {
-        SimplifyResult level = engine_.to(target, progress);
+        SimplifyResult level = simplifier_.to(target, progress);
         level.mesh.channels = channels_;
         level.mesh.feature = with_channels(level.mesh.feature, Q::kChannels, channels_);
         return level;
@@ -70,28 +51,28 @@ class PaddedEngine : public SimplifyRun::Engine {
 
     int channels_;
     GridMesh wide_;
-    EngineOf<Q> engine_;
+    Simplifier<Q> simplifier_;
 };
 
 template <class Q>
-std::unique_ptr<SimplifyRun::Engine> engine_of(const GridMesh& grid, const SimplifyParams& params,
-                                               const SimplifyHooks& hooks) {
+std::unique_ptr<AnySimplifier> simplifier_of(const GridMesh& grid, const SimplifyParams& params,
+                                             const SimplifyHooks& hooks) {
     if constexpr (Q::kChannels != kAnyChannels)
         if (grid.feature.channels < Q::kChannels)
-            return std::make_unique<PaddedEngine<Q>>(grid, params, hooks);
-    return std::make_unique<EngineOf<Q>>(grid, params, hooks);
+            return std::make_unique<PaddedSimplifier<Q>>(grid, params, hooks);
+    return std::make_unique<Simplifier<Q>>(grid, params, hooks);
 }
 
-std::unique_ptr<SimplifyRun::Engine> make_engine(const GridMesh& grid, const SimplifyParams& params,
-                                                 const SimplifyHooks& hooks) {
+std::unique_ptr<AnySimplifier> make_simplifier(const GridMesh& grid, const SimplifyParams& params,
+                                               const SimplifyHooks& hooks) {
     const int channels = grid.feature.channels;
     if (channels < 1 || channels > kMaxFeatures)
         throw Error(ErrorKind::kBadArgument, cat(channels, " features, expected 1 to ", kMaxFeatures));
     if (params.metric == Metric::kFlattened && params.solver == Solver::kClosed)
         return with_padded_features(
-            channels, [&](auto padded) { return engine_of<Quadric<padded()>>(grid, params, hooks); });
-    return channels <= 3 ? engine_of<MatrixQuadric<3>>(grid, params, hooks)
-                         : engine_of<MatrixQuadric<kAnyChannels>>(grid, params, hooks);
+            channels, [&](auto padded) { return simplifier_of<Quadric<padded()>>(grid, params, hooks); });
+    return channels <= 3 ? simplifier_of<MatrixQuadric<3>>(grid, params, hooks)
+                         : simplifier_of<MatrixQuadric<kAnyChannels>>(grid, params, hooks);
 }
 
 const SimplifyHooks kNoHooks;
@@ -99,19 +80,19 @@ const SimplifyHooks kNoHooks;
 }  // namespace
 
 SimplifyRun::SimplifyRun(const GridMesh& grid, const SimplifyParams& params)
-    : engine_(make_engine(grid, params, kNoHooks)) {}
+    : simplifier_(make_simplifier(grid, params, kNoHooks)) {}
 SimplifyRun::~SimplifyRun() = default;
 SimplifyResult SimplifyRun::to(const SimplifyTarget& target, const Progress& progress) {
-    return engine_->to(target, progress);
+    return simplifier_->to(target, progress);
 }
 
 std::vector<SimplifyResult> simplify(const GridMesh& grid, const SimplifyParams& params,
                                      std::span<const SimplifyTarget> targets, const Progress& progress,
                                      const SimplifyHooks& hooks) {
-    const std::unique_ptr<SimplifyRun::Engine> engine = make_engine(grid, params, hooks);
+    const std::unique_ptr<AnySimplifier> simplifier = make_simplifier(grid, params, hooks);
     std::vector<SimplifyResult> levels;
     for (const SimplifyTarget& target : targets) {
-        levels.push_back(engine->to(target, progress));
+        levels.push_back(simplifier->to(target, progress));
         if (hooks.reached) hooks.reached(levels.size() - 1, levels.back());
     }
     return levels;

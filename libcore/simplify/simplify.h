@@ -83,6 +83,8 @@ std::vector<SimplifyResult> simplify(const GridMesh& grid, const SimplifyParams&
                                      std::span<const SimplifyTarget> targets, const Progress& progress = {},
                                      const SimplifyHooks& hooks = {});
 
+class AnySimplifier;  // kernel/simplifier.h
+
 /// The same, one target after the other: where it goes on may depend on what came of it so far.
 class SimplifyRun {
   public:
@@ -92,10 +94,8 @@ class SimplifyRun {
     /// On from where it stands, to a target at least as coarse as the last.
     SimplifyResult to(const SimplifyTarget& target, const Progress& progress = {});
 
-    struct Engine;  ///< the run for one kind of quadric
-
   private:
-    std::unique_ptr<Engine> engine_;
+    std::unique_ptr<AnySimplifier> simplifier_;
 };
 
 /// The mesh of a single level.

@@ -16,8 +16,8 @@
 #include "libcore/pipeline/params.h"
 #include "libcore/pipeline/refine_level.h"
 #include "libcore/recon/draw.h"
+#include "libcore/simplify/quadrics/vertex_quadrics.h"
 #include "libcore/simplify/simplify.h"
-#include "libcore/simplify/vertex_quadrics.h"
 
 namespace imgmesh::bench {
 namespace {

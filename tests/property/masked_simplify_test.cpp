@@ -8,7 +8,7 @@
 #include "libcore/base/parallel.h"
 #include "libcore/mesh/raster.h"
 #include "libcore/metrics/metrics.h"
-#include "libcore/simplify/mask_boundary.h"
+#include "libcore/simplify/kernel/mask_boundary.h"
 #include "libcore/simplify/simplify.h"
 #include "tests/support/mesh_cover.h"
 #include "tests/support/sample_masks.h"

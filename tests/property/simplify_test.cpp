@@ -6,8 +6,8 @@
 
 #include "libcore/base/parallel.h"
 #include "libcore/metrics/metrics.h"
+#include "libcore/simplify/quadrics/vertex_quadrics.h"
 #include "libcore/simplify/simplify.h"
-#include "libcore/simplify/vertex_quadrics.h"
 #include "tests/support/sample_pictures.h"
 #include "tests/support/sound_mesh.h"
 

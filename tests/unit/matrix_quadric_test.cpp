@@ -3,8 +3,8 @@
 #include <Eigen/Dense>
 #include <random>
 
-#include "libcore/simplify/matrix_quadric.h"
-#include "libcore/simplify/vertex_quadrics.h"
+#include "libcore/simplify/quadrics/matrix_quadric.h"
+#include "libcore/simplify/quadrics/vertex_quadrics.h"
 #include "tests/support/grid_faces.h"
 #include "tests/support/sample_pictures.h"
 

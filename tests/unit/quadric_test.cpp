@@ -5,8 +5,9 @@
 #include <Eigen/LU>
 #include <random>
 
-#include "libcore/simplify/star.h"
-#include "libcore/simplify/vertex_quadrics.h"
+#include "libcore/simplify/kernel/merge_increments.h"
+#include "libcore/simplify/kernel/shape_limits.h"
+#include "libcore/simplify/quadrics/vertex_quadrics.h"
 #include "tests/support/grid_faces.h"
 #include "tests/support/sample_pictures.h"
 
@@ -204,20 +205,20 @@ TEST_CASE("star increments: those of merged_minimum, to the bit, for any number 
         for (int trial = 0; trial < 50; ++trial) {
             const Id i = static_cast<Id>(random() % quadrics.size());
             const int count = static_cast<int>(random() % (kMaxValence + 1));
-            Id others[kStarRoom];
-            float expected[kStarRoom], increments[kStarRoom];
+            Id others[kNeighborRoom];
+            float expected[kNeighborRoom], increments[kNeighborRoom];
             for (int k = 0; k < count; ++k) {
                 others[k] = static_cast<Id>(random() % quadrics.size());
                 expected[k] = merged_minimum(quadrics[i], quadrics[others[k]]).increment;
             }
-            star_increments(quadrics.data(), i, others, count, increments);
+            merge_increments(quadrics.data(), i, others, count, increments);
             for (int k = 0; k < count; ++k) CHECK(increments[k] == expected[k]);
         }
     }
 }
 
 // Every rule for each triangle of a random star, written for one triangle at a time.
-TEST_CASE("star limits: no triangle of the star too thin, too large, too far from regular, or turned over") {
+TEST_CASE("shape limits: no triangle of the star too thin, too large, too far from regular, or turned over") {
     std::mt19937 random(8);
     const auto number = [&] { return static_cast<float>(random() % 1000) / 100; };
     int allowed = 0;
@@ -233,7 +234,7 @@ TEST_CASE("star limits: no triangle of the star too thin, too large, too far fro
             rings[v].y = 10 + radius * std::sin(angle);
         }
         const bool border = random() % 4 == 0;
-        const StarLimits limits = StarLimits::of(random() % 2 ? 30.0f : 1e9f, random() % 2 ? 0.4f : 0.0f);
+        const ShapeLimits limits = ShapeLimits::of(random() % 2 ? 30.0f : 1e9f, random() % 2 ? 0.4f : 0.0f);
         const float x = 8 + 0.4f * number(), y = 8 + 0.4f * number();
         bool expected = true;
         for (int k = 0; k < star.valence - border; ++k) {

@@ -1,5 +1,5 @@
 // The collapse by matrix quadrics, apart from simplify.cpp so that both compile side by side.
-#include "libcore/simplify/simplifier.h"
+#include "libcore/simplify/kernel/simplifier.h"
 
 namespace imgmesh {
 

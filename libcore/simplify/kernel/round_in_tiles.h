@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "libcore/base/parallel.h"
-#include "libcore/simplify/edge_collapser.h"
+#include "libcore/simplify/kernel/edge_collapser.h"
 
 namespace imgmesh {
 
@@ -38,8 +38,8 @@ struct RoundTiles {
 /// leaves edges that touch a neighbour of another tile, and with a boundary those that touch the border. Same
 /// result for any number of threads.
 template <class Q>
-CollapseStats tile_round(QuadricMesh<Q>& mesh, const SimplifyRules& rules, const RoundTiles& tiles,
-                         float threshold, double share_that_goes) {
+CollapseStats round_in_tiles(QuadricMesh<Q>& mesh, const SimplifyRules& rules, const RoundTiles& tiles,
+                             float threshold, double share_that_goes) {
     RingMesh& rings = mesh.rings;
     const auto count = static_cast<int>(rings.size());
     constexpr int kGrain = 1 << 14;
@@ -66,13 +66,13 @@ CollapseStats tile_round(QuadricMesh<Q>& mesh, const SimplifyRules& rules, const
     });
     std::vector<CollapseStats> stats(static_cast<std::size_t>(tiles.count()));
     parallel_blocks(0, tiles.count(), 1, [&](int begin, int end) {
-        EdgeCollapser<Q> engine(mesh, rules);
+        EdgeCollapser<Q> collapser(mesh, rules);
         for (auto t = static_cast<std::size_t>(begin); t < static_cast<std::size_t>(end); ++t) {
             const Id* vertices = listed.data() + first[t];
             const std::size_t members = first[t + 1] - first[t];
             const auto may_go = static_cast<std::int64_t>(share_that_goes * double(members));
-            stats[t] = engine.run(members, [&](std::size_t n) { return vertices[n]; }, threshold,
-                                  {.vertices = may_go, .faces = 2 * may_go});
+            stats[t] = collapser.run(members, [&](std::size_t n) { return vertices[n]; }, threshold,
+                                     {.vertices = may_go, .faces = 2 * may_go});
         }
     });
     CollapseStats sum;

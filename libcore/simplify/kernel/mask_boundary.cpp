@@ -1,6 +1,6 @@
 // Source: progressive hulls (Sander, Gu, Gortler, Hoppe and Snyder, "Silhouette clipping", 2000), in the
 // plane and by exact tests. Boundarys run with the inside on their left.
-#include "libcore/simplify/mask_boundary.h"
+#include "libcore/simplify/kernel/mask_boundary.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-// The engine of simplify: which edges of a mesh may merge, where to, and the queue that says which is
+// The inner loop of simplify: which edges of a mesh may merge, where to, and the queue that says which is
 // next. It works on a whole mesh, or on one tile of it beside others that work on theirs.
 #pragma once
 
@@ -12,13 +12,13 @@
 
 #include "libcore/image/channel_count.h"
 #include "libcore/mesh/ring_mesh.h"
-#include "libcore/simplify/border_rules.h"
-#include "libcore/simplify/bucket_queue.h"
-#include "libcore/simplify/mask_boundary.h"
-#include "libcore/simplify/quadric_sources.h"
+#include "libcore/simplify/kernel/border_rules.h"
+#include "libcore/simplify/kernel/bucket_queue.h"
+#include "libcore/simplify/kernel/mask_boundary.h"
+#include "libcore/simplify/kernel/merge_increments.h"
+#include "libcore/simplify/kernel/shape_limits.h"
+#include "libcore/simplify/quadrics/quadric_sources.h"
 #include "libcore/simplify/simplify.h"
-#include "libcore/simplify/star.h"
-#include "libcore/simplify/star_limits.h"
 
 namespace imgmesh {
 
@@ -54,7 +54,7 @@ struct SimplifyRules {
     const SimplifyParams& params;
     const SimplifyHooks& hooks;
     int channels;  ///< of the quadrics
-    StarLimits limits;
+    ShapeLimits limits;
     MaskBoundary* boundary = nullptr;  ///< of a masked image
     double max_error = std::numeric_limits<double>::infinity();
 };
@@ -63,8 +63,8 @@ struct SimplifyRules {
 /// features(x, y, out), error, the minimiser (px, py) and best_x(y), best_y(x) on a
 /// line where has_minimum(fixed); initial_quadrics and rebuilt_quadrics make vectors of it.
 ///
-/// Edges with a locked end (Ring::locked) are left alone. So several engines may work on one mesh at the
-/// same time where each has its own vertices, and those with a neighbour of another engine are locked.
+/// Edges with a locked end (Ring::locked) are left alone. So several collapsers may work on one mesh at the
+/// same time where each has its own vertices, and those with a neighbour of another collapser are locked.
 template <class Q>
 class EdgeCollapser {
   public:
@@ -73,16 +73,16 @@ class EdgeCollapser {
 
     /// Collapses the edges of the vertices [0, count) that vertex(n) gives, the cheapest first, until none is
     /// left below `threshold` or as many vertices or faces are removed as may go. Each edge counts for its
-    /// end of the lower number, or with `whole_stars` for either.
+    /// end of the lower number, or with `from_either_end` for either.
     template <class Vertex>
     CollapseStats run(std::size_t count, const Vertex& vertex, float threshold, const CollapseStats& may_go,
-                      bool whole_stars = false) {
+                      bool from_either_end = false) {
         threshold_ = threshold;
         may_go_ = may_go;
         stats_ = {};
         for (std::size_t n = 0; n < count; ++n)
             if (const Id i = vertex(n); rings_[i].live() && !rings_[i].locked)
-                file_star(i, whole_stars ? 0 : i);
+                file_edges_of(i, from_either_end ? 0 : i);
         drain();
         queue_.clear();
         return stats_;
@@ -252,7 +252,7 @@ class EdgeCollapser {
         quadrics_[i] = sum;
         ++stats_.vertices;
         stats_.faces += ring.faces_removed;
-        file_star(i, 0);
+        file_edges_of(i, 0);
     }
 
     // What the follower says to a collapse.
@@ -264,16 +264,16 @@ class EdgeCollapser {
     }
 
     // Files the edges of vertex i that cost less than the threshold, but for those to vertices below `from`.
-    void file_star(Id i, Id from) {
+    void file_edges_of(Id i, Id from) {
         const Ring& ring = rings_[i];
-        Id others[kStarRoom];
-        float costs[kStarRoom];
+        Id others[kNeighborRoom];
+        float costs[kNeighborRoom];
         int count = 0;
         for (int k = 0; k < ring.valence; ++k) {
             const Id j = others[count] = ring.neighbor[k];
             count += j >= from && !rings_[j].locked;
         }
-        if constexpr (kBatched) star_increments(quadrics_.data(), i, others, count, costs);
+        if constexpr (kBatched) merge_increments(quadrics_.data(), i, others, count, costs);
         for (int k = 0; k < count; ++k) {
             const Id j = others[k];
             const bool batched = kBatched && !ring.border() && !rings_[j].border();

@@ -9,14 +9,14 @@
 
 #include "libcore/base/parallel.h"
 #include "libcore/base/parallel_vector.h"
-#include "libcore/simplify/tile_mesh.h"
+#include "libcore/simplify/kernel/start_tile.h"
 
 namespace imgmesh {
 
 // Of a threshold from one round of tiles to the next.
 inline constexpr float kTileWindow = 2.0f;
 
-// Tiles that one engine works off, one after the other.
+// Tiles that one collapser works off, one after the other.
 inline constexpr int kStartTilesPerBlock = 4;
 // Tiles whose survivors are kept one by one before they are put together.
 inline constexpr int kStartTilesAtATime = 512;
@@ -36,7 +36,7 @@ template <class Q, class Progress>
 CollapseStats start_in_tiles(const GridMesh& grid, const SimplifyRules& rules, float threshold, double share,
                              double share_that_goes, QuadricMesh<Q>& left, const Progress& progress);
 
-namespace tile_start {
+namespace start_tiles {
 
 // Among the neighbours in what survivors() returns: a neighbour in another tile, by its pixel.
 inline constexpr Id kElsewhere = 1u << 31;
@@ -44,14 +44,14 @@ inline constexpr Id kElsewhere = 1u << 31;
 // Collapses the tile's edges below `threshold`, rebuilding quadrics at every halving of its vertices where
 // that is asked for. What their neighbours in other tiles look like is known then: they too are locked.
 template <class Q>
-CollapseStats collapse_tile(EdgeCollapser<Q>& engine, const SimplifyParams& params, TileMesh<Q>& tile,
+CollapseStats collapse_tile(EdgeCollapser<Q>& collapser, const SimplifyParams& params, TileMesh<Q>& tile,
                             float threshold, std::int64_t may_go) {
     CollapseStats sum;
     for (;;) {
         std::int64_t part_may = may_go - sum.vertices;
         if (params.rebuild_quadrics) part_may = std::min(part_may, tile.live - tile.halved);
-        const CollapseStats part = engine.run(tile.own, [](std::size_t v) { return static_cast<Id>(v); },
-                                              threshold, {.vertices = part_may, .faces = kAllMayGo.faces});
+        const CollapseStats part = collapser.run(tile.own, [](std::size_t v) { return static_cast<Id>(v); },
+                                                 threshold, {.vertices = part_may, .faces = kAllMayGo.faces});
         // What is put off while quadrics are old may be cheaper now.
         sum.postponed = kNever;
         sum.add(part);
@@ -121,20 +121,20 @@ inline std::vector<int> some_tiles(const StartTiles& tiles) {
 template <class Q>
 float median_cost(QuadricMesh<Q>& mesh, const SimplifyRules& rules) {
     std::vector<float> costs;
-    EdgeCollapser<Q> engine(mesh, rules);
+    EdgeCollapser<Q> collapser(mesh, rules);
     for (Id v = 0; v < mesh.rings.size(); ++v)
         if (const Ring& ring = mesh.rings[v]; ring.live() && !ring.locked)
-            if (const float cost = engine.cost(v, ring.neighbor[0]); cost < kNever) costs.push_back(cost);
+            if (const float cost = collapser.cost(v, ring.neighbor[0]); cost < kNever) costs.push_back(cost);
     if (costs.empty()) return 0;
     std::nth_element(costs.begin(), costs.begin() + costs.size() / 2, costs.end());
     return costs[costs.size() / 2];
 }
 
-}  // namespace tile_start
+}  // namespace start_tiles
 
 template <class Q>
 float start_threshold(const GridMesh& grid, const SimplifyRules& rules, double share) {
-    using namespace tile_start;
+    using namespace start_tiles;
     const StartTiles tiles(grid);
     const std::vector<int> some = some_tiles(tiles);
     std::vector<TileMesh<Q>> meshes(some.size());
@@ -154,8 +154,8 @@ float start_threshold(const GridMesh& grid, const SimplifyRules& rules, double s
     for (float next = threshold;; next *= kTileWindow) {
         std::vector<CollapseStats> stats(some.size());
         each([&](std::size_t n) {
-            EdgeCollapser<Q> engine(meshes[n].mesh, rules);
-            stats[n] = collapse_tile(engine, rules.params, meshes[n], next, kAllMayGo.vertices);
+            EdgeCollapser<Q> collapser(meshes[n].mesh, rules);
+            stats[n] = collapse_tile(collapser, rules.params, meshes[n], next, kAllMayGo.vertices);
         });
         CollapseStats sum;
         for (const CollapseStats& part : stats) sum.add(part);
@@ -170,7 +170,7 @@ float start_threshold(const GridMesh& grid, const SimplifyRules& rules, double s
 template <class Q, class Progress>
 CollapseStats start_in_tiles(const GridMesh& grid, const SimplifyRules& rules, float threshold, double share,
                              double share_that_goes, QuadricMesh<Q>& left, const Progress& progress) {
-    using namespace tile_start;
+    using namespace start_tiles;
     const StartTiles tiles(grid);
     // Room that is not touched costs nothing.
     const auto expected = static_cast<std::size_t>(1.3 * share * static_cast<double>(grid.vertex_count()));
@@ -189,13 +189,13 @@ CollapseStats start_in_tiles(const GridMesh& grid, const SimplifyRules& rules, f
         std::vector<CollapseStats> stats(parts.size());
         parallel_blocks(begin, end, kStartTilesPerBlock, [&](int from, int to) {
             TileMesh<Q> tile;
-            EdgeCollapser<Q> engine(tile.mesh, rules);
+            EdgeCollapser<Q> collapser(tile.mesh, rules);
             for (int t = from; t < to; ++t) {
                 const auto n = static_cast<std::size_t>(t - begin);
                 fill_tile(grid, rules.params, tiles.rect(t), tile);
                 const auto may_go = static_cast<std::int64_t>(share_that_goes *
                                                               static_cast<double>(tile.live - tile.boundary));
-                stats[n] = collapse_tile(engine, rules.params, tile, threshold, may_go);
+                stats[n] = collapse_tile(collapser, rules.params, tile, threshold, may_go);
                 parts[n] = survivors(tile, number);
                 removed += stats[n].vertices;
             }

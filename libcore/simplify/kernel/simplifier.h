@@ -6,9 +6,9 @@
 #include <optional>
 #include <vector>
 
-#include "libcore/simplify/edge_collapser.h"
-#include "libcore/simplify/tile_round.h"
-#include "libcore/simplify/tile_start.h"
+#include "libcore/simplify/kernel/edge_collapser.h"
+#include "libcore/simplify/kernel/round_in_tiles.h"
+#include "libcore/simplify/kernel/start_in_tiles.h"
 
 namespace imgmesh {
 
@@ -25,18 +25,33 @@ inline constexpr double kVerticesPerTile = 4096;
 // Fewer vertices than these are not worth a round of tiles.
 inline constexpr std::int64_t kLeastTiled = 16384;
 
+/// The engine of simplify(), whatever the kind of its quadrics.
+class AnySimplifier {
+  public:
+    virtual ~AnySimplifier() = default;
+    /// Goes on from where it stands to a target at least as coarse as the last.
+    virtual SimplifyResult to(const SimplifyTarget& target, const Progress& progress) = 0;
+};
+
+/// The engine for quadrics Q. All references must outlive it.
 template <class Q>
-class Simplifier {
+class Simplifier : public AnySimplifier {
   public:
     Simplifier(const GridMesh& grid, const SimplifyParams& params, const SimplifyHooks& hooks)
         : grid_(grid),
           params_(params),
           rules_{params_, hooks, grid.feature.channels,
-                 StarLimits::of(params.max_face_area, params.min_shape)} {
+                 ShapeLimits::of(params.max_face_area, params.min_shape)} {
         // Who follows the collapse is told of one step at a time, in the grid's numbers.
         if (hooks.before) params_.tiles = false;
     }
 
+    SimplifyResult to(const SimplifyTarget& target, const Progress& progress) override {
+        run(target, progress);
+        return snapshot();
+    }
+
+  private:
     void run(const SimplifyTarget& target, const Progress& progress) {
         if (mesh_.rings.empty()) start(target, progress);
         set_target(target);
@@ -81,7 +96,6 @@ class Simplifier {
         return result;
     }
 
-  private:
     bool done() const { return vertices_ <= target_.vertices || faces_ <= target_.faces; }
     double fraction_done(std::int64_t removed = 0) const {
         const auto begin = static_cast<double>(dense_vertices_),
@@ -158,24 +172,24 @@ class Simplifier {
     CollapseStats round_of_tiles() {
         const RoundTiles tiles(grid_.feature.width, grid_.feature.height, vertices_, kVerticesPerTile,
                                ++rounds_);
-        CollapseStats sum = tile_round(mesh_, rules_, tiles, threshold_, share_that_goes());
+        CollapseStats sum = round_in_tiles(mesh_, rules_, tiles, threshold_, share_that_goes());
         if (!rules_.boundary) return sum;
         // The boundary knows all of itself, so one thread at a time may change it.
         CollapseStats may_go = left_to_go();
         may_go.vertices -= sum.vertices;
         may_go.faces -= sum.faces;
-        EdgeCollapser<Q> engine(mesh_, rules_);
+        EdgeCollapser<Q> collapser(mesh_, rules_);
         std::vector<Id> border;
         for (Id v = 0; v < mesh_.rings.size(); ++v)
             if (mesh_.rings[v].live() && mesh_.rings[v].border()) border.push_back(v);
-        sum.add(engine.run(
+        sum.add(collapser.run(
             border.size(), [&](std::size_t n) { return border[n]; }, threshold_, may_go, true));
         return sum;
     }
 
     CollapseStats whole() {
-        EdgeCollapser<Q> engine(mesh_, rules_);
-        return engine.run(
+        EdgeCollapser<Q> collapser(mesh_, rules_);
+        return collapser.run(
             mesh_.rings.size(), [](std::size_t v) { return static_cast<Id>(v); }, threshold_, left_to_go());
     }
 
@@ -196,12 +210,12 @@ class Simplifier {
     // The costs of edges of some vertices all over the image; of those that may collapse, in ascending
     // order.
     std::vector<float> sampled_costs() const {
-        EdgeCollapser<Q> engine(const_cast<QuadricMesh<Q>&>(mesh_), rules_);
+        EdgeCollapser<Q> collapser(const_cast<QuadricMesh<Q>&>(mesh_), rules_);
         const std::size_t step = std::max<std::size_t>(1, mesh_.rings.size() / kSampled);
         std::vector<float> costs;
         for (std::size_t v = 0; v < mesh_.rings.size(); v += step) {
             if (!mesh_.rings[v].live()) continue;
-            const float cost = engine.cost(static_cast<Id>(v), mesh_.rings[v].neighbor[0]);
+            const float cost = collapser.cost(static_cast<Id>(v), mesh_.rings[v].neighbor[0]);
             if (cost < kNever) costs.push_back(cost);
         }
         std::sort(costs.begin(), costs.end());

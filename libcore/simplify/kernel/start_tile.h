@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "libcore/mesh/masked_rings.h"
-#include "libcore/simplify/edge_collapser.h"
+#include "libcore/simplify/kernel/edge_collapser.h"
 
 namespace imgmesh {
 
@@ -44,7 +44,7 @@ struct TileMesh {
     std::int64_t halved = 0;    ///< vertices at which quadrics are to be rebuilt next
 };
 
-namespace tile_mesh {
+namespace start_tile {
 
 inline bool contains(const PixelRect& rect, int x, int y) {
     return x >= rect.left && x < rect.right && y >= rect.top && y < rect.bottom;
@@ -154,17 +154,17 @@ inline bool whole(const GridMesh& grid, const PixelRect& rect) {
     return true;
 }
 
-}  // namespace tile_mesh
+}  // namespace start_tile
 
 /// Makes `tile` the part of the dense mesh that has the vertices of the pixels in `rect`.
 template <class Q>
 void fill_tile(const GridMesh& grid, const SimplifyParams& params, const PixelRect& rect, TileMesh<Q>& tile) {
     const FeaturePatch gradients = smoothed_patch(grid, params.smoothing, rect);
     const float lambda = params.geometry_weight;
-    if (tile_mesh::whole(grid, rect))
-        tile_mesh::fill_whole(grid, gradients, lambda, rect, tile.mesh);
+    if (start_tile::whole(grid, rect))
+        start_tile::fill_whole(grid, gradients, lambda, rect, tile.mesh);
     else
-        tile_mesh::fill_masked(grid, gradients, lambda, rect, tile.mesh);
+        start_tile::fill_masked(grid, gradients, lambda, rect, tile.mesh);
     const auto live = [](const Ring& ring) { return ring.live(); };
     const auto end = std::find_if_not(tile.mesh.rings.begin(), tile.mesh.rings.end(), live);
     tile.own = static_cast<std::size_t>(end - tile.mesh.rings.begin());

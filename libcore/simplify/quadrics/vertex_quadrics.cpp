@@ -1,4 +1,4 @@
-#include "libcore/simplify/vertex_quadrics.h"
+#include "libcore/simplify/quadrics/vertex_quadrics.h"
 
 #include <algorithm>
 #include <cstring>

@@ -1,7 +1,7 @@
 #include <doctest/doctest.h>
 
-#include "libcore/simplify/quadric_sources.h"
-#include "libcore/simplify/tile_mesh.h"
+#include "libcore/simplify/kernel/start_tile.h"
+#include "libcore/simplify/quadrics/quadric_sources.h"
 #include "tests/support/sample_masks.h"
 #include "tests/support/sample_pictures.h"
 

@@ -7,7 +7,7 @@
 
 #include "libcore/base/parallel.h"
 #include "libcore/image/channel_count.h"
-#include "libcore/simplify/matrix_quadric.h"
+#include "libcore/simplify/quadrics/matrix_quadric.h"
 
 namespace imgmesh {
 namespace {

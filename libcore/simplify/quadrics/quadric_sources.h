@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "libcore/simplify/matrix_quadric.h"
-#include "libcore/simplify/vertex_quadrics.h"
+#include "libcore/simplify/quadrics/matrix_quadric.h"
+#include "libcore/simplify/quadrics/vertex_quadrics.h"
 
 namespace imgmesh {
 

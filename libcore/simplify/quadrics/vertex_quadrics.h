@@ -5,7 +5,7 @@
 
 #include "libcore/mesh/grid_mesh.h"
 #include "libcore/mesh/ring_mesh.h"
-#include "libcore/simplify/quadric.h"
+#include "libcore/simplify/quadrics/quadric.h"
 
 namespace imgmesh {
 

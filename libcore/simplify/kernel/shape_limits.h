@@ -12,12 +12,12 @@ namespace imgmesh {
 // from 3.6 to 12 degrees; with none, slivers appear.
 constexpr float kFatness = 0.05f;
 
-struct StarLimits {
+struct ShapeLimits {
     float max_area2 = std::numeric_limits<float>::infinity();  ///< twice the largest area [px^2]
     float min_area2_per_sum = 0;                               ///< least twice-area per sum of squared edges
 
     /// max_area [px^2]; min_shape: q = 4 sqrt(3) area / sum of squared edges.
-    static StarLimits of(float max_area, float min_shape) {
+    static ShapeLimits of(float max_area, float min_shape) {
         return {2 * max_area, min_shape / (2 * std::sqrt(3.0f))};
     }
 

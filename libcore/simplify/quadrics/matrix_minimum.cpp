@@ -1,4 +1,4 @@
-#include "libcore/simplify/matrix_minimum.h"
+#include "libcore/simplify/quadrics/matrix_minimum.h"
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>

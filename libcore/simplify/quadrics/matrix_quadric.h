@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "libcore/mesh/ring_mesh.h"
-#include "libcore/simplify/matrix_minimum.h"
+#include "libcore/simplify/quadrics/matrix_minimum.h"
 #include "libcore/simplify/simplify.h"
 
 namespace imgmesh {
