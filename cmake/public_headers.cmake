@@ -3,6 +3,8 @@
 # library (tests/check_includes.py).
 set(IMGMESH_PUBLIC_HEADERS
   libcore/base/error.h
+  libcore/base/grid.h
+  libcore/base/index.h
   libcore/base/parallel.h
   libcore/base/progress.h
   libcore/base/types.h

@@ -150,7 +150,7 @@ Texture chosen_texture(const Options& o, const MeshImage& m, Texture kept) {
     Mask mask;
     if (source.has_mask) {
         mask = {source.width, source.height, {}};
-        for (const PixelCoord& c : m.levels[0].map.coords) mask.inside.push_back(c.face != kNone);
+        for (const PixelCoord& c : m.levels[0].map) mask.values.push_back(c.face != kNone);
     }
     try {
         return {encode_texture(image, mask, o.texture.type), texture_coords(m)};
@@ -165,8 +165,8 @@ Image id_image(const Level& level, bool has_mask) {
         throw Error(ErrorKind::kUnsupported,
                     cat("24 bits hold no ids of ", level.mesh.faces.size(), " faces"));
     Image image = make_image(level.map.width, level.map.height, has_mask ? 4 : 3);
-    for (std::size_t i = 0; i < level.map.coords.size(); ++i) {
-        const Id face = level.map.coords[i].face;
+    for (std::size_t i = 0; i < level.map.size(); ++i) {
+        const Id face = level.map[i].face;
         float* pixel = image.data.data() + i * static_cast<std::size_t>(image.channels);
         for (int c = 0; c < 3; ++c)
             pixel[c] = face == kNone ? 0 : static_cast<float>(face >> 8 * c & 255) / 255.0f;

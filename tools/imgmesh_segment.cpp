@@ -153,7 +153,7 @@ Report run(const Options& o, Context& context) {
     const std::vector<RegionFacts> facts = region_facts(labels, picture);
 
     context.progress(0.8, "write");
-    write_labels(o.output, labels.width, labels.height, labels.labels, context.overwrite);
+    write_labels(o.output, labels.width, labels.height, labels.values, context.overwrite);
     if (!o.outlines.empty())
         write_image(o.outlines, draw_outlines(labels, picture, mesh_image.source), {context.overwrite, {}});
     if (!o.flat.empty())

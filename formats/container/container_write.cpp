@@ -28,8 +28,8 @@ void check_writable(const MeshImage& image, const Texture& texture) {
                 (image.visits.empty() || image.visits.size() == pixels);
     for (const Level& level : image.levels) {
         fits = fits && level.map.width == source.width && level.map.height == source.height &&
-               level.map.coords.size() == pixels;
-        for (const PixelCoord& c : level.map.coords)
+               level.map.size() == pixels;
+        for (const PixelCoord& c : level.map)
             fits = fits && (c.face == kNone ? source.has_mask : c.face < level.mesh.faces.size());
     }
     if (!texture.picture.empty()) {

@@ -58,9 +58,9 @@ Imf::Slice slice(Imf::PixelType type, const void* first, std::size_t stride, int
 void read_tiles(Imf::InputPart& in, LayerPart& part) {
     const int width = part.map.width;
     Imf::FrameBuffer frame;
-    frame.insert(kFace, slice(Imf::UINT, &part.map.coords[0].face, sizeof(PixelCoord), width));
-    frame.insert(kU, slice(Imf::FLOAT, &part.map.coords[0].u, sizeof(PixelCoord), width));
-    frame.insert(kV, slice(Imf::FLOAT, &part.map.coords[0].v, sizeof(PixelCoord), width));
+    frame.insert(kFace, slice(Imf::UINT, &part.map[0].face, sizeof(PixelCoord), width));
+    frame.insert(kU, slice(Imf::FLOAT, &part.map[0].u, sizeof(PixelCoord), width));
+    frame.insert(kV, slice(Imf::FLOAT, &part.map[0].v, sizeof(PixelCoord), width));
     if (!part.visits.empty()) frame.insert(kVisits, slice(Imf::UINT, part.visits.data(), sizeof(Id), width));
     in.setFrameBuffer(frame);
     in.readPixels(0, part.map.height - 1);
@@ -141,7 +141,7 @@ LayerPart read_part(Imf::MultiPartInputFile& file, int index, const ExpectedLaye
         static_cast<std::size_t>(expected.width) * static_cast<std::size_t>(expected.height);
     LayerPart part{
         expected.parts[which], {expected.width, expected.height, {}, WeightPrecision::kFloat}, {}, {}};
-    part.map.coords.resize(pixels);
+    part.map.values.resize(pixels);
     if (header.channels().findChannel(kVisits)) part.visits.resize(pixels);
     if (const auto* topology = header.findTypedAttribute<Imf::StringAttribute>(kTopologyName))
         part.topology = topology->value();

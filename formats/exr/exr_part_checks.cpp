@@ -127,8 +127,8 @@ void finish_part(LayerPart& part, bool stored_as_half, std::uint64_t faces, bool
     };
     Repeated weights(findings, "layers.weights"), mask(findings, "layers.mask"),
         range(findings, "layers.face_range"), grid(findings, "layers.grid");
-    for (std::size_t i = 0; i < part.map.coords.size() && !first.sound; ++i) {
-        PixelCoord& c = part.map.coords[i];
+    for (std::size_t i = 0; i < part.map.size() && !first.sound; ++i) {
+        PixelCoord& c = part.map[i];
         if (!in_simplex(c))
             weights.hit([&] {
                 return std::pair(cat("weights u = ", c.u, ", v = ", c.v, " at ", where(i),

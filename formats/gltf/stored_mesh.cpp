@@ -223,7 +223,7 @@ FaceMatch match_faces(const StoredMesh& from, const StoredMesh& to) {
 }
 
 void remap_pixels(const FaceMatch& match, PixelMap& map) {
-    for (PixelCoord& coord : map.coords) {
+    for (PixelCoord& coord : map) {
         if (coord.face == kNone) continue;
         const std::array<float, 3> weight = {1 - coord.u - coord.v, coord.u, coord.v};
         // The weight of corner c moves to corner (c + shift) % 3.

@@ -202,7 +202,7 @@ Gamut gamut_of(const Image& image, const Mask& mask) {
     const ColorChannels channels(image);
     const bool floats = image.sample_type == SampleType::kHalf || image.sample_type == SampleType::kFloat;
     for (std::size_t i = 0; floats && channels.any() && i < image.pixel_count(); ++i) {
-        const Vec3f encoded = channels.at(image.data.data() + i * static_cast<std::size_t>(image.channels));
+        const Vec3f encoded = channels.at(image.pixel(i));
         if (mask.contains(i) && linear_from_encoded(image.color_space, encoded).maxCoeff() > 1)
             return Gamut::kHdr;
     }
@@ -219,7 +219,7 @@ FeatureImage luv_image(const Image& image, Range range) {
     parallel_blocks(0, image.height, 16, [&](int first, int last) {
         for (int y = first; y < last; ++y) {
             const float* in = image.row(y).data();
-            float* dst = out.pixel(static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width));
+            float* dst = out.row(y).data();
             for (int x = 0; x < image.width; ++x, in += image.channels, dst += 3) {
                 const Vec3f encoded = channels.at(in);
                 Vec3f linear = tabulated ? Vec3f(decode(encoded[0]), decode(encoded[1]), decode(encoded[2]))

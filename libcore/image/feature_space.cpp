@@ -89,22 +89,19 @@ FeatureImage extract_features(const Image& image, const FeatureSpace& space, con
     if (space.color) color = luv_image(image, space.gamut == Gamut::kHdr ? Range::kHdr : Range::kClipped);
     if (space.auxiliary.empty() && space.color_weight == 1) return color;
     FeatureImage out{image.width, image.height, space.features(), {}};
-    out.data.reserve(image.pixel_count() * static_cast<std::size_t>(out.channels));
+    out.data.reserve(out.sample_count());
     std::vector<int> from;
     for (const std::string& name : space.auxiliary) from.push_back(image.channel(name));
     for (std::size_t i = 0; i < image.pixel_count(); ++i) {
         for (int c = 0; c < color.channels; ++c) out.data.push_back(space.color_weight * color.pixel(i)[c]);
         for (std::size_t c = 0; c < from.size(); ++c) {
-            const float value =
-                image.data[i * static_cast<std::size_t>(image.channels) + static_cast<std::size_t>(from[c])];
+            const float value = image.pixel(i)[from[c]];
             const float feature = mask.contains(i) ? value * space.auxiliary_weight[c] : 0;
-            if (!(std::abs(feature) <= kLargestFeature)) {
-                const auto width = static_cast<std::size_t>(image.width);
+            if (!(std::abs(feature) <= kLargestFeature))
                 throw Error(ErrorKind::kUnsupported,
-                            cat("channel ", space.auxiliary[c], " is ", value, " at pixel (", i % width, ", ",
-                                i / width, "); times its weight ", space.auxiliary_weight[c], " at most ",
-                                kLargestFeature, " is supported"));
-            }
+                            cat("channel ", space.auxiliary[c], " is ", value, " at pixel (", image.x_of(i),
+                                ", ", image.y_of(i), "); times its weight ", space.auxiliary_weight[c],
+                                " at most ", kLargestFeature, " is supported"));
             out.data.push_back(feature);
         }
     }

@@ -21,10 +21,10 @@ struct FeatureSpace {
     std::vector<std::string> auxiliary;   ///< names of the channels after the colour
     std::vector<float> auxiliary_weight;  ///< of each auxiliary channel; > 0
 
-    int features() const { return (color ? 3 : 0) + static_cast<int>(auxiliary.size()); }
+    int features() const { return (color ? 3 : 0) + as_int(auxiliary.size()); }
     float weight(int feature) const {
         if (color && feature < 3) return color_weight;
-        return auxiliary_weight[static_cast<std::size_t>(feature - (color ? 3 : 0))];
+        return auxiliary_weight[as_index(feature - (color ? 3 : 0))];
     }
 };
 
@@ -32,7 +32,7 @@ struct FeatureSpace {
 /// order.
 struct SplitNames {
     std::vector<std::string> color, auxiliary;
-    int features() const { return (color.empty() ? 0 : 3) + static_cast<int>(auxiliary.size()); }
+    int features() const { return (color.empty() ? 0 : 3) + as_int(auxiliary.size()); }
 };
 SplitNames split_names(const std::vector<std::string>& names);
 

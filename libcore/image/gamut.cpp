@@ -6,6 +6,11 @@
 #include "libcore/image/color.h"
 
 namespace imgmesh {
+namespace {
+
+constexpr float kLargestCode = 65535;  // of 16 bits
+
+}  // namespace
 
 Vec3f in_gamut(const Vec3f& luv, Gamut gamut) {
     constexpr float kInfinity = std::numeric_limits<float>::infinity();
@@ -40,15 +45,14 @@ Vec3f in_gamut(const Vec3f& luv, Gamut gamut) {
 
 std::array<std::uint16_t, 3> color_codes(const Vec3f& luv) {
     const Vec3f linear = linear_from_luv(in_gamut(luv));
-    std::array<std::uint16_t, 3> codes;
-    for (int c = 0; c < 3; ++c)
-        codes[static_cast<std::size_t>(c)] =
-            static_cast<std::uint16_t>(std::lround(std::clamp(linear[c], 0.0f, 1.0f) * 65535.0f));
-    return codes;
+    const auto code = [&](int c) {
+        return static_cast<std::uint16_t>(std::lround(std::clamp(linear[c], 0.0f, 1.0f) * kLargestCode));
+    };
+    return {code(0), code(1), code(2)};
 }
 
 Vec3f color_from_codes(const std::array<std::uint16_t, 3>& codes) {
-    return luv_from_linear(Vec3f(codes[0], codes[1], codes[2]) / 65535.0f);
+    return luv_from_linear(Vec3f(codes[0], codes[1], codes[2]) / kLargestCode);
 }
 
 Vec3f quantized_hdr(const Vec3f& luv) {

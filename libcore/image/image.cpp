@@ -1,13 +1,13 @@
 #include "libcore/image/image.h"
-#include "libcore/base/parallel_vector.h"
 
 #include "libcore/base/error.h"
+#include "libcore/base/parallel_vector.h"
 
 namespace imgmesh {
 
 int Image::channel(const std::string& name) const {
     for (std::size_t c = 0; c < channel_names.size(); ++c)
-        if (channel_names[c] == name) return static_cast<int>(c);
+        if (channel_names[c] == name) return as_int(c);
     return -1;
 }
 
@@ -16,7 +16,7 @@ Image make_image(int width, int height, int channels) {
     image.width = width;
     image.height = height;
     image.channels = channels;
-    image.data = parallel_vector<float>(image.pixel_count() * static_cast<std::size_t>(channels));
+    image.data = parallel_vector<float>(image.sample_count());
     switch (channels) {
         case 1:
             image.channel_names = {"Y"};

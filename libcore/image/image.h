@@ -2,13 +2,10 @@
 // grows to the right and y grows *down*; an image of W x H pixels spans [0, W-1] x [0, H-1].
 #pragma once
 
-#include <cstdint>
-#include <span>
 #include <string>
-#include <utility>
 #include <vector>
 
-#include "libcore/base/types.h"
+#include "libcore/base/grid.h"
 
 namespace imgmesh {
 
@@ -33,36 +30,14 @@ enum class ColorSpace {
     kDisplayP3  ///< "DisplayP3": P3 primaries, D65, sRGB curve
 };
 
-/// An image: `channels` interleaved floats a pixel, rows from top to bottom. Integer samples are scaled to
-/// [0, 1]; values are as encoded in `color_space`, not linearised. Alpha is not premultiplied.
-struct Image {
-    int width = 0;
-    int height = 0;
-    int channels = 0;
-    std::vector<float> data;  ///< size width * height * channels
+/// An image: `channels` interleaved floats a pixel. Integer samples are scaled to [0, 1]; values are as
+/// encoded in `color_space`, not linearised. Alpha is not premultiplied.
+struct Image : ChannelGrid {
     std::vector<std::string>
         channel_names;  ///< size channels: "R","G","B" / "Y" / with "A"; or a file's own names
     SampleType sample_type = SampleType::kUint8;
     ColorSpace color_space = ColorSpace::kSrgb;
 
-    std::size_t pixel_count() const {
-        return static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
-    }
-    std::size_t row_size() const {
-        return static_cast<std::size_t>(width) * static_cast<std::size_t>(channels);
-    }
-    std::span<float> row(int y) {
-        return {data.data() + static_cast<std::size_t>(y) * row_size(), row_size()};
-    }
-    std::span<const float> row(int y) const {
-        return {data.data() + static_cast<std::size_t>(y) * row_size(), row_size()};
-    }
-    /// First of the `channels` samples of pixel (x, y).
-    const float* pixel(int x, int y) const {
-        return data.data() + static_cast<std::size_t>(y) * row_size() +
-               static_cast<std::size_t>(x * channels);
-    }
-    float* pixel(int x, int y) { return const_cast<float*>(std::as_const(*this).pixel(x, y)); }
     /// Index of the named channel, or -1.
     int channel(const std::string& name) const;
 };
@@ -73,23 +48,8 @@ Image make_image(int width, int height, int channels);
 
 /// An image in feature space: `channels` floats per pixel; for colour L*, u*, v* (L* in 0..100). Errors are
 /// measured in this space.
-struct FeatureImage {
-    int width = 0;
-    int height = 0;
-    int channels = 0;
-    std::vector<float> data;  ///< size width * height * channels, interleaved
-
-    std::size_t pixel_count() const {
-        return static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
-    }
-    const float* pixel(int x, int y) const {
-        return pixel(static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
-                     static_cast<std::size_t>(x));
-    }
-    const float* pixel(std::size_t index) const {
-        return data.data() + index * static_cast<std::size_t>(channels);
-    }
-    float* pixel(std::size_t index) { return data.data() + index * static_cast<std::size_t>(channels); }
+struct FeatureImage : ChannelGrid {
+    using ChannelGrid::ChannelGrid;
 };
 
 }  // namespace imgmesh

@@ -10,17 +10,16 @@ namespace {
 template <typename Value>
 Mask thresholded(const Image& image, float threshold, Value value) {
     Mask mask{image.width, image.height, {}};
-    mask.inside.reserve(image.pixel_count());
+    mask.values.reserve(image.pixel_count());
     for (std::size_t i = 0; i < image.pixel_count(); ++i)
-        mask.inside.push_back(value(image.data.data() + i * static_cast<std::size_t>(image.channels)) >=
-                              threshold);
+        mask.values.push_back(value(image.pixel(i)) >= threshold);
     return mask;
 }
 
 }  // namespace
 
 std::int64_t Mask::count() const {
-    return std::count_if(inside.begin(), inside.end(), [](std::uint8_t in) { return in != 0; });
+    return std::count_if(begin(), end(), [](std::uint8_t in) { return in != 0; });
 }
 
 Mask alpha_mask(const Image& image, float threshold) {

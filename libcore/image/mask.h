@@ -2,27 +2,18 @@
 #pragma once
 
 #include <cstdint>
-#include <vector>
 
 #include "libcore/image/image.h"
 
 namespace imgmesh {
 
-/// One flag for each pixel, rows from top to bottom; not 0 inside. A mask without pixels (the default) masks
-/// nothing.
-struct Mask {
-    int width = 0;
-    int height = 0;
-    std::vector<std::uint8_t> inside;  ///< size width * height
+/// One flag for each pixel; not 0 inside. A mask without pixels (the default) masks nothing.
+struct Mask : Grid<std::uint8_t> {
+    using Grid::Grid;
 
-    bool empty() const { return inside.empty(); }
-    bool contains(std::size_t pixel) const { return empty() || inside[pixel] != 0; }
+    bool contains(std::size_t pixel) const { return empty() || values[pixel] != 0; }
     /// Returns whether pixel (x, y) is inside; false beyond the image. Only for a mask that is not empty().
-    bool at(int x, int y) const {
-        return x >= 0 && x < width && y >= 0 && y < height &&
-               inside[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
-                      static_cast<std::size_t>(x)] != 0;
-    }
+    bool at(int x, int y) const { return GridSize::contains(x, y) && values[index(x, y)] != 0; }
     std::int64_t count() const;  ///< pixels inside
 };
 

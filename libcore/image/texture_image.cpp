@@ -27,7 +27,7 @@ constexpr std::uint8_t kClear = 0, kColored = 1, kNext = 2;  // states of a pixe
 
 class Spread {
   public:
-    Spread(Image& out, const Mask& mask) : out_(out), state_(mask.inside) {
+    Spread(Image& out, const Mask& mask) : out_(out), state_(mask.values) {
         for (std::uint8_t& state : state_) state = state ? kColored : kClear;
     }
 
@@ -61,12 +61,10 @@ class Spread {
     // Calls visit(j) for the pixels around pixel i, and for itself.
     template <typename Visit>
     void around(std::size_t i, Visit&& visit) const {
-        const auto width = static_cast<std::size_t>(out_.width),
-                   height = static_cast<std::size_t>(out_.height);
-        const std::size_t x = i % width, y = i / width;
-        for (std::size_t v = y == 0 ? 0 : y - 1; v <= std::min(y + 1, height - 1); ++v)
-            for (std::size_t u = x == 0 ? 0 : x - 1; u <= std::min(x + 1, width - 1); ++u)
-                visit(v * width + u);
+        const int x = out_.x_of(i), y = out_.y_of(i);
+        for (int v = std::max(y - 1, 0); v <= std::min(y + 1, out_.height - 1); ++v)
+            for (int u = std::max(x - 1, 0); u <= std::min(x + 1, out_.width - 1); ++u)
+                visit(out_.index(u, v));
     }
 
     // The mean colour of the neighbours that have one; there is at least one.
@@ -75,10 +73,10 @@ class Spread {
         float count = 0;
         around(i, [&](std::size_t n) {
             if (state_[n] != kColored) return;
-            sum += Eigen::Map<const Vec3f>(out_.data.data() + 4 * n);
+            sum += Eigen::Map<const Vec3f>(out_.pixel(n));
             ++count;
         });
-        Eigen::Map<Vec3f>(out_.data.data() + 4 * i) = sum / count;
+        Eigen::Map<Vec3f>(out_.pixel(i)) = sum / count;
     }
 
     Image& out_;
@@ -89,27 +87,24 @@ void spread_colors(Image& out, const Mask& mask) {
     Spread spread(out, mask);
     spread.run();
     Vec3d sum(0, 0, 0);
-    for (std::size_t i = 0; i < mask.inside.size(); ++i)
-        if (mask.inside[i]) sum += Eigen::Map<const Vec3f>(out.data.data() + 4 * i).cast<double>();
-    const Vec3f mean = (sum / static_cast<double>(std::max<std::int64_t>(mask.count(), 1))).cast<float>();
-    for (std::size_t i = 0; i < mask.inside.size(); ++i)
-        if (!spread.reached(i)) Eigen::Map<Vec3f>(out.data.data() + 4 * i) = mean;
+    for (std::size_t i = 0; i < mask.size(); ++i)
+        if (mask[i]) sum += Eigen::Map<const Vec3f>(out.pixel(i)).cast<double>();
+    const Vec3f mean = (sum / double(std::max<std::int64_t>(mask.count(), 1))).cast<float>();
+    for (std::size_t i = 0; i < mask.size(); ++i)
+        if (!spread.reached(i)) Eigen::Map<Vec3f>(out.pixel(i)) = mean;
 }
 
 }  // namespace
 
 Image texture_image(const Image& image, const Mask& mask) {
-    assert(mask.empty() || mask.inside.size() == image.pixel_count());
+    assert(mask.empty() || mask.size() == image.pixel_count());
     const std::array<int, 3> rgb = color_channels(image);
     Image out = make_image(image.width, image.height, mask.empty() ? 3 : 4);
-    const auto from_step = static_cast<std::size_t>(image.channels);
-    const auto to_step = static_cast<std::size_t>(out.channels);
     parallel_blocks(0, image.height, kGrainRows, [&](int first, int last) {
-        const auto width = static_cast<std::size_t>(image.width);
-        for (std::size_t i = static_cast<std::size_t>(first) * width;
-             i < static_cast<std::size_t>(last) * width; ++i) {
-            const float* from = image.data.data() + i * from_step;
-            float* to = out.data.data() + i * to_step;
+        const std::size_t end = as_index(last) * as_index(image.width);
+        for (std::size_t i = image.row_begin(first); i < end; ++i) {
+            const float* from = image.pixel(i);
+            float* to = out.pixel(i);
             Vec3f color(from[rgb[0]], from[rgb[1]], from[rgb[2]]);
             if (image.color_space != ColorSpace::kSrgb)
                 color = encoded_from_linear(ColorSpace::kSrgb, linear_from_encoded(image.color_space, color));

@@ -13,10 +13,10 @@ std::vector<Face> face_neighbors(const BaseMesh& mesh) {
     };
     std::vector<HalfEdge> half_edges;
     half_edges.reserve(mesh.faces.size() * 3);
-    for (std::size_t f = 0; f < mesh.faces.size(); ++f)
+    for (Id f = 0; f < mesh.faces.size(); ++f)
         for (std::uint32_t k = 0; k < 3; ++k) {
             const Id p = mesh.faces[f][(k + 1) % 3], q = mesh.faces[f][(k + 2) % 3];
-            half_edges.push_back({std::min(p, q), std::max(p, q), static_cast<Id>(f), k});
+            half_edges.push_back({std::min(p, q), std::max(p, q), f, k});
         }
     std::sort(half_edges.begin(), half_edges.end(), [](const HalfEdge& a, const HalfEdge& b) {
         return std::tie(a.low, a.high, a.face) < std::tie(b.low, b.high, b.face);

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "libcore/base/types.h"
+#include "libcore/base/index.h"
 
 namespace imgmesh {
 
@@ -29,12 +29,8 @@ struct BaseMesh {
     std::vector<Face> faces;      ///< size F
 
     std::size_t vertex_count() const { return position.size(); }
-    const float* feature_of(Id v) const {
-        return feature.data() + static_cast<std::size_t>(v) * static_cast<std::size_t>(channels);
-    }
-    float* feature_of(Id v) {
-        return feature.data() + static_cast<std::size_t>(v) * static_cast<std::size_t>(channels);
-    }
+    const float* feature_of(Id v) const { return feature.data() + std::size_t{v} * as_index(channels); }
+    float* feature_of(Id v) { return feature.data() + std::size_t{v} * as_index(channels); }
 };
 
 /// Returns twice the signed area of triangle (a, b, c) in pixels^2. It is positive if the corners run

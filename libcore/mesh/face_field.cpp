@@ -5,13 +5,20 @@
 #include "libcore/base/parallel.h"
 
 namespace imgmesh {
+namespace {
+
+constexpr std::size_t kSpareSteps =
+    8;  // a mesh of few faces has about as many steps as faces; none is missed
+
+}  // namespace
 
 std::vector<FaceField> face_fields(const BaseMesh& mesh) {
     std::vector<FaceField> fields(mesh.faces.size(), FaceField{});
-    parallel_blocks(0, static_cast<int>(fields.size()), 4096, [&](int first, int last) {
-        for (int i = first; i < last; ++i) {
-            const auto [a, b, c] = mesh.faces[static_cast<std::size_t>(i)];
-            FaceField& field = fields[static_cast<std::size_t>(i)];
+    constexpr int kGrainFaces = 4096;  // 256 kB of fields a block
+    parallel_blocks(0, as_int(fields.size()), kGrainFaces, [&](int first, int last) {
+        for (std::size_t i = as_index(first); i < as_index(last); ++i) {
+            const auto [a, b, c] = mesh.faces[i];
+            FaceField& field = fields[i];
             const Vec2f &pa = mesh.position[a], ab = mesh.position[b] - pa, ac = mesh.position[c] - pa;
             const double det = double(ab.x()) * ac.y() - double(ab.y()) * ac.x();
             field.ax = pa.x();
@@ -33,7 +40,7 @@ std::vector<FaceField> face_fields(const BaseMesh& mesh) {
 }
 
 AuxiliaryFields auxiliary_fields(const BaseMesh& mesh, const std::vector<FaceField>& fields) {
-    AuxiliaryFields auxiliary{static_cast<std::size_t>(std::max(0, mesh.channels - 3)), {}};
+    AuxiliaryFields auxiliary{as_index(std::max(0, mesh.channels - 3)), {}};
     auxiliary.values.reserve(fields.size() * auxiliary.features * 3);
     for (std::size_t f = 0; auxiliary.features > 0 && f < fields.size(); ++f) {
         const auto [a, b, c] = mesh.faces[f];
@@ -51,7 +58,7 @@ AuxiliaryFields auxiliary_fields(const BaseMesh& mesh, const std::vector<FaceFie
 Id locate_face(const Vec2f& p, Id face, const std::vector<FaceField>& fields,
                const std::vector<Face>& neighbors) {
     // The bound only guards against rounding that leads in circles: in a convex domain the search arrives.
-    for (std::size_t step = 0; step < fields.size() + 8; ++step) {
+    for (std::size_t step = 0; step < fields.size() + kSpareSteps; ++step) {
         const FaceField& field = fields[face];
         const float u = field.u(p.x(), p.y()), v = field.v(p.x(), p.y()), w = 1 - u - v;
         const float least = std::min({u, v, w});

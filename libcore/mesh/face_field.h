@@ -15,7 +15,6 @@ struct alignas(64) FaceField {
     float ux, uy, vx, vy;      ///< gradients of the weights [1 / pixel]
     float f[3], fx[3], fy[3];  ///< colour at a, and its gradient
 
-    static constexpr int kFloats = 15;
     float u(float x, float y) const { return ux * (x - ax) + uy * (y - ay); }
     float v(float x, float y) const { return vx * (x - ax) + vy * (y - ay); }
 };

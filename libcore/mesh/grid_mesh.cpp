@@ -18,12 +18,11 @@ float squared_distance(const float* a, const float* b, int channels) {
 FeatureImage doubled_sides(FeatureImage in) {
     if (in.width >= 2 && in.height >= 2) return in;
     FeatureImage out{std::max(2, in.width), std::max(2, in.height), in.channels, {}};
-    out.data.resize(out.pixel_count() * static_cast<std::size_t>(in.channels));
+    out.data.resize(out.sample_count());
     for (int y = 0; y < out.height; ++y)
         for (int x = 0; x < out.width; ++x)
             std::copy_n(in.pixel(std::min(x, in.width - 1), std::min(y, in.height - 1)), in.channels,
-                        out.pixel(static_cast<std::size_t>(y) * static_cast<std::size_t>(out.width) +
-                                  static_cast<std::size_t>(x)));
+                        out.pixel(x, y));
     return out;
 }
 
@@ -31,7 +30,7 @@ FeatureImage doubled_sides(FeatureImage in) {
 constexpr int kRowsPerBlock = 80;
 
 // Returns how many vertices pixel (x, y) has after its first one.
-int further_vertices(const GridMesh& mesh, int x, int y) {
+std::size_t further_vertices(const GridMesh& mesh, int x, int y) {
     switch (strip_at(mesh.mask, x, y)) {
         case Strip::kAlongX:
         case Strip::kAlongY:
@@ -42,11 +41,12 @@ int further_vertices(const GridMesh& mesh, int x, int y) {
             break;
     }
     // The diagonal of a cell does not change the number of fans: it only joins faces of that cell.
-    return std::max(0, fans_at(mesh.mask, x, y, [](int) { return false; }).count - 1);
+    const std::size_t fans = fans_at(mesh.mask, x, y, [](int) { return false; }).count;
+    return fans > 0 ? fans - 1 : 0;
 }
 
 void append_copies(const std::vector<Id>& copies, FeatureImage& feature) {
-    const auto channels = static_cast<std::size_t>(feature.channels);
+    const std::size_t channels = as_index(feature.channels);
     feature.data.reserve(feature.data.size() + copies.size() * channels);
     for (const Id pixel : copies)
         for (std::size_t c = 0; c < channels; ++c) feature.data.push_back(feature.data[pixel * channels + c]);
@@ -65,35 +65,31 @@ GridMesh grid_mesh(FeatureImage feature, Mask mask) {
         mesh.feature = std::move(feature);
     }
     const FeatureImage& f = mesh.feature;
-    const int cells = f.width - 1;
-    mesh.diagonal.resize(static_cast<std::size_t>(cells) * static_cast<std::size_t>(f.height - 1));
+    mesh.diagonal = Grid<std::uint8_t>({f.width - 1, f.height - 1});
     parallel_blocks(0, f.height - 1, kRowsPerBlock, [&](int first, int last) {
         for (int y = first; y < last; ++y)
-            for (int x = 0; x < cells; ++x) {
+            for (int x = 0; x + 1 < f.width; ++x) {
                 const float falling = squared_distance(f.pixel(x, y), f.pixel(x + 1, y + 1), f.channels);
                 const float rising = squared_distance(f.pixel(x + 1, y), f.pixel(x, y + 1), f.channels);
-                mesh.diagonal[static_cast<std::size_t>(y) * static_cast<std::size_t>(cells) +
-                              static_cast<std::size_t>(x)] = falling <= rising;
+                mesh.diagonal.at(x, y) = falling <= rising;
             }
     });
     if (mesh.mask.empty()) return mesh;
     for (int y = 0; y < f.height; ++y)
         for (int x = 0; x < f.width; ++x)
-            mesh.copies.insert(mesh.copies.end(), static_cast<std::size_t>(further_vertices(mesh, x, y)),
-                               static_cast<Id>(y * f.width + x));
+            mesh.copies.insert(mesh.copies.end(), further_vertices(mesh, x, y), as_id(f.index(x, y)));
     append_copies(mesh.copies, mesh.feature);
     return mesh;
 }
 
 FeatureImage smoothed(FeatureImage image, int passes) {
     const int c = image.channels, w = image.width * c, h = image.height;
-    std::vector<float> other(image.data.size());
+    FeatureImage other(image.width, h, c, std::vector<float>(image.data.size()));
     for (int pass = 0; pass < passes; ++pass) {
         parallel_blocks(0, h, kRowsPerBlock, [&](int first, int last) {
             for (int y = first; y < last; ++y) {
-                const float* in =
-                    image.data.data() + static_cast<std::size_t>(y) * static_cast<std::size_t>(w);
-                float* out = other.data() + static_cast<std::size_t>(y) * static_cast<std::size_t>(w);
+                const float* in = image.row(y).data();
+                float* out = other.row(y).data();
                 for (int i = 0; i < w; ++i) {
                     const float before = in[i >= c ? i - c : i], after = in[i + c < w ? i + c : i];
                     out[i] = 0.25f * (before + after) + 0.5f * in[i];
@@ -102,12 +98,9 @@ FeatureImage smoothed(FeatureImage image, int passes) {
         });
         parallel_blocks(0, h, kRowsPerBlock, [&](int first, int last) {
             for (int y = first; y < last; ++y) {
-                const auto row = [&](int r) {
-                    return other.data() + static_cast<std::size_t>(r) * static_cast<std::size_t>(w);
-                };
-                const float *above = row(std::max(0, y - 1)), *here = row(y),
-                            *below = row(std::min(h - 1, y + 1));
-                float* out = image.data.data() + static_cast<std::size_t>(y) * static_cast<std::size_t>(w);
+                const float *above = other.row(std::max(0, y - 1)).data(), *here = other.row(y).data(),
+                            *below = other.row(std::min(h - 1, y + 1)).data();
+                float* out = image.row(y).data();
                 for (int i = 0; i < w; ++i) out[i] = 0.25f * (above[i] + below[i]) + 0.5f * here[i];
             }
         });
@@ -123,17 +116,16 @@ FeaturePatch smoothed_patch(const GridMesh& grid, int passes, const PixelRect& r
               bottom = std::min(feature.height, rect.bottom + reach);
     FeaturePatch patch{{right - left, bottom - top, c, {}}, left, top};
     if (grid.mask.empty()) {
-        const auto row = static_cast<std::size_t>((right - left) * c);
-        patch.image.data.reserve(patch.image.pixel_count() * static_cast<std::size_t>(c));
+        patch.image.data.reserve(patch.image.sample_count());
         for (int y = top; y < bottom; ++y)
             patch.image.data.insert(patch.image.data.end(), feature.pixel(left, y),
-                                    feature.pixel(left, y) + row);
+                                    feature.pixel(left, y) + patch.image.row_size());
         patch.image = smoothed(std::move(patch.image), passes);
         return patch;
     }
     // Smoothed (colour times inside) divided by smoothed inside.
     FeatureImage weighted{right - left, bottom - top, c + 1, {}};
-    weighted.data.assign(weighted.pixel_count() * static_cast<std::size_t>(c + 1), 0.0f);
+    weighted.data.assign(weighted.sample_count(), 0.0f);
     float* out = weighted.data.data();
     for (int y = top; y < bottom; ++y)
         for (int x = left; x < right; ++x, out += c + 1) {
@@ -142,7 +134,7 @@ FeaturePatch smoothed_patch(const GridMesh& grid, int passes, const PixelRect& r
             out[c] = 1;
         }
     weighted = smoothed(std::move(weighted), passes);
-    patch.image.data.assign(patch.image.pixel_count() * static_cast<std::size_t>(c), 0.0f);
+    patch.image.data.assign(patch.image.sample_count(), 0.0f);
     for (std::size_t i = 0; i < weighted.pixel_count(); ++i) {
         const float* sum = weighted.pixel(i);
         if (sum[c] > 0)

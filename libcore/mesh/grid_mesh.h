@@ -22,15 +22,12 @@ struct GridMesh {
                            ///< masks
     float origin_x = 0;    ///< position of vertex (0, 0) [pixels]: 0, or -0.5 where the image's
     float origin_y = 0;    ///< side is one pixel, which then counts as a strip one pixel wide
-    std::vector<std::uint8_t> diagonal;  ///< (W-1) x (H-1): 1 joins top left to bottom right, 0 the other two
+    Grid<std::uint8_t> diagonal;  ///< (W-1) x (H-1): 1 joins top left to bottom right, 0 the other two
 
     Mask mask;               ///< empty() for the whole image
     std::vector<Id> copies;  ///< pixels of the split vertices W * H, W * H + 1, ..., ascending
 
-    bool falling_diagonal(int x, int y) const {
-        return diagonal[static_cast<std::size_t>(y) * static_cast<std::size_t>(feature.width - 1) +
-                        static_cast<std::size_t>(x)] != 0;
-    }
+    bool falling_diagonal(int x, int y) const { return diagonal.at(x, y) != 0; }
     std::size_t vertex_count() const { return feature.pixel_count() + copies.size(); }
     /// Returns the pixel of vertex v.
     Id pixel_of(Id v) const { return v < feature.pixel_count() ? v : copies[v - feature.pixel_count()]; }

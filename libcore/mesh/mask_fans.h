@@ -19,12 +19,13 @@ inline constexpr PixelStep kAround[8] = {{1, 0},  {1, -1}, {0, -1}, {-1, -1},
 /// counter-clockwise order. A closed fan does not repeat its first direction.
 struct Fan {
     std::array<std::uint8_t, 8> direction{};
-    int count = 0;
+    std::size_t count = 0;
     bool closed = false;
 
+    void add(std::uint8_t d) { direction[count++] = d; }
     bool has(int d) const {
-        for (int k = 0; k < count; ++k)
-            if (direction[static_cast<std::size_t>(k)] == d) return true;
+        for (std::size_t k = 0; k < count; ++k)
+            if (direction[k] == d) return true;
         return false;
     }
 };
@@ -32,7 +33,7 @@ struct Fan {
 /// All fans of a pixel. Each is a vertex of its own; there are several where the mask pinches.
 struct PixelFans {
     std::array<Fan, 4> fan;
-    int count = 0;
+    std::size_t count = 0;
 };
 
 /// diagonal_through(q): whether the diagonal of cell q (of directions 2q to 2q + 2) ends at this pixel.
@@ -45,13 +46,12 @@ PixelFans fans_at(const Mask& mask, int x, int y, const DiagonalThrough& diagona
     for (int d = 0; d < 8; ++d) inside[d] = mask.at(x + kAround[d].dx, y + kAround[d].dy);
     // The triangles, each from one direction to another.
     std::array<std::array<std::uint8_t, 2>, 8> faces{};
-    int count = 0;
-    const auto add = [&](int from, int to) {
-        faces[static_cast<std::size_t>(count++)] = {static_cast<std::uint8_t>(from),
-                                                    static_cast<std::uint8_t>(to)};
-    };
+    std::size_t count = 0;
+    const auto add = [&](std::uint8_t from, std::uint8_t to) { faces[count++] = {from, to}; };
+    // The directions of each cell: its first straight one, its diagonal, its second straight one.
+    constexpr std::uint8_t kCells[4][3] = {{0, 1, 2}, {2, 3, 4}, {4, 5, 6}, {6, 7, 0}};
     for (int q = 0; q < 4; ++q) {
-        const int a = 2 * q, d = a + 1, b = (a + 2) % 8;
+        const auto [a, d, b] = kCells[q];
         if (inside[a] && inside[b] && !(inside[d] && diagonal_through(q))) {
             add(a, b);
         } else {
@@ -59,24 +59,22 @@ PixelFans fans_at(const Mask& mask, int x, int y, const DiagonalThrough& diagona
             if (inside[d] && inside[b]) add(d, b);
         }
     }
-    const auto follows = [&](int k) {  // face k on the one before it
-        return faces[static_cast<std::size_t>((k + count - 1) % count)][1] ==
-               faces[static_cast<std::size_t>(k)][0];
+    const auto follows = [&](std::size_t k) {  // face k on the one before it
+        return faces[(k + count - 1) % count][1] == faces[k][0];
     };
-    int first = 0;
+    std::size_t first = 0;
     while (first < count && follows(first)) ++first;
     if (count == 0) return out;
     const bool closed = first == count;
-    for (int n = 0; n < count; ++n) {
-        const int k = closed ? n : (first + n) % count;
-        const auto [from, to] = faces[static_cast<std::size_t>(k)];
+    for (std::size_t n = 0; n < count; ++n) {
+        const std::size_t k = closed ? n : (first + n) % count;
+        const auto [from, to] = faces[k];
         if (n == 0 || (!closed && !follows(k))) {
-            Fan& fan = out.fan[static_cast<std::size_t>(out.count++)];
+            Fan& fan = out.fan[out.count++];
             fan.closed = closed;
-            fan.direction[static_cast<std::size_t>(fan.count++)] = from;
+            fan.add(from);
         }
-        Fan& fan = out.fan[static_cast<std::size_t>(out.count - 1)];
-        if (!closed || n + 1 < count) fan.direction[static_cast<std::size_t>(fan.count++)] = to;
+        if (!closed || n + 1 < count) out.fan[out.count - 1].add(to);
     }
     return out;
 }

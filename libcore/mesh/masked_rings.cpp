@@ -15,7 +15,7 @@ constexpr std::uint8_t kCorner = kFixedX | kFixedY;
 
 class MaskedRings {
   public:
-    explicit MaskedRings(const GridMesh& grid) : grid_(grid), width_(grid.feature.width) {}
+    explicit MaskedRings(const GridMesh& grid) : grid_(grid) {}
 
     PixelRings at(int x, int y) const {
         PixelRings out;
@@ -23,8 +23,7 @@ class MaskedRings {
             add_strip(out, strip, x, y);
         } else {
             const PixelFans fans = fans_of(x, y);
-            for (int f = 0; f < fans.count; ++f)
-                add(out, x, y) = ring(fans.fan[static_cast<std::size_t>(f)], x, y);
+            for (std::size_t f = 0; f < fans.count; ++f) add(out, x, y) = ring(fans.fan[f], x, y);
         }
         return out;
     }
@@ -38,17 +37,16 @@ class MaskedRings {
     }
 
     // Returns the n-th vertex of a pixel.
-    Id vertex(int x, int y, int n) const {
-        const auto pixel = static_cast<Id>(y * width_ + x);
+    Id vertex(int x, int y, std::size_t n) const {
+        const Id pixel = as_id(grid_.feature.index(x, y));
         if (n == 0) return pixel;
         const auto first = std::lower_bound(grid_.copies.begin(), grid_.copies.end(), pixel);
-        return static_cast<Id>(grid_.feature.pixel_count()) +
-               static_cast<Id>(first - grid_.copies.begin() + n - 1);
+        return as_id(grid_.feature.pixel_count() + as_index(first - grid_.copies.begin()) + n - 1);
     }
 
     // Adds the next vertex of the pixel.
     Ring& add(PixelRings& pixel, int x, int y) const {
-        pixel.vertex[pixel.count] = vertex(x, y, static_cast<int>(pixel.count));
+        pixel.vertex[pixel.count] = vertex(x, y, pixel.count);
         return pixel.ring[pixel.count++];
     }
 
@@ -57,13 +55,13 @@ class MaskedRings {
         ring.x = static_cast<float>(x);
         ring.y = static_cast<float>(y);
         ring.fixed = fan.closed ? 0 : kCorner;
-        for (int k = 0; k < fan.count; ++k) {
-            const int d = fan.direction[static_cast<std::size_t>(k)];
+        for (std::size_t k = 0; k < fan.count; ++k) {
+            const int d = fan.direction[k];
             const int nx = x + kAround[d].dx, ny = y + kAround[d].dy;
             // An edge is in one fan of its other end: its two faces are neighbours there too.
             const PixelFans fans = fans_of(nx, ny);
-            int n = 0;
-            while (!fans.fan[static_cast<std::size_t>(n)].has((d + 4) % 8)) ++n;
+            std::size_t n = 0;
+            while (!fans.fan[n].has((d + 4) % 8)) ++n;
             ring.neighbor[ring.valence++] = vertex(nx, ny, n);
         }
         return ring;
@@ -83,34 +81,27 @@ class MaskedRings {
         const int dx = strip == Strip::kAlongX ? 1 : 0, dy = 1 - dx;
         const bool before = strip_at(grid_.mask, x - dx, y - dy) == strip,
                    after = strip_at(grid_.mask, x + dx, y + dy) == strip;
-        const auto side = [&](int step, int n) { return vertex(x + step * dx, y + step * dy, n); };
+        const auto side = [&](int step, std::size_t n) { return vertex(x + step * dx, y + step * dy, n); };
         Ring &first = add(out, x, y), &second = add(out, x, y);
         set(first, x, y, -0.5f * static_cast<float>(dy), -0.5f * static_cast<float>(dx), {});
         set(second, x, y, 0.5f * static_cast<float>(dy), 0.5f * static_cast<float>(dx), {});
         // Along a row the upper side comes first. Along a column everything is mirrored at the falling
         // diagonal, including the sense of turning.
-        std::array<Id, 4> upper{}, lower{};
-        int up = 0, low = 0;
-        if (before) upper[static_cast<std::size_t>(up++)] = side(-1, 0);
-        upper[static_cast<std::size_t>(up++)] = side(0, 1);
+        const auto push = [](Ring& ring, Id v) { ring.neighbor[ring.valence++] = v; };
+        if (before) push(first, side(-1, 0));
+        push(first, side(0, 1));
         if (after) {
-            upper[static_cast<std::size_t>(up++)] = side(1, 1);
-            upper[static_cast<std::size_t>(up++)] = side(1, 0);
-            lower[static_cast<std::size_t>(low++)] = side(1, 1);
+            push(first, side(1, 1));
+            push(first, side(1, 0));
+            push(second, side(1, 1));
         }
-        lower[static_cast<std::size_t>(low++)] = side(0, 0);
+        push(second, side(0, 0));
         if (before) {
-            lower[static_cast<std::size_t>(low++)] = side(-1, 0);
-            lower[static_cast<std::size_t>(low++)] = side(-1, 1);
+            push(second, side(-1, 0));
+            push(second, side(-1, 1));
         }
-        if (strip == Strip::kAlongY) {
-            std::reverse(upper.begin(), upper.begin() + up);
-            std::reverse(lower.begin(), lower.begin() + low);
-        }
-        std::copy_n(upper.begin(), up, first.neighbor);
-        std::copy_n(lower.begin(), low, second.neighbor);
-        first.valence = static_cast<std::uint8_t>(up);
-        second.valence = static_cast<std::uint8_t>(low);
+        if (strip == Strip::kAlongY)
+            for (Ring* ring : {&first, &second}) std::reverse(ring->neighbor, ring->neighbor + ring->valence);
     }
 
     static void set(Ring& ring, int x, int y, float dx, float dy, std::initializer_list<Id> neighbors) {
@@ -122,7 +113,6 @@ class MaskedRings {
     }
 
     const GridMesh& grid_;
-    int width_;
 };
 
 }  // namespace
@@ -132,8 +122,8 @@ PixelRings masked_pixel_rings(const GridMesh& grid, int x, int y) {
 }
 
 Vec2f vertex_place(const GridMesh& grid, Id vertex) {
-    const Id pixel = grid.pixel_of(vertex), w = static_cast<Id>(grid.feature.width);
-    const int x = static_cast<int>(pixel % w), y = static_cast<int>(pixel / w);
+    const Id pixel = grid.pixel_of(vertex);
+    const int x = grid.feature.x_of(pixel), y = grid.feature.y_of(pixel);
     if (!grid.mask.empty() && strip_at(grid.mask, x, y) != Strip::kNoStrip) {
         const PixelRings rings = masked_pixel_rings(grid, x, y);
         for (std::size_t n = 0; n < rings.count; ++n)
@@ -144,11 +134,11 @@ Vec2f vertex_place(const GridMesh& grid, Id vertex) {
 
 std::int64_t masked_face_count(const GridMesh& grid) {
     const Mask& mask = grid.mask;
-    std::vector<std::int64_t> rows(static_cast<std::size_t>(mask.height), 0);
+    std::vector<std::int64_t> rows(as_index(mask.height), 0);
     parallel_blocks(0, mask.height, 16, [&](int begin, int end) {
         for (int y = begin; y < end; ++y)
             for (int x = 0; x < mask.width; ++x) {
-                std::int64_t& faces = rows[static_cast<std::size_t>(y)];
+                std::int64_t& faces = rows[as_index(y)];
                 const int corners =
                     mask.at(x, y) + mask.at(x + 1, y) + mask.at(x, y + 1) + mask.at(x + 1, y + 1);
                 faces += std::max(0, corners - 2);

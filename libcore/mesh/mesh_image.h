@@ -24,9 +24,7 @@ struct Level {
 };
 
 /// The image that a MeshImage was made from.
-struct SourceInfo {
-    int width = 0;
-    int height = 0;
+struct SourceInfo : GridSize {
     ColorSpace color_space =
         ColorSpace::kSrgb;  ///< of the image; meshes are in feature space (L*u*v*) all the same
     SampleType sample_type = SampleType::kUint8;

@@ -1,10 +1,10 @@
 // The pixel map: for every pixel its face of the base mesh and its position inside that face.
 #pragma once
 
-#include <span>
+#include <utility>
 #include <vector>
 
-#include "libcore/base/types.h"
+#include "libcore/base/grid.h"
 
 namespace imgmesh {
 
@@ -25,21 +25,14 @@ inline constexpr float kFloatWeightStep = 1.0f / 16777216.0f;  ///< exact in a F
 
 enum class WeightPrecision { kHalf, kFloat };
 
-/// One PixelCoord per pixel, rows from top to bottom.
-struct PixelMap {
-    int width = 0;
-    int height = 0;
-    std::vector<PixelCoord> coords;                       ///< size width * height
+/// One PixelCoord per pixel.
+struct PixelMap : Grid<PixelCoord> {
     WeightPrecision precision = WeightPrecision::kFloat;  ///< the grid on which every weight is known to lie
 
-    std::span<const PixelCoord> row(int y) const {
-        return {coords.data() + static_cast<std::size_t>(y) * static_cast<std::size_t>(width),
-                static_cast<std::size_t>(width)};
-    }
-    std::span<PixelCoord> row(int y) {
-        return {coords.data() + static_cast<std::size_t>(y) * static_cast<std::size_t>(width),
-                static_cast<std::size_t>(width)};
-    }
+    PixelMap() = default;
+    PixelMap(int columns, int rows, std::vector<PixelCoord> coords,
+             WeightPrecision known = WeightPrecision::kFloat)
+        : Grid(columns, rows, std::move(coords)), precision(known) {}
 };
 
 }  // namespace imgmesh

@@ -54,10 +54,10 @@ void rasterize_face(const BaseMesh& mesh, Id id, const SampleGrid& grid, int fir
                 &c = mesh.position[mesh.faces[id][2]];
     const SideFunction side[3] = {{b, c}, {c, a}, {a, b}};
     const double inverse_area = 1 / signed_area2(a, b, c);
-    const int width = static_cast<int>(grid.x.size());
+    const int width = out.width;
     const double* xs = grid.x.data();
     for (int j = first; j < last; ++j) {
-        const double y = grid.y[static_cast<std::size_t>(j)];
+        const double y = grid.y[as_index(j)];
         int begin = 0, end = width;
         double at_zero[3];
         for (int s = 0; s < 3; ++s) {
@@ -87,7 +87,7 @@ struct FaceRows {
 };
 
 std::vector<std::vector<FaceRows>> sort_into_bands(const BaseMesh& mesh, const SampleGrid& grid, int height) {
-    std::vector<std::vector<FaceRows>> bands(static_cast<std::size_t>((height + kBandRows - 1) / kBandRows));
+    std::vector<std::vector<FaceRows>> bands(as_index((height + kBandRows - 1) / kBandRows));
     // Highest id first: where faces share an edge, the lowest one is written last and stays.
     for (std::size_t f = mesh.faces.size(); f-- > 0;) {
         const auto [ia, ib, ic] = mesh.faces[f];
@@ -96,21 +96,20 @@ std::vector<std::vector<FaceRows>> sort_into_bands(const BaseMesh& mesh, const S
         const double top = std::min({a.y(), b.y(), c.y()}), bottom = std::max({a.y(), b.y(), c.y()});
         const auto row_of = [&](double y, auto reached) {
             return first_index(index_near(y, grid.scale, height), height,
-                               [&](int j) { return reached(grid.y[static_cast<std::size_t>(j)], y); });
+                               [&](int j) { return reached(grid.y[as_index(j)], y); });
         };
         const int first = row_of(top, std::greater_equal<double>()),
                   last = row_of(bottom, std::greater<double>());
         for (int band = first / kBandRows; band * kBandRows < last; ++band)
-            bands[static_cast<std::size_t>(band)].push_back({static_cast<Id>(f),
-                                                             std::max(first, band * kBandRows),
-                                                             std::min(last, (band + 1) * kBandRows)});
+            bands[as_index(band)].push_back(
+                {as_id(f), std::max(first, band * kBandRows), std::min(last, (band + 1) * kBandRows)});
     }
     return bands;
 }
 
 std::vector<double> sample_positions(int side, double scale) {
     const double low = side > 1 ? 0 : -0.5, high = side > 1 ? side - 1 : 0.5;
-    std::vector<double> positions(static_cast<std::size_t>(std::max(1L, std::lround(scale * side))));
+    std::vector<double> positions(as_index(std::max(1L, std::lround(scale * side))));
     for (std::size_t i = 0; i < positions.size(); ++i) {
         const double x = std::clamp((double(i) + 0.5) / scale - 0.5, low, high);
         positions[i] = std::round(x / kSampleStep) * kSampleStep;
@@ -125,13 +124,11 @@ SampleGrid sample_grid(int width, int height, double scale) {
 }
 
 PixelMap rasterize(const BaseMesh& mesh, const SampleGrid& grid) {
-    PixelMap map;
-    map.width = static_cast<int>(grid.x.size());
-    map.height = static_cast<int>(grid.y.size());
-    map.coords = parallel_vector<PixelCoord>(grid.x.size() * grid.y.size());
+    PixelMap map(as_int(grid.x.size()), as_int(grid.y.size()),
+                 parallel_vector<PixelCoord>(grid.x.size() * grid.y.size()));
     const auto bands = sort_into_bands(mesh, grid, map.height);
-    parallel_blocks(0, static_cast<int>(bands.size()), 1, [&](int band, int) {
-        for (const FaceRows& rows : bands[static_cast<std::size_t>(band)])
+    parallel_blocks(0, as_int(bands.size()), 1, [&](int band, int) {
+        for (const FaceRows& rows : bands[as_index(band)])
             rasterize_face(mesh, rows.face, grid, rows.first, rows.last, map);
     });
     return map;

@@ -3,18 +3,10 @@
 #include <cassert>
 
 #include "libcore/base/parallel.h"
+#include "libcore/mesh/mask_fans.h"
 #include "libcore/mesh/masked_rings.h"
 
 namespace imgmesh {
-namespace {
-
-struct Step {
-    int dx, dy;
-};
-// Counter-clockwise on screen (y down), starting at east; odd indices are diagonals.
-constexpr Step kAround[8] = {{1, 0}, {1, -1}, {0, -1}, {-1, -1}, {-1, 0}, {-1, 1}, {0, 1}, {1, 1}};
-
-}  // namespace
 
 Ring grid_ring(const GridMesh& grid, int x, int y) {
     Ring ring;
@@ -23,34 +15,30 @@ Ring grid_ring(const GridMesh& grid, int x, int y) {
     ring.y = grid.origin_y + static_cast<float>(y);
     ring.fixed = static_cast<std::uint8_t>((x == 0 || x == w - 1 ? kFixedX : 0) |
                                            (y == 0 || y == h - 1 ? kFixedY : 0));
-    const auto inside = [&](Step s) {
-        return x + s.dx >= 0 && x + s.dx < w && y + s.dy >= 0 && y + s.dy < h;
-    };
+    const auto inside = [&](PixelStep s) { return grid.feature.contains(x + s.dx, y + s.dy); };
     // Begin after the gap, so that a border vertex's open fan is in order.
     int first = 0;
     for (int k = 0; k < 8; k += 2)
         if (inside(kAround[k]) && !inside(kAround[(k + 6) % 8])) first = k;
     for (int n = 0; n < 8; ++n) {
-        const Step s = kAround[(first + n) % 8];
+        const PixelStep s = kAround[(first + n) % 8];
         if (!inside(s)) continue;
         if (s.dx != 0 && s.dy != 0) {
             const bool falling = s.dx == s.dy;  // this step runs along the falling diagonal of its cell
             if (grid.falling_diagonal(x + (s.dx < 0 ? -1 : 0), y + (s.dy < 0 ? -1 : 0)) != falling) continue;
         }
-        ring.neighbor[ring.valence++] = static_cast<Id>((y + s.dy) * w + x + s.dx);
+        ring.neighbor[ring.valence++] = as_id(grid.feature.index(x + s.dx, y + s.dy));
     }
     return ring;
 }
 
 RingMesh ring_mesh(const GridMesh& grid) {
     if (!grid.mask.empty()) return masked_rings(grid);
-    const int w = grid.feature.width;
     RingMesh rings(grid.feature.pixel_count());
     parallel_blocks(0, grid.feature.height, 16, [&](int begin, int end) {
         for (int y = begin; y < end; ++y)
-            for (int x = 0; x < w; ++x)
-                rings[static_cast<std::size_t>(y) * static_cast<std::size_t>(w) +
-                      static_cast<std::size_t>(x)] = grid_ring(grid, x, y);
+            for (int x = 0; x < grid.feature.width; ++x)
+                rings[grid.feature.index(x, y)] = grid_ring(grid, x, y);
     });
     return rings;
 }
@@ -69,7 +57,7 @@ bool merge_rings(const RingMesh& rings, Id i, Id j, MergedRing& merged) {
     const int na = a.valence, nb = b.valence;
     int count = 0;
     int shared = 0;  // faces at the edge
-    const auto push = [&](Id v) { merged.neighbor[static_cast<std::size_t>(count++)] = v; };
+    const auto push = [&](Id v) { merged.neighbor[as_index(count++)] = v; };
 
     // Collects the outer neighbours of j, in order, and how many of the edge's two faces exist.
     if (a.border() && b.border()) {
@@ -119,7 +107,7 @@ void apply_merge(RingMesh& rings, Id i, Id j, const MergedRing& merged) {
             --n.valence;
         }
     }
-    for (int k = 0; k < merged.valence; ++k) ring.neighbor[k] = merged.neighbor[static_cast<std::size_t>(k)];
+    for (int k = 0; k < merged.valence; ++k) ring.neighbor[k] = merged.neighbor[as_index(k)];
     ring.valence = static_cast<std::uint8_t>(merged.valence);
     ring.fixed |= removed.fixed;
     ++ring.version;
@@ -136,7 +124,7 @@ std::vector<Id> live_list(const RingMesh& rings) {
 
 std::vector<Face> ring_faces(const RingMesh& rings, const std::vector<Id>& order) {
     std::vector<Id> number(rings.size(), kNone);
-    for (std::size_t n = 0; n < order.size(); ++n) number[order[n]] = static_cast<Id>(n);
+    for (Id n = 0; n < order.size(); ++n) number[order[n]] = n;
     std::vector<Face> faces;
     faces.reserve(order.size() * 2);
     for (Id a = 0; a < order.size(); ++a) {

@@ -25,7 +25,7 @@ std::vector<std::vector<Id>> vertex_coloring(std::span<const Face> faces, std::s
             for (const Id n : faces[around[k]])
                 if (class_of[n] != kNone) taken_by[class_of[n]] = v;
         const auto free = std::find_if(taken_by.begin(), taken_by.end(), [v](Id by) { return by != v; });
-        class_of[v] = static_cast<Id>(free - taken_by.begin());
+        class_of[v] = as_id(free - taken_by.begin());
         if (free == taken_by.end()) {
             taken_by.push_back(kNone);
             classes.emplace_back();

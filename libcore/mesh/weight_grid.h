@@ -26,7 +26,7 @@ inline PixelCoord on_weight_grid(Id face, const std::array<double, 3>& weight, d
         left -= whole[k];
     }
     for (; left > 0; --left) {
-        const auto k = static_cast<std::size_t>(std::max_element(rest.begin(), rest.end()) - rest.begin());
+        const std::size_t k = as_index(std::max_element(rest.begin(), rest.end()) - rest.begin());
         ++whole[k];
         rest[k] = -1;
     }

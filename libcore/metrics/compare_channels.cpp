@@ -36,7 +36,7 @@ std::vector<ChannelDifference> compare_channels(const Image& a, const Image& b) 
                 ++pixels;
             }
         if (pixels == 0) return {};
-        difference.rms = std::sqrt(difference.rms / static_cast<double>(pixels));
+        difference.rms = std::sqrt(difference.rms / double(pixels));
         out.push_back(difference);
     }
     return out;

@@ -57,10 +57,10 @@ struct RowSums {
 };
 
 // Row y of both images: its sums, and its rows of the error images and the lumas, which are NaN before.
-void compare_row(const Colors& a, const Colors& b, int width, int y, RowSums& sums, ImageDifference& result,
-                 std::vector<float>& luma_a, std::vector<float>& luma_b) {
-    std::size_t i = static_cast<std::size_t>(y) * static_cast<std::size_t>(width);
-    for (int x = 0; x < width; ++x, ++i) {
+void compare_row(const Colors& a, const Colors& b, const GridSize& size, int y, RowSums& sums,
+                 ImageDifference& result, std::vector<float>& luma_a, std::vector<float>& luma_b) {
+    std::size_t i = size.row_begin(y);
+    for (int x = 0; x < size.width; ++x, ++i) {
         const bool hidden_a = a.transparent(x, y), hidden_b = b.transparent(x, y);
         sums.in_one_only += hidden_a != hidden_b;
         if (hidden_a || hidden_b) continue;
@@ -103,11 +103,10 @@ ImageDifference compare_images(const Image& a, const Image& b) {
     result.luv = result.ciede2000 = none;
     std::vector<float> luma_a = none, luma_b = none;
     // One sum for each row, added in order: the result is the same for any number of threads.
-    std::vector<RowSums> rows(static_cast<std::size_t>(a.height));
+    std::vector<RowSums> rows(as_index(a.height));
     parallel_blocks(0, a.height, kGrainRows, [&](int first, int last) {
         for (int y = first; y < last; ++y)
-            compare_row(colors_a, colors_b, a.width, y, rows[static_cast<std::size_t>(y)], result, luma_a,
-                        luma_b);
+            compare_row(colors_a, colors_b, a, y, rows[as_index(y)], result, luma_a, luma_b);
     });
     double sum_rgb = 0, sum_luv = 0;
     for (const RowSums& row : rows) {
@@ -119,8 +118,8 @@ ImageDifference compare_images(const Image& a, const Image& b) {
         result.max_luv = std::max(result.max_luv, row.max_luv);
     }
     if (result.pixels > 0) {
-        result.rms_rgb = std::sqrt(sum_rgb / static_cast<double>(3 * result.pixels));
-        result.rms_luv = std::sqrt(sum_luv / static_cast<double>(result.pixels));
+        result.rms_rgb = std::sqrt(sum_rgb / double(3 * result.pixels));
+        result.rms_luv = std::sqrt(sum_luv / double(result.pixels));
     }
     result.psnr = -20 * std::log10(result.rms_rgb);
     result.ssim = mean_ssim(luma_a, luma_b, a.width, a.height);

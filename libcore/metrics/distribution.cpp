@@ -5,12 +5,14 @@
 #include <limits>
 #include <utility>
 
+#include "libcore/base/index.h"
+
 namespace imgmesh {
 namespace {
 
 void count_bins(const std::vector<float>& values, Distribution& d) {
     const double width = (d.bins.high - d.bins.low) / d.bins.count;
-    d.histogram.assign(static_cast<std::size_t>(d.bins.count), 0);
+    d.histogram.assign(as_index(d.bins.count), 0);
     for (const float value : values) {
         if (value < d.bins.low) {
             ++d.below;
@@ -26,7 +28,7 @@ void count_bins(const std::vector<float>& values, Distribution& d) {
 // Percentiles in rising order, so that each needs to look only at the values above the previous one.
 void find_percentiles(std::vector<float>& values, Distribution& d) {
     auto sorted_to = values.begin();
-    const auto last = static_cast<double>(values.size() - 1);
+    const auto last = double(values.size() - 1);
     for (const auto& [share, target] :
          {std::pair{0.05, &d.p5}, std::pair{0.25, &d.p25}, std::pair{0.5, &d.median}, std::pair{0.75, &d.p75},
           std::pair{0.95, &d.p95}}) {
@@ -45,7 +47,7 @@ Distribution distribution(std::vector<float> values, const Bins& bins) {
     std::erase_if(values, [](float value) { return std::isnan(value); });
     Distribution d;
     d.bins = bins;
-    d.count = static_cast<std::int64_t>(values.size());
+    d.count = std::ssize(values);
     count_bins(values, d);
     if (values.empty()) {
         for (double* figure :
@@ -55,9 +57,9 @@ Distribution distribution(std::vector<float> values, const Bins& bins) {
     }
     double sum = 0, squares = 0;
     for (const float value : values) sum += value;
-    d.mean = sum / static_cast<double>(values.size());
+    d.mean = sum / double(values.size());
     for (const float value : values) squares += (value - d.mean) * (value - d.mean);
-    d.deviation = std::sqrt(squares / static_cast<double>(values.size()));
+    d.deviation = std::sqrt(squares / double(values.size()));
     const auto [least, greatest] = std::minmax_element(values.begin(), values.end());
     d.min = *least;
     d.max = *greatest;

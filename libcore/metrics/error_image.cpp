@@ -20,9 +20,9 @@ const Vec3f kNoValue(50, -20, 20);
 }  // namespace
 
 Vec3f error_color(double share) {
-    const double place = std::clamp(share, 0.0, 1.0) * static_cast<double>(kScale.size() - 1);
+    const double place = std::clamp(share, 0.0, 1.0) * double(kScale.size() - 1);
     const std::size_t below = std::min(static_cast<std::size_t>(place), kScale.size() - 2);
-    const auto part = static_cast<float>(place - static_cast<double>(below));
+    const auto part = static_cast<float>(place - double(below));
     return (1 - part) * kScale[below] + part * kScale[below + 1];
 }
 
@@ -31,8 +31,7 @@ Image error_image(std::span<const float> error, int width, int height, double ra
     parallel_blocks(0, height, kGrainRows, [&](int first, int last) {
         for (int y = first; y < last; ++y)
             for (int x = 0; x < width; ++x) {
-                const float value = error[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
-                                          static_cast<std::size_t>(x)];
+                const float value = error[image.index(x, y)];
                 const Vec3f luv = std::isnan(value) ? kNoValue : error_color(value / range);
                 const Vec3f rgb = encoded_from_linear(ColorSpace::kSrgb, linear_from_luv(luv));
                 for (int c = 0; c < 3; ++c) image.pixel(x, y)[c] = std::clamp(rgb[c], 0.0f, 1.0f);

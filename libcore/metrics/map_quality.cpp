@@ -29,18 +29,16 @@ Vec2d mapped_position(const BaseMesh& mesh, const PixelCoord& coord) {
 
 // The mapped positions of some rows of pixels.
 struct MappedRows {
-    int width, first;
-    std::vector<Vec2d> image;
+    int first;
+    Grid<Vec2d> places;
 
     MappedRows(const BaseMesh& mesh, const PixelMap& map, int begin, int end)
-        : width(map.width), first(begin) {
-        image.reserve(static_cast<std::size_t>(end - begin) * static_cast<std::size_t>(width));
+        : first(begin), places(map.width, end - begin, {}) {
+        places.values.reserve(places.pixel_count());
         for (int y = begin; y < end; ++y)
-            for (const PixelCoord& coord : map.row(y)) image.push_back(mapped_position(mesh, coord));
+            for (const PixelCoord& coord : map.row(y)) places.values.push_back(mapped_position(mesh, coord));
     }
-    const Vec2d& at(int x, int y) const {
-        return image[static_cast<std::size_t>(y - first) * static_cast<std::size_t>(width) + std::size_t(x)];
-    }
+    const Vec2d& at(int x, int y) const { return places.at(x, y - first); }
 };
 
 // Counts the triangles and steps between the pixel rows y and y + 1. Comparisons with a position that is not
@@ -73,7 +71,7 @@ void measure_row(const MappedRows& rows, int width, int height, int y, MapQualit
 void measure_pixels(const BaseMesh& mesh, const PixelMap& map, const MappedRows& rows, bool has_mask, int y,
                     MapQuality& q, std::int64_t& mapped) {
     for (int x = 0; x < map.width; ++x) {
-        const PixelCoord& c = map.row(y)[static_cast<std::size_t>(x)];
+        const PixelCoord& c = map.at(x, y);
         if (has_mask && c.face == kNone) continue;
         ++q.pixels;
         if (c.face >= mesh.faces.size()) {
@@ -93,11 +91,10 @@ void measure_pixels(const BaseMesh& mesh, const PixelMap& map, const MappedRows&
 }  // namespace
 
 std::vector<Vec2d> mapped_positions(const BaseMesh& mesh, const PixelMap& map) {
-    std::vector<Vec2d> image = parallel_vector<Vec2d>(map.coords.size(), Vec2d::Zero());
+    std::vector<Vec2d> image = parallel_vector<Vec2d>(map.size(), Vec2d::Zero());
     parallel_blocks(0, map.height, kGrainRows, [&](int first, int last) {
-        const auto width = static_cast<std::size_t>(map.width);
-        for (std::size_t i = std::size_t(first) * width; i < std::size_t(last) * width; ++i)
-            image[i] = mapped_position(mesh, map.coords[i]);
+        for (int y = first; y < last; ++y)
+            for (int x = 0; x < map.width; ++x) image[map.index(x, y)] = mapped_position(mesh, map.at(x, y));
     });
     return image;
 }
@@ -107,9 +104,9 @@ MapQuality map_quality(const BaseMesh& mesh, const PixelMap& map, bool has_mask)
         MapQuality q;
         std::int64_t mapped = 0;
     };
-    std::vector<Part> parts(static_cast<std::size_t>((map.height + kGrainRows - 1) / kGrainRows));
+    std::vector<Part> parts(as_index((map.height + kGrainRows - 1) / kGrainRows));
     parallel_blocks(0, map.height, kGrainRows, [&](int first, int last) {
-        Part& part = parts[static_cast<std::size_t>(first / kGrainRows)];
+        Part& part = parts[as_index(first / kGrainRows)];
         part.q.min_area2 = std::numeric_limits<double>::infinity();
         const MappedRows rows(mesh, map, first, std::min(last + 1, map.height));
         for (int y = first; y < last; ++y) {
@@ -149,7 +146,7 @@ double range_rms(const BaseMesh& mesh, const PixelMap& map, const FeatureImage& 
         throw Error(ErrorKind::kBadArgument,
                     cat("base mesh has ", mesh.channels, " channels, reference has ", reference.channels));
     // One sum for each row, added in order: the result is the same for any number of threads.
-    std::vector<double> sums(static_cast<std::size_t>(map.height));
+    std::vector<double> sums(as_index(map.height));
     std::vector<std::int64_t> counts(sums.size());
     parallel_blocks(0, map.height, kGrainRows, [&](int first, int last) {
         for (int y = first; y < last; ++y) {
@@ -169,8 +166,8 @@ double range_rms(const BaseMesh& mesh, const PixelMap& map, const FeatureImage& 
                 }
                 want += reference.channels;
             }
-            sums[static_cast<std::size_t>(y)] = sum;
-            counts[static_cast<std::size_t>(y)] = count;
+            sums[as_index(y)] = sum;
+            counts[as_index(y)] = count;
         }
     });
     const std::int64_t pixels = std::accumulate(counts.begin(), counts.end(), std::int64_t{0});

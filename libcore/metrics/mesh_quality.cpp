@@ -113,8 +113,8 @@ void measure_shape(const BaseMesh& mesh, MeshQuality& q) {
 
 MeshQuality mesh_quality(const BaseMesh& mesh) {
     MeshQuality q;
-    q.vertices = static_cast<std::int64_t>(mesh.vertex_count());
-    q.faces = static_cast<std::int64_t>(mesh.faces.size());
+    q.vertices = std::ssize(mesh.position);
+    q.faces = std::ssize(mesh.faces);
     measure_topology(mesh, q);
     measure_shape(mesh, q);
     return q;

@@ -51,7 +51,7 @@ struct MapQuality {
 /// Takes O(pixels) time.
 MapQuality map_quality(const BaseMesh& mesh, const PixelMap& map, bool has_mask = false);
 
-/// Returns where each pixel lands: the positions of map.coords in `mesh`, width * height. They are NaN if the
+/// Returns where each pixel lands: the positions of the map in `mesh`, width * height. They are NaN if the
 /// face is kNone or out of range.
 std::vector<Vec2d> mapped_positions(const BaseMesh& mesh, const PixelMap& map);
 

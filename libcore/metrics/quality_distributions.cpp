@@ -52,25 +52,27 @@ MeshDistributions mesh_distributions(const BaseMesh& mesh) {
 MapDistributions map_distributions(const BaseMesh& mesh, const PixelMap& map) {
     // Positions of pixels without a face are NaN. So are distances to them, which therefore do not count.
     const std::vector<Vec2d> image = mapped_positions(mesh, map);
-    const auto width = static_cast<std::size_t>(map.width);
     std::vector<float> jumps, displacements;
     jumps.reserve(2 * image.size());
     displacements.reserve(image.size());
-    for (std::size_t i = 0; i < image.size(); ++i) {
-        const std::size_t x = i % width;
-        displacements.push_back(static_cast<float>((image[i] - Vec2d(double(x), double(i / width))).norm()));
-        if (x + 1 < width) jumps.push_back(static_cast<float>((image[i] - image[i + 1]).norm()));
-        if (i + width < image.size())
-            jumps.push_back(static_cast<float>((image[i] - image[i + width]).norm()));
-    }
+    const auto add_distance = [](std::vector<float>& to, const Vec2d& a, const Vec2d& b) {
+        to.push_back(static_cast<float>((a - b).norm()));
+    };
+    for (int y = 0; y < map.height; ++y)
+        for (int x = 0; x < map.width; ++x) {
+            const Vec2d& here = image[map.index(x, y)];
+            add_distance(displacements, here, Vec2d(x, y));
+            if (map.contains(x + 1, y)) add_distance(jumps, here, image[map.index(x + 1, y)]);
+            if (map.contains(x, y + 1)) add_distance(jumps, here, image[map.index(x, y + 1)]);
+        }
 
     std::vector<std::int64_t> pixels(mesh.faces.size());
-    for (const PixelCoord& coord : map.coords)
+    for (const PixelCoord& coord : map)
         if (coord.face < mesh.faces.size()) ++pixels[coord.face];
     std::vector<float> patch_per_area;
     for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
         const double area = area2_of(mesh, mesh.faces[f]) / 2;
-        if (area > 0) patch_per_area.push_back(static_cast<float>(static_cast<double>(pixels[f]) / area));
+        if (area > 0) patch_per_area.push_back(static_cast<float>(double(pixels[f]) / area));
     }
     return {distribution(std::move(jumps), kJumpBins),
             distribution(std::move(displacements), kDisplacementBins),

@@ -6,6 +6,7 @@
 #include <limits>
 #include <vector>
 
+#include "libcore/base/index.h"
 #include "libcore/base/parallel.h"
 
 namespace imgmesh {
@@ -21,7 +22,7 @@ std::array<double, kSsimWindow> gaussian() {
     double sum = 0;
     for (int i = 0; i < kSsimWindow; ++i) {
         const double x = (i - kSsimWindow / 2) / kSsimSigma;
-        sum += weights[static_cast<std::size_t>(i)] = std::exp(-x * x / 2);
+        sum += weights[as_index(i)] = std::exp(-x * x / 2);
     }
     for (double& w : weights) w /= sum;
     return weights;
@@ -42,12 +43,12 @@ double mean_ssim(std::span<const float> a, std::span<const float> b, int width, 
     if (rows <= 0 || columns <= 0) return std::numeric_limits<double>::quiet_NaN();
     const auto weights = gaussian();
     // One sum for each row, added in order: the result is the same for any number of threads.
-    std::vector<double> sums(static_cast<std::size_t>(rows));
+    std::vector<double> sums(as_index(rows));
     std::vector<std::int64_t> counts(sums.size());
     parallel_blocks(0, rows, kGrainRows, [&](int first, int last) {
-        const auto w = static_cast<std::size_t>(width);
+        const std::size_t w = as_index(width);
         std::vector<Moments> column(w);
-        for (auto y = static_cast<std::size_t>(first); y < static_cast<std::size_t>(last); ++y) {
+        for (std::size_t y = as_index(first); y < as_index(last); ++y) {
             column.assign(w, Moments{});
             for (std::size_t k = 0; k < kSsimWindow; ++k)
                 for (std::size_t x = 0; x < w; ++x) {
@@ -55,7 +56,7 @@ double mean_ssim(std::span<const float> a, std::span<const float> b, int width, 
                     const Moments sample = {p, q, p * p, q * q, p * q};
                     for (std::size_t m = 0; m < sample.size(); ++m) column[x][m] += weights[k] * sample[m];
                 }
-            for (std::size_t x = 0; x < static_cast<std::size_t>(columns); ++x) {
+            for (std::size_t x = 0; x < as_index(columns); ++x) {
                 Moments window{};
                 for (std::size_t k = 0; k < kSsimWindow; ++k)
                     for (std::size_t m = 0; m < window.size(); ++m)
@@ -73,7 +74,7 @@ double mean_ssim(std::span<const float> a, std::span<const float> b, int width, 
         sum += sums[y];
         count += counts[y];
     }
-    return count > 0 ? sum / static_cast<double>(count) : std::numeric_limits<double>::quiet_NaN();
+    return count > 0 ? sum / double(count) : std::numeric_limits<double>::quiet_NaN();
 }
 
 }  // namespace imgmesh

@@ -4,11 +4,13 @@
 #include <cassert>
 #include <cmath>
 
+#include "libcore/base/index.h"
+
 namespace imgmesh {
 namespace {
 
 std::size_t index(int k) {
-    return static_cast<std::size_t>(k);
+    return as_index(k);
 }
 
 std::span<const Vec2d> ring_of(const FlatRing& flat, int size) {

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "libcore/base/index.h"
+
 namespace imgmesh {
 
 bool flatten_ring(const float* pivot, std::span<const float* const> ring, int dimensions, bool open,
@@ -24,7 +26,7 @@ bool flatten_ring(const float* pivot, std::span<const float* const> ring, int di
     double total = 0, mean = 0;
     for (std::size_t k = 0; k < n; ++k) {
         if (!(square[k] > 0)) return false;
-        mean += std::sqrt(square[k]) / static_cast<double>(n);
+        mean += std::sqrt(square[k]) / double(n);
         if (open && k + 1 == n) break;
         const double cosine = product[k] / std::sqrt(square[k] * square[k + 1 < n ? k + 1 : 0]);
         angle[k] = std::acos(std::clamp(cosine, -1.0, 1.0));
@@ -49,8 +51,8 @@ bool FlatFan::set(const Vec2d& center, std::span<const Vec2d> ring, bool closed)
     assert(ring.size() >= 2 && ring.size() <= kMaxFlatRing);
     center_ = center;
     const std::size_t n = ring.size();
-    size_ = static_cast<int>(closed ? n : n - 1);
-    for (std::size_t k = 0; k < static_cast<std::size_t>(size_); ++k) {
+    size_ = as_int(closed ? n : n - 1);
+    for (std::size_t k = 0; k < as_index(size_); ++k) {
         const Vec2d r = ring[k] - center, s = ring[k + 1 < n ? k + 1 : 0] - center;
         const double area2 = r.x() * s.y() - r.y() * s.x();
         const double longest = std::max({r.squaredNorm(), s.squaredNorm(), (r - s).squaredNorm()});
@@ -65,7 +67,7 @@ FanPoint FlatFan::locate(const Vec2d& p) const {
     FanPoint best;
     double best_least = -std::numeric_limits<double>::infinity();
     for (int k = 0; k < size_; ++k) {
-        const Triangle& t = triangles_[static_cast<std::size_t>(k)];
+        const Triangle& t = triangles_[as_index(k)];
         // Written so that a point on a border (y = 0, as the triangle's own) keeps an exact 0.
         const double u = (x * t.sy - y * t.sx) * t.inverse, v = (t.rx * y - t.ry * x) * t.inverse;
         const double least = std::min({u, v, 1 - u - v});

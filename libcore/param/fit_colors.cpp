@@ -57,7 +57,7 @@ struct PartialSums {
         Id least = kNone, most = 0;
         for (const FitTerm& term : terms)
             for (std::size_t i = begin; i < end; ++i)
-                if (const Id face = term.map->coords[i].face; face != kNone) {
+                if (const Id face = (*term.map)[i].face; face != kNone) {
                     least = std::min(least, face);
                     most = std::max(most, face);
                 }
@@ -66,7 +66,7 @@ struct PartialSums {
         sums.resize(most - least + 1);
         for (const FitTerm& term : terms)
             for (std::size_t i = begin; i < end; ++i) {
-                const PixelCoord& coord = term.map->coords[i];
+                const PixelCoord& coord = (*term.map)[i];
                 if (coord.face == kNone) continue;
                 double values[3 + C] = {1.0 - coord.u - coord.v, coord.u, coord.v};
                 const float* f = feature.pixel(i);
@@ -86,15 +86,16 @@ std::vector<FaceSums<C>> sum_over_pixels(const BaseMesh& mesh, const FeatureImag
                                          const std::vector<FitTerm>& terms) {
     // Each part has sums for up to all faces, so the number of parts is limited by the memory they take.
     constexpr std::size_t kParts = 8;
+    constexpr int kGrainFaces = 4096;
     const std::size_t pixels = feature.pixel_count();
     PartialSums<C> parts[kParts];
     parallel_blocks(0, kParts, 1, [&](int begin, int) {
-        const auto part = static_cast<std::size_t>(begin);
+        const std::size_t part = as_index(begin);
         parts[part] = PartialSums<C>(feature, terms, part * pixels / kParts, (part + 1) * pixels / kParts);
     });
     std::vector<FaceSums<C>> sums(mesh.faces.size());
-    parallel_blocks(0, static_cast<int>(sums.size()), 4096, [&](int begin, int end) {
-        for (auto f = static_cast<std::size_t>(begin); f < static_cast<std::size_t>(end); ++f)
+    parallel_blocks(0, as_int(sums.size()), kGrainFaces, [&](int begin, int end) {
+        for (std::size_t f = as_index(begin); f < as_index(end); ++f)
             for (const PartialSums<C>& part : parts)
                 if (part.holds(f)) sums[f].add(part.sums[f - part.first]);
     });
@@ -170,8 +171,8 @@ void fit(BaseMesh& mesh, const FeatureImage& feature, const std::vector<FitTerm>
     {
         const std::vector<FaceSums<C>> sums = sum_over_pixels<C>(mesh, feature, terms);
         const CornersOfVertices corners = corners_of_vertices(mesh);
-        parallel_blocks(0, static_cast<int>(classes.size()), 1, [&](int n, int) {
-            const auto k = static_cast<std::size_t>(n);
+        parallel_blocks(0, as_int(classes.size()), 1, [&](int n, int) {
+            const std::size_t k = as_index(n);
             systems[k].emplace(mesh, sums, corners, classes[k]);
         });
     }
@@ -182,8 +183,8 @@ void fit(BaseMesh& mesh, const FeatureImage& feature, const std::vector<FitTerm>
     // passes change the RMS in the fourth digit.
     constexpr int kPasses = 6;
     if (space.color)
-        parallel_blocks(0, static_cast<int>(mesh.vertex_count()), kGrain, [&](int begin, int end) {
-            for (Id v = static_cast<Id>(begin); v < static_cast<Id>(end); ++v)
+        parallel_blocks(0, as_int(mesh.vertex_count()), kGrain, [&](int begin, int end) {
+            for (Id v = as_id(begin); v < as_id(end); ++v)
                 set_color(mesh, v, limited(Vec3f(mesh.feature_of(v)), space));
         });
     const auto improve = [&](const ClassSystem<C>& all, std::size_t n) {
@@ -207,11 +208,9 @@ void fit(BaseMesh& mesh, const FeatureImage& feature, const std::vector<FitTerm>
     };
     for (int pass = 0; pass < kPasses; ++pass)
         for (const std::optional<ClassSystem<C>>& system : systems)
-            parallel_blocks(0, static_cast<int>(system->vertices.size()) - 1, kGrain,
-                            [&](int begin, int end) {
-                                for (int n = begin; n < end; ++n)
-                                    improve(*system, static_cast<std::size_t>(n));
-                            });
+            parallel_blocks(0, as_int(system->vertices.size()) - 1, kGrain, [&](int begin, int end) {
+                for (int n = begin; n < end; ++n) improve(*system, as_index(n));
+            });
 }
 
 }  // namespace

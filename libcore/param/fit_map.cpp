@@ -24,8 +24,7 @@ void set_unrounded(const PixelEmbedding& pixels, const std::vector<FaceField>& f
                 const Vec2f p = pixels.image_of(x, y);
                 const Id face = pixels.face[pixels.index(x, y)];
                 if (face == kNone) continue;
-                map.coords[pixels.index(x, y)] = {face, fields[face].u(p.x(), p.y()),
-                                                  fields[face].v(p.x(), p.y())};
+                map.at(x, y) = {face, fields[face].u(p.x(), p.y()), fields[face].v(p.x(), p.y())};
             }
     });
 }
@@ -89,9 +88,9 @@ PixelMap fit_map(BaseMesh& mesh, const FeatureImage& feature, const FitParams& p
     // A strip of one pixel has no cells that could fold; its map stays trivial.
     const int rounds = params.color_weight > 0 && feature.width > 1 && feature.height > 1 ? params.rounds : 0;
     PixelMap between;
-    if (rounds > 1) between = {pixels.width, pixels.height, parallel_copy(trivial.coords)};
+    if (rounds > 1) between = PixelMap(pixels.width, pixels.height, parallel_copy(trivial.values));
     for (int round = 0; round < rounds; ++round) {
-        if (progress) progress(static_cast<double>(round) / params.rounds, "map");
+        if (progress) progress(double(round) / params.rounds, "map");
         const std::vector<FaceField> fields = face_fields(mesh);
         relax(pixels, fields, neighbors, feature, static_cast<float>(1 / params.color_weight), params.sweeps,
               auxiliary_fields(mesh, fields));
@@ -112,7 +111,7 @@ PixelMap fit_given_map(BaseMesh& mesh, const FeatureImage& feature, PixelMap map
     const bool fine = longest_edge(mesh) * kHalfWeightStep <= kCoarsest;
     map.precision = params.bary.value_or(fine ? WeightPrecision::kHalf : WeightPrecision::kFloat);
     const double steps = weight_steps(map.precision);
-    for (PixelCoord& coord : map.coords)
+    for (PixelCoord& coord : map)
         if (coord.face != kNone)
             coord = on_weight_grid(
                 coord.face, {1.0 - double(coord.u) - double(coord.v), double(coord.u), double(coord.v)},

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "libcore/base/parallel.h"
 #include "libcore/base/parallel_vector.h"
@@ -35,24 +36,19 @@ class Storing {
           pixels_(pixels),
           fields_(fields),
           neighbors_(neighbors),
-          steps_(weight_steps(precision)) {
-        map_.width = pixels.width;
-        map_.height = pixels.height;
-        map_.precision = precision;
-        map_.coords = parallel_vector<PixelCoord>(pixels.face.size());
-    }
+          steps_(weight_steps(precision)),
+          map_(pixels.width, pixels.height, parallel_vector<PixelCoord>(pixels.face.size()), precision) {}
 
     std::optional<PixelMap> run() {
         parallel_blocks(0, map_.height, 16, [&](int first, int last) {
             for (int y = first; y < last; ++y)
                 for (int x = 0; x < map_.width; ++x)
                     if (const Id face = pixels_.face[pixels_.index(x, y)]; face != kNone)
-                        map_.row(y)[static_cast<std::size_t>(x)] =
-                            rounded(face, pixels_.image_of(x, y).cast<double>());
+                        map_.at(x, y) = rounded(face, pixels_.image_of(x, y).cast<double>());
         });
         // Few cells need repair: one in a thousand in photographs with few vertices, none at 1 %. Where whole
         // regions fold, the faces are too large, and trying each cell would take minutes.
-        const std::size_t mendable = 64 + map_.coords.size() / 64;
+        const std::size_t mendable = 64 + map_.size() / 64;
         constexpr int kPasses = 40;
         int idle = 0;  // passes without a move; odd and even ones try different places
         for (int pass = 0; pass < kPasses && idle < 2; ++pass) {
@@ -74,7 +70,7 @@ class Storing {
         return (1 - u - v) * mesh_.position[a].cast<double>() + u * mesh_.position[b].cast<double>() +
                v * mesh_.position[c].cast<double>();
     }
-    Vec2d position(int x, int y) const { return position(map_.coords[pixels_.index(x, y)]); }
+    Vec2d position(int x, int y) const { return position(map_.at(x, y)); }
 
     // Returns the grid point of `face` nearest to p, by largest remainders, so that the three weights sum to
     // one exactly.
@@ -92,14 +88,13 @@ class Storing {
 
     std::vector<std::pair<int, int>> bad_cells() const {
         const int rows = std::max(0, map_.height - 1);
-        std::vector<std::vector<std::pair<int, int>>> found(static_cast<std::size_t>(rows));
+        std::vector<std::vector<std::pair<int, int>>> found(as_index(rows));
         parallel_blocks(0, rows, 16, [&](int first, int last) {
             for (int y = first; y < last; ++y) {
                 Vec2d tl = position(0, y), bl = position(0, y + 1);
                 for (int x = 0; x + 1 < map_.width; ++x) {
                     const Vec2d tr = position(x + 1, y), br = position(x + 1, y + 1);
-                    if (cell_area2(tl, tr, bl, br) < kLeastStoredArea)
-                        found[static_cast<std::size_t>(y)].emplace_back(x, y);
+                    if (cell_area2(tl, tr, bl, br) < kLeastStoredArea) found[as_index(y)].emplace_back(x, y);
                     tl = tr;
                     bl = br;
                 }
@@ -126,7 +121,7 @@ class Storing {
         bool moved = false;
         for (int corner = 0; corner < 4; ++corner) {
             const int x = cell_x + corner % 2, y = cell_y + corner / 2;
-            PixelCoord& coord = map_.coords[pixels_.index(x, y)];
+            PixelCoord& coord = map_.at(x, y);
             if (coord.face == kNone) continue;
             PixelCoord best = coord;
             double best_area = area_around(x, y);
@@ -134,7 +129,7 @@ class Storing {
             // Candidates reach from a fraction of the rounding error up to most of a pixel.
             for (double radius = 0.01; radius < 1.0; radius *= 2)
                 for (int direction = 0; direction < 8 && best_area < 2 * kLeastStoredArea; ++direction) {
-                    const double angle = direction * 0.78539816339744831;
+                    const double angle = direction * std::numbers::pi / 4;
                     Vec2d q = center + radius * Vec2d(std::cos(angle), std::sin(angle));
                     if (pixels_.pinned_x(x, y)) q.x() = x;
                     if (pixels_.pinned_y(x, y)) q.y() = y;

@@ -8,7 +8,9 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <cstddef>
 #include <cstdlib>
+#include <cstring>
 #include <limits>
 
 #include "libcore/base/parallel.h"
@@ -19,8 +21,14 @@
 namespace imgmesh {
 namespace {
 
+// A step assumes that the mesh's colour is linear, which it is inside one face alone: half a pixel is as far
+// as that is trusted. Where the step would fold the grid, shorter ones are tried.
 constexpr float kLongestStep = 0.5f;
 constexpr int kHalvings = 2;
+
+// Rows of a block: enough work beside the cost of handing it over, few enough for all threads to have some.
+constexpr int kSweptRows = 16;
+constexpr int kCopiedRows = 64;
 
 // A pixel that slides along a boundary lies on an edge of a face, up to the rounding of its weights.
 constexpr float kWeightSlack = 1e-4f;
@@ -68,13 +76,10 @@ struct NewtonStep {
         bx -= gx * e;
         by -= gy * e;
     }
-    // Adds the first features, whose values are in the FaceField `field`.
-    IMGMESH_INLINE void add_fields(const T* field, const T* color, int features, T px, T py) {
-        const T dx = px - field[0], dy = py - field[1];
-        for (int c = 0; c < features; ++c) {
-            const T gx = field[9 + c], gy = field[12 + c];
-            add(gx, gy, field[6 + c] + gx * dx + gy * dy - color[c]);
-        }
+    // Adds the first features: f, fx and fy are those of a FaceField, (dx, dy) counts from its corner a.
+    IMGMESH_INLINE void add_features(const T* f, const T* fx, const T* fy, const T* color, int features, T dx,
+                                     T dy) {
+        for (int c = 0; c < features; ++c) add(fx[c], fy[c], f[c] + fx[c] * dx + fy[c] * dy - color[c]);
     }
     IMGMESH_INLINE void solve(T& sx, T& sy) const {
         // Sums of terms that are never negative. (In J'J + mu I as one matrix, with J'J steep and singular,
@@ -98,6 +103,34 @@ IMGMESH_INLINE T least_area(T x, T y, const T* nx, const T* ny) {
     return least;
 }
 
+// Eight FaceFields side by side.
+struct EightFields {
+    Float8 ax, ay, ux, uy, vx, vy;
+    Float8 f[3], fx[3], fy[3];
+
+    // Each is read as a whole; its last four bytes are none of its members and go nowhere.
+    IMGMESH_INLINE explicit EightFields(const FaceField* const (&fields)[8]) {
+        static_assert(sizeof(FaceField) == 2 * sizeof(Float8) && offsetof(FaceField, ay) == 4 &&
+                      offsetof(FaceField, ux) == 8 && offsetof(FaceField, vy) == 20 &&
+                      offsetof(FaceField, f) == 24 && offsetof(FaceField, fx) == 36 &&
+                      offsetof(FaceField, fy) == 48);
+        Float8 front[8], back[8];
+        for (int l = 0; l < 8; ++l) {
+            const auto* bytes = reinterpret_cast<const std::byte*>(fields[l]);
+            std::memcpy(&front[l], bytes, sizeof front[l]);
+            std::memcpy(&back[l], bytes + sizeof front[l], sizeof back[l]);
+        }
+        transpose8(front);
+        transpose8(back);
+        ax = front[0], ay = front[1], ux = front[2], uy = front[3], vx = front[4], vy = front[5];
+        f[0] = front[6], f[1] = front[7], f[2] = back[0];
+        for (int c = 0; c < 3; ++c) {
+            fx[c] = back[1 + c];
+            fy[c] = back[4 + c];
+        }
+    }
+};
+
 struct Sweep {
     PixelEmbedding& pixels;
     const std::vector<FaceField>& fields;
@@ -114,7 +147,7 @@ struct Sweep {
         float nx[8], ny[8], mean_x = 0, mean_y = 0, count = 0;
         for (int k = 0; k < 8; ++k) {
             const int i = x + kStepX[k], j = y + kStepY[k];
-            const bool inside = i >= 0 && i < w && j >= 0 && j < h;
+            const bool inside = pixels.contains(i, j);
             const float dx = inside ? pixels.dx[pixels.index(i, j)] : std::numeric_limits<float>::quiet_NaN();
             const float dy = inside ? pixels.dy[pixels.index(i, j)] : std::numeric_limits<float>::quiet_NaN();
             nx[k] = static_cast<float>(i) + dx;
@@ -130,10 +163,12 @@ struct Sweep {
         const FaceField& field = fields[pixels.face[index]];
         const float* color = feature.pixel(index);
         NewtonStep<float> step(px, py, rest_x + mean_x / count, rest_y + mean_y / count, mu);
-        step.add_fields(&field.ax, color, std::min(3, feature.channels), px, py);
+        const float from_ax = px - field.ax, from_ay = py - field.ay;
+        step.add_features(field.f, field.fx, field.fy, color, std::min(3, feature.channels), from_ax,
+                          from_ay);
         const float* f = auxiliary.of(pixels.face[index]);
         for (std::size_t c = 0; c < auxiliary.features; ++c, f += 3)
-            step.add(f[1], f[2], f[0] + f[1] * (px - field.ax) + f[2] * (py - field.ay) - color[3 + c]);
+            step.add_features(f, f + 1, f + 2, color + 3 + c, 1, from_ax, from_ay);
         step.solve(sx, sy);
         if (pixels.pinned_x(x, y)) sx = 0;
         if (pixels.pinned_y(x, y)) sy = 0;
@@ -164,17 +199,14 @@ struct Sweep {
     // boundary, with three features.
     IMGMESH_INLINE void move_eight(int x, int y) const {
         const std::size_t index = pixels.index(x, y);
-        Float8 field[2][8];
+        const FaceField* face_of[8];
         float colors[3][8];
         for (std::size_t l = 0; l < 8; ++l) {
-            const float* f = &fields[pixels.face[index + 2 * l]].ax;
-            field[0][l] = load8(f);
-            field[1][l] = load8(f + 8);
+            face_of[l] = &fields[pixels.face[index + 2 * l]];
             for (int c = 0; c < 3; ++c) colors[c][l] = feature.pixel(index + 2 * l)[c];
         }
+        const EightFields field(face_of);
         const Float8 color[3] = {load8(colors[0]), load8(colors[1]), load8(colors[2])};
-        transpose8(field[0]);
-        transpose8(field[1]);
         const Float8 rest_x = static_cast<float>(x) + Float8{0, 2, 4, 6, 8, 10, 12, 14};
         const float rest_y = static_cast<float>(y);
         Float8 nx[8], ny[8], mean_x = {}, mean_y = {};
@@ -191,7 +223,7 @@ struct Sweep {
         const Float8 py = rest_y + load8_every_other(&pixels.dy[index]);
         Float8 sx, sy;
         NewtonStep<Float8> step(px, py, rest_x + mean_x / 4, rest_y + mean_y / 4, mu);
-        step.add_fields(field[0], color, 3, px, py);
+        step.add_features(field.f, field.fx, field.fy, color, 3, px - field.ax, py - field.ay);
         step.solve(sx, sy);
         const float right = static_cast<float>(pixels.width - 1),
                     bottom = static_cast<float>(pixels.height - 1);
@@ -207,13 +239,13 @@ struct Sweep {
             for (int l = 0; l < 8; ++l) all &= moved[l];
             if (all) break;
         }
-        const Float8 ex = to_x - field[0][0], ey = to_y - field[0][1];
-        const Float8 u = field[0][2] * ex + field[0][3] * ey, v = field[0][4] * ex + field[0][5] * ey;
+        const Float8 ex = to_x - field.ax, ey = to_y - field.ay;
+        const Float8 u = field.ux * ex + field.uy * ey, v = field.vx * ex + field.vy * ey;
         const Float8 least_weight = lesser(lesser(u, v), 1 - u - v);
         const Float8 dx = to_x - rest_x, dy = to_y - rest_y;
         for (int l = 0; l < 8; ++l) {
             if (!moved[l]) continue;
-            const std::size_t i = index + 2 * static_cast<std::size_t>(l);
+            const std::size_t i = index + 2 * as_index(l);
             Id face = pixels.face[i];
             if (least_weight[l] < 0) {
                 face = locate_face({to_x[l], to_y[l]}, face, fields, neighbors);
@@ -260,7 +292,7 @@ std::uint8_t freedom_of(const Mask& mask, int x, int y) {
     if (fans.count != 1) return kPinnedX | kPinnedY;
     const Fan& fan = fans.fan[0];
     if (!fan.closed) {
-        const int from = fan.direction[0], to = fan.direction[static_cast<std::size_t>(fan.count - 1)];
+        const int from = fan.direction[0], to = fan.direction[fan.count - 1];
         if (std::abs(from - to) != 4 || from % 2 != 0) return kPinnedX | kPinnedY;
         return from % 4 == 0 ? kPinnedY : kPinnedX;
     }
@@ -270,17 +302,14 @@ std::uint8_t freedom_of(const Mask& mask, int x, int y) {
 }  // namespace
 
 PixelEmbedding resting_pixels(const PixelMap& trivial, const Mask& mask) {
-    PixelEmbedding pixels{trivial.width, trivial.height, {}, {}, {}, {}};
-    pixels.dx = parallel_vector<float>(trivial.coords.size());
-    pixels.dy = parallel_vector<float>(trivial.coords.size());
-    pixels.face = parallel_vector<Id>(trivial.coords.size());
-    parallel_blocks(0, trivial.height, 64, [&](int first, int last) {
+    PixelEmbedding pixels{trivial, parallel_vector<float>(trivial.size()),
+                          parallel_vector<float>(trivial.size()), parallel_vector<Id>(trivial.size())};
+    parallel_blocks(0, trivial.height, kCopiedRows, [&](int first, int last) {
         for (int y = first; y < last; ++y)
-            for (int x = 0; x < trivial.width; ++x)
-                pixels.face[pixels.index(x, y)] = trivial.coords[pixels.index(x, y)].face;
+            for (int x = 0; x < trivial.width; ++x) pixels.face[pixels.index(x, y)] = trivial.at(x, y).face;
     });
     if (mask.empty()) return pixels;
-    pixels.freedom.reserve(trivial.coords.size());
+    pixels.freedom.reserve(trivial.size());
     for (int y = 0; y < trivial.height; ++y)
         for (int x = 0; x < trivial.width; ++x) pixels.freedom.push_back(freedom_of(mask, x, y));
     for (std::size_t i = 0; i < pixels.face.size(); ++i)
@@ -290,7 +319,7 @@ PixelEmbedding resting_pixels(const PixelMap& trivial, const Mask& mask) {
 
 void relax(PixelEmbedding& pixels, const std::vector<FaceField>& fields, const std::vector<Face>& neighbors,
            const FeatureImage& feature, float smoothness, int sweeps, const AuxiliaryFields& auxiliary) {
-    assert(static_cast<int>(auxiliary.features) == std::max(0, feature.channels - 3));
+    assert(as_int(auxiliary.features) == std::max(0, feature.channels - 3));
     const Sweep sweep{pixels, fields, neighbors, feature, smoothness, auxiliary};
     auto move_row = &Sweep::move_row_portably;
 #if defined(__x86_64__)
@@ -299,7 +328,7 @@ void relax(PixelEmbedding& pixels, const std::vector<FaceField>& fields, const s
     const int h = pixels.height;
     for (int n = 0; n < sweeps; ++n)
         for (int parity = 0; parity < 4; ++parity)
-            parallel_blocks(0, (h + 1) / 2, 16, [&](int first, int last) {
+            parallel_blocks(0, (h + 1) / 2, kSweptRows, [&](int first, int last) {
                 for (int row = first; row < last; ++row)
                     if (const int y = 2 * row + parity / 2; y < h) (sweep.*move_row)(y, parity % 2);
             });

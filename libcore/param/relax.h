@@ -20,9 +20,7 @@ enum Freedom : std::uint8_t {
 };
 
 /// The place of each pixel of a W x H image on the base mesh while it is being moved.
-struct PixelEmbedding {
-    int width = 0;
-    int height = 0;
+struct PixelEmbedding : GridSize {
     std::vector<float> dx, dy;  ///< place on the mesh minus the pixel [pixels]; NaN outside a mask
     std::vector<Id> face;       ///< the face that holds the place; kNone outside a mask
     std::vector<std::uint8_t> freedom =
@@ -36,9 +34,6 @@ struct PixelEmbedding {
         return freedom.empty() ? y == 0 || y == height - 1 : freedom[index(x, y)] & kPinnedY;
     }
 
-    std::size_t index(int x, int y) const {
-        return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
-    }
     Vec2f image_of(int x, int y) const {
         const std::size_t i = index(x, y);
         return {static_cast<float>(x) + dx[i], static_cast<float>(y) + dy[i]};

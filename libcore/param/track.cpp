@@ -184,12 +184,12 @@ PixelMap PixelTracker::map(const BaseMesh& mesh) const {
         for (Id p = first_[own]; p != kNone; p = pixels_[p].next) {
             const float u = pixels_[p].u, v = pixels_[p].v;
             const std::array<float, 3> weight{1 - u - v, u, v};
-            map.coords[p] = {static_cast<Id>(f), weight[(at + 1) % 3], weight[(at + 2) % 3]};
+            map[p] = {static_cast<Id>(f), weight[(at + 1) % 3], weight[(at + 2) % 3]};
         }
         for (std::size_t k = 0; k < 3; ++k) {
             const Id pixel = pixel_[live[mesh.faces[f][k]]];
-            if (pixel != kNone && map.coords[pixel].face == kNone)
-                map.coords[pixel] = {static_cast<Id>(f), k == 1 ? 1.0f : 0.0f, k == 2 ? 1.0f : 0.0f};
+            if (pixel != kNone && map[pixel].face == kNone)
+                map[pixel] = {static_cast<Id>(f), k == 1 ? 1.0f : 0.0f, k == 2 ? 1.0f : 0.0f};
         }
     }
     return map;

@@ -35,7 +35,7 @@ TrackStart track_start(const GridMesh& grid, int width, int height) {
         }
     if (std::find(is_vertex.begin(), is_vertex.end(), false) == is_vertex.end()) return start;
     const BaseMesh dense{start.channels, start.position, start.feature, start.faces};
-    start.off_vertex = trivial_map(dense, width, height, grid.mask).coords;
+    start.off_vertex = trivial_map(dense, width, height, grid.mask).values;
     for (std::size_t p = 0; p < is_vertex.size(); ++p)
         if (is_vertex[p]) start.off_vertex[p] = {};
     return start;

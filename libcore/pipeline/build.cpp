@@ -52,7 +52,7 @@ Progress part_of(const Progress& whole, double begin, double end) {
 
 std::int64_t largest_patch(const Level& level) {
     std::vector<std::int64_t> pixels(level.mesh.faces.size(), 0);
-    for (const PixelCoord& coord : level.map.coords)
+    for (const PixelCoord& coord : level.map)
         if (coord.face != kNone) ++pixels[coord.face];
     return *std::max_element(pixels.begin(), pixels.end());
 }

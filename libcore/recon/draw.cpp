@@ -26,7 +26,7 @@ constexpr double kMaxPixels = 1 << 28;
 using RowFunction = std::function<void(int y, float* planes)>;
 
 void store(float* planes, int width, std::size_t x, const Vec3f& luv) {
-    for (int c = 0; c < 3; ++c) planes[static_cast<std::size_t>(c * width) + x] = luv[c];
+    for (int c = 0; c < 3; ++c) planes[as_index(c * width) + x] = luv[c];
 }
 
 // Fills a row through the map. The map is read from memory once and the rows stay in cache; only the corners'
@@ -62,7 +62,7 @@ void darken_borders(const PixelMap& map, int y, float* planes) {
     for (std::size_t x = 0; x < row.size(); ++x) {
         const Id right = row[std::min(x + 1, row.size() - 1)].face;
         if (right == row[x].face && below[x].face == row[x].face) continue;
-        for (int c = 0; c < 3; ++c) planes[static_cast<std::size_t>(c * map.width) + x] *= kDarker;
+        for (int c = 0; c < 3; ++c) planes[as_index(c * map.width) + x] *= kDarker;
     }
 }
 
@@ -97,9 +97,7 @@ class WireRow {
             const float distance =
                 std::min({(1 - row[x].u - row[x].v) * height[0], row[x].u * height[1], row[x].v * height[2]});
             const float ink = opacity_ * std::clamp(width_ / 2 + 0.5f - distance, 0.0f, 1.0f);
-            const auto at = [&](int c) -> float& {
-                return planes[static_cast<std::size_t>(c * map.width) + x];
-            };
+            const auto at = [&](int c) -> float& { return planes[as_index(c * map.width) + x]; };
             const Vec3f below = (1 - kLighter) * Vec3f(at(0), at(1), at(2)) + kLighter * white;
             store(planes, map.width, x, (1 - ink) * below + ink * line);
         }
@@ -117,7 +115,7 @@ Image encode_rows(const SourceInfo& source, const PixelMap& map, const RowFuncti
     image.sample_type = source.sample_type;
     const LuvEncoder encoder(image.color_space);
     parallel_blocks(0, map.height, kGrainRows, [&](int first, int last) {
-        std::vector<float> planes(static_cast<std::size_t>(map.width) * 3);
+        std::vector<float> planes(as_index(map.width) * 3);
         for (int y = first; y < last; ++y) {
             row_function(y, planes.data());
             float* out = image.row(y).data();
@@ -185,9 +183,8 @@ Image draw(const MeshImage& mesh_image, int level_index, const DrawParams& param
                             cat("level is ", level_index, ": visits are those of level 0"));
             const std::vector<float> lightness = visit_lightness(mesh_image);
             return encode_rows(source, map, [&](int y, float* planes) {
-                const auto width = static_cast<std::size_t>(map.width);
-                std::fill_n(planes, 3 * width, 0.0f);
-                std::copy_n(lightness.data() + static_cast<std::size_t>(y) * width, width, planes);
+                std::fill_n(planes, 3 * map.width, 0.0f);
+                std::copy_n(lightness.data() + map.row_begin(y), map.width, planes);
             });
         }
         case DrawMode::kFlat:

@@ -50,14 +50,14 @@ Image draw_channels(const MeshImage& mesh_image, int level_index, const DrawPara
     const PixelMap& map = params.mode == DrawMode::kGouraud ? raster : level.map;
 
     const std::vector<Origin> from = origins(names, drawn);
-    Image out = make_image(map.width, map.height, static_cast<int>(from.size()));
+    Image out = make_image(map.width, map.height, as_int(from.size()));
     out.color_space = names.color.empty() ? ColorSpace::kLinear : drawn.color_space;
     out.sample_type = source.sample_type;
     for (std::size_t c = 0; c < from.size(); ++c) out.channel_names[c] = from[c].name;
     parallel_blocks(0, map.height, 16, [&](int first, int last) {
         for (int y = first; y < last; ++y)
             for (int x = 0; x < map.width; ++x) {
-                const PixelCoord& coord = map.row(y)[static_cast<std::size_t>(x)];
+                const PixelCoord& coord = map.at(x, y);
                 float* to = out.pixel(x, y);
                 for (const Origin& origin : from) {
                     if (origin.drawn >= 0) {

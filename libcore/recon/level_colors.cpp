@@ -6,10 +6,10 @@
 namespace imgmesh {
 
 const Level& checked_level(const MeshImage& mesh_image, int level_index) {
-    if (level_index < 0 || static_cast<std::size_t>(level_index) >= mesh_image.levels.size())
-        throw Error(ErrorKind::kBadArgument, cat("level is ", level_index, ", expected 0 to ",
-                                                 static_cast<int>(mesh_image.levels.size()) - 1));
-    return mesh_image.levels[static_cast<std::size_t>(level_index)];
+    if (level_index < 0 || level_index >= std::ssize(mesh_image.levels))
+        throw Error(ErrorKind::kBadArgument,
+                    cat("level is ", level_index, ", expected 0 to ", std::ssize(mesh_image.levels) - 1));
+    return mesh_image.levels[as_index(level_index)];
 }
 
 const Level& level_to_draw(const MeshImage& mesh_image, int level_index) {

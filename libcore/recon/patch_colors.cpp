@@ -22,9 +22,9 @@ std::vector<std::pair<Id, Id>> touching_patches(const PixelMap& map) {
     };
     for (int y = 0; y < map.height; ++y)
         for (int x = 0; x < map.width; ++x) {
-            const Id face = map.row(y)[static_cast<std::size_t>(x)].face;
-            if (x + 1 < map.width) touch(face, map.row(y)[static_cast<std::size_t>(x) + 1].face);
-            if (y + 1 < map.height) touch(face, map.row(y + 1)[static_cast<std::size_t>(x)].face);
+            const Id face = map.at(x, y).face;
+            if (x + 1 < map.width) touch(face, map.at(x + 1, y).face);
+            if (y + 1 < map.height) touch(face, map.at(x, y + 1).face);
         }
     std::sort(pairs.begin(), pairs.end());
     pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
@@ -40,7 +40,7 @@ std::vector<int> hues(std::size_t faces, const std::vector<std::pair<Id, Id>>& t
         int taken[kHues] = {};
         for (; pair != touching.end() && pair->first == f; ++pair)
             if (hue[pair->second] >= 0) ++taken[hue[pair->second]];
-        const int start = static_cast<int>((f * 2654435761u) >> 29);  // Knuth's multiplicative hash, 3 bits
+        const int start = as_int((f * 2654435761u) >> 29);  // Knuth's multiplicative hash, 3 bits
         int best = start;
         for (int k = 1; k < kHues; ++k)
             if (taken[(start + k) % kHues] < taken[best]) best = (start + k) % kHues;
@@ -54,7 +54,7 @@ std::vector<int> hues(std::size_t faces, const std::vector<std::pair<Id, Id>>& t
 std::vector<Vec3f> patch_colors(const BaseMesh& mesh, const PixelMap& map) {
     std::vector<Vec3d> sum(mesh.faces.size(), Vec3d::Zero());
     std::vector<int> pixels(mesh.faces.size());
-    for (const PixelCoord& c : map.coords) {
+    for (const PixelCoord& c : map) {
         if (c.face == kNone) continue;
         sum[c.face] += Vec3d(1 - double(c.u) - double(c.v), c.u, c.v);  // weights first, colours below
         ++pixels[c.face];

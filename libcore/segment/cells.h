@@ -9,12 +9,10 @@ namespace imgmesh {
 
 /// An image cut into cells: 4-connected sets of pixels inside one patch. A patch is one cell unless the map
 /// tears it into several. Regions are joined cells, so they are always connected.
-struct Cells {
-    int width = 0;
-    int height = 0;
-    std::vector<Id> of_pixel;  ///< each pixel's cell, size width * height; kNone outside the mask
-    std::vector<Id> face;      ///< each cell's face; cells are numbered by their first pixel, row by row
+struct Cells : Grid<Id> {  ///< each pixel's cell; kNone outside the mask
+    std::vector<Id> face;  ///< each cell's face; cells are numbered by their first pixel, row by row
 
+    using Grid::Grid;
     std::size_t count() const { return face.size(); }
 };
 

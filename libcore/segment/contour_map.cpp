@@ -55,26 +55,20 @@ class Joins {
 
 ContourMap contour_map(const Cells& cells, const Hierarchy& hierarchy) {
     const Joins joins(hierarchy);
-    const auto width = static_cast<std::size_t>(cells.width), height = static_cast<std::size_t>(cells.height);
-    ContourMap map{2 * cells.width + 1, 2 * cells.height + 1, {}};
-    const std::size_t stride = 2 * width + 1;
-    map.values.assign(stride * (2 * height + 1), 0.0f);
-    const auto between = [&](std::size_t i, std::size_t j) {
-        const Id a = cells.of_pixel[i], b = cells.of_pixel[j];
+    ContourMap map({2 * cells.width + 1, 2 * cells.height + 1});
+    const auto between = [&](Id a, Id b) {
         if (a == b) return 0.0f;
         return a == kNone || b == kNone ? kNever : joins.height(a, b);
     };
-    for (std::size_t y = 0; y < height; ++y)
-        for (std::size_t x = 0; x < width; ++x) {
-            const std::size_t i = y * width + x, at = (2 * y + 1) * stride + 2 * x + 1;
-            if (x + 1 < width) map.values[at + 1] = between(i, i + 1);
-            if (y + 1 < height) map.values[at + stride] = between(i, i + width);
+    for (int y = 0; y < cells.height; ++y)
+        for (int x = 0; x < cells.width; ++x) {
+            const Id cell = cells.at(x, y);
+            if (x + 1 < cells.width) map.at(2 * x + 2, 2 * y + 1) = between(cell, cells.at(x + 1, y));
+            if (y + 1 < cells.height) map.at(2 * x + 1, 2 * y + 2) = between(cell, cells.at(x, y + 1));
         }
-    for (std::size_t y = 2; y + 1 < 2 * height + 1; y += 2)
-        for (std::size_t x = 2; x + 1 < stride; x += 2) {
-            float* v = map.values.data() + y * stride + x;
-            *v = std::max({v[-1], v[1], *(v - stride), v[stride]});
-        }
+    for (int y = 2; y + 1 < map.height; y += 2)
+        for (int x = 2; x + 1 < map.width; x += 2)
+            map.at(x, y) = std::max({map.at(x - 1, y), map.at(x + 1, y), map.at(x, y - 1), map.at(x, y + 1)});
     return map;
 }
 

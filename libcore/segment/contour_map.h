@@ -16,10 +16,8 @@ namespace imgmesh {
 /// regions at threshold t are the connected parts of pixels joined across values less than t. The value is
 /// infinity between inside and outside of the mask, and 0 at pixels, along the frame, and between outside
 /// pixels. Where four pixels meet, it is the largest of the four values around.
-struct ContourMap {
-    int width = 0;
-    int height = 0;
-    std::vector<float> values;  ///< size width * height
+struct ContourMap : Grid<float> {
+    using Grid::Grid;
 };
 
 /// Returns the contour map of an image; `hierarchy` has the merges of `cells`. Takes O(pixels + borders log

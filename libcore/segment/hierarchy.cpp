@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <numeric>
 
+#include "libcore/base/index.h"
+
 namespace imgmesh {
 
 std::size_t merges_below(const Hierarchy& hierarchy, double threshold) {
     const auto end = std::partition_point(hierarchy.merges.begin(), hierarchy.merges.end(),
                                           [&](const Merge& m) { return double(m.height) < threshold; });
-    return static_cast<std::size_t>(end - hierarchy.merges.begin());
+    return as_index(end - hierarchy.merges.begin());
 }
 
 std::vector<Id> regions_after(const Hierarchy& hierarchy, std::size_t merges) {

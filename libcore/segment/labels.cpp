@@ -7,13 +7,13 @@ namespace imgmesh {
 LabelImage labels_after(const Cells& cells, const Hierarchy& hierarchy, std::size_t merges) {
     // Cells are numbered by their first pixel and regions by their first cell, hence by their first pixel.
     const std::vector<Id> region = regions_after(hierarchy, merges);
-    LabelImage labels{cells.width, cells.height, hierarchy.cells - merges, cells.of_pixel};
-    for (Id& label : labels.labels)
+    LabelImage labels(cells, hierarchy.cells - merges);
+    for (Id& label : labels)
         if (label != kNone) label = region[label];
     return labels;
 }
 
-std::vector<RegionFacts> region_facts(const LabelImage& labels, const FeatureImage& picture) {
+std::vector<RegionFacts> region_facts(const LabelImage& labels, const FeatureImage& image) {
     std::vector<RegionFacts> facts(labels.count);
     std::vector<Vec3d> sums(labels.count, Vec3d::Zero());
     std::vector<std::pair<Id, Id>> pairs;
@@ -32,10 +32,10 @@ std::vector<RegionFacts> region_facts(const LabelImage& labels, const FeatureIma
             if (f.pixels == 0) f.box = {x, y, x, y};
             f.box = {std::min(f.box[0], x), f.box[1], std::max(f.box[2], x), y};
             ++f.pixels;
-            sums[region] += Eigen::Map<const Vec3f>(picture.pixel(x, y)).cast<double>();
+            sums[region] += Eigen::Map<const Vec3f>(image.pixel(x, y)).cast<double>();
         }
     for (std::size_t r = 0; r < facts.size(); ++r)
-        facts[r].color = (sums[r] / static_cast<double>(facts[r].pixels)).cast<float>();
+        facts[r].color = (sums[r] / double(facts[r].pixels)).cast<float>();
     std::sort(pairs.begin(), pairs.end());
     for (const auto& [a, b] : pairs) {
         auto& neighbors = facts[a].neighbors;

@@ -12,17 +12,13 @@
 
 namespace imgmesh {
 
-/// The region of every pixel. Regions are 4-connected and numbered from 0 by their first pixel, row by row.
-struct LabelImage {
-    int width = 0;
-    int height = 0;
-    std::size_t count = 0;
-    std::vector<Id> labels;  ///< size width * height; kNone outside the mask
+/// The region of every pixel, kNone outside the mask. Regions are 4-connected and numbered from 0 by their
+/// first pixel, row by row.
+struct LabelImage : Grid<Id> {
+    std::size_t count = 0;  ///< of regions
 
-    Id at(int x, int y) const {
-        return labels[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
-                      static_cast<std::size_t>(x)];
-    }
+    LabelImage() = default;
+    LabelImage(Grid<Id> labels, std::size_t regions) : Grid(std::move(labels)), count(regions) {}
 };
 
 /// Returns the regions after the first `merges` merges of the cells' hierarchy. Takes O(pixels) time.
@@ -38,6 +34,6 @@ struct RegionFacts {
 
 /// Returns the facts of every region, by its number. The image is L*u*v*, of the labels' size. Takes
 /// O(pixels) time.
-std::vector<RegionFacts> region_facts(const LabelImage& labels, const FeatureImage& picture);
+std::vector<RegionFacts> region_facts(const LabelImage& labels, const FeatureImage& image);
 
 }  // namespace imgmesh

@@ -26,7 +26,7 @@ class Merger {
     Merger(RegionGraph graph, const RegionDistance& distance, std::int64_t min_size)
         : graph_(std::move(graph)),
           distance_(distance),
-          min_size_(static_cast<double>(min_size)),
+          min_size_(double(min_size)),
           version_(graph_.borders.size(), 0),
           borders_of_(graph_.regions.size()),
           found_(graph_.regions.size(), kNone) {

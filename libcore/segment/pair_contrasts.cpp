@@ -19,53 +19,47 @@ constexpr int kRadii[] = {2, 4, 8};
 constexpr int kSums = 7;
 using Sums = std::array<float, kSums>;
 
-struct Squares {
-    int width, height;
-    std::vector<Sums> at;
+struct Squares : Grid<Sums> {
+    using Grid::Grid;
+
     const Sums& clamped(int x, int y) const {
-        return at[static_cast<std::size_t>(std::clamp(y, 0, height - 1)) * static_cast<std::size_t>(width) +
-                  static_cast<std::size_t>(std::clamp(x, 0, width - 1))];
+        return at(std::clamp(x, 0, width - 1), std::clamp(y, 0, height - 1));
     }
 };
 
 // Sliding sums of 2 radius + 1 values each along a line of `count` values. They are doubles, so a value that
 // leaves the sum cancels what it added, up to a negligible rounding.
 void slide(Sums* first, std::ptrdiff_t step, int count, int radius, std::vector<Sums>& copy) {
-    copy.resize(static_cast<std::size_t>(count));
-    for (int i = 0; i < count; ++i) copy[static_cast<std::size_t>(i)] = first[i * step];
+    copy.resize(as_index(count));
+    for (int i = 0; i < count; ++i) copy[as_index(i)] = first[i * step];
     std::array<double, kSums> sum{};
     for (int i = -radius; i < count; ++i) {
         if (i + radius < count)
-            for (std::size_t k = 0; k < kSums; ++k)
-                sum[k] += double(copy[static_cast<std::size_t>(i + radius)][k]);
+            for (std::size_t k = 0; k < kSums; ++k) sum[k] += double(copy[as_index(i + radius)][k]);
         if (i - radius - 1 >= 0)
-            for (std::size_t k = 0; k < kSums; ++k)
-                sum[k] -= double(copy[static_cast<std::size_t>(i - radius - 1)][k]);
+            for (std::size_t k = 0; k < kSums; ++k) sum[k] -= double(copy[as_index(i - radius - 1)][k]);
         if (i >= 0)
             for (std::size_t k = 0; k < kSums; ++k) first[i * step][k] = static_cast<float>(sum[k]);
     }
 }
 
-Squares square_sums(const FeatureImage& picture, const Cells& cells, int radius) {
-    Squares squares{cells.width, cells.height, std::vector<Sums>(cells.of_pixel.size(), Sums{})};
-    const auto width = static_cast<std::size_t>(cells.width);
+Squares square_sums(const FeatureImage& image, const Cells& cells, int radius) {
+    Squares squares{cells};
     parallel_blocks(0, cells.height, kGrain, [&](int begin, int end) {
         std::vector<Sums> copy;
         for (int y = begin; y < end; ++y) {
-            Sums* row = squares.at.data() + static_cast<std::size_t>(y) * width;
-            for (std::size_t x = 0; x < width; ++x) {
-                const std::size_t i = static_cast<std::size_t>(y) * width + x;
-                if (cells.of_pixel[i] == kNone) continue;
-                const float* c = picture.pixel(i);
-                row[x] = {1, c[0], c[1], c[2], c[0] * c[0], c[1] * c[1], c[2] * c[2]};
+            for (int x = 0; x < cells.width; ++x) {
+                if (cells.at(x, y) == kNone) continue;
+                const float* c = image.pixel(x, y);
+                squares.at(x, y) = {1, c[0], c[1], c[2], c[0] * c[0], c[1] * c[1], c[2] * c[2]};
             }
-            slide(row, 1, cells.width, radius, copy);
+            slide(squares.row(y).data(), 1, cells.width, radius, copy);
         }
     });
     parallel_blocks(0, cells.width, kGrain, [&](int begin, int end) {
         std::vector<Sums> copy;
         for (int x = begin; x < end; ++x)
-            slide(squares.at.data() + x, cells.width, cells.height, radius, copy);
+            slide(squares.values.data() + x, cells.width, cells.height, radius, copy);
     });
     return squares;
 }
@@ -101,25 +95,24 @@ double color_equivalent(double population_distance) {
     return kUniformDeviation * std::sqrt(8 * population_distance);
 }
 
-PairContrasts pair_contrasts(const FeatureImage& picture, const Cells& cells) {
-    const auto width = static_cast<std::size_t>(cells.width);
-    PairContrasts contrasts{std::vector<float>(cells.of_pixel.size(), 0.0f),
-                            std::vector<float>(cells.of_pixel.size(), 0.0f)};
+PairContrasts pair_contrasts(const FeatureImage& image, const Cells& cells) {
+    PairContrasts contrasts{std::vector<float>(cells.size(), 0.0f), std::vector<float>(cells.size(), 0.0f)};
+    const auto differs = [&](Id cell, int x, int y) {
+        return cells.contains(x, y) && cells.at(x, y) != cell && cells.at(x, y) != kNone;
+    };
     const float share = 1.0f / float(std::size(kRadii));
     for (const int radius : kRadii) {
-        const Squares squares = square_sums(picture, cells, radius);
+        const Squares squares = square_sums(image, cells, radius);
         parallel_blocks(0, cells.height, kGrain, [&](int begin, int end) {
             for (int y = begin; y < end; ++y)
                 for (int x = 0; x < cells.width; ++x) {
-                    const std::size_t i = static_cast<std::size_t>(y) * width + static_cast<std::size_t>(x);
-                    const Id cell = cells.of_pixel[i];
+                    const std::size_t i = cells.index(x, y);
+                    const Id cell = cells[i];
                     if (cell == kNone) continue;
-                    if (x + 1 < cells.width && cells.of_pixel[i + 1] != cell &&
-                        cells.of_pixel[i + 1] != kNone)
+                    if (differs(cell, x + 1, y))
                         contrasts.right[i] += share * contrast(squares.clamped(x - radius, y),
                                                                squares.clamped(x + 1 + radius, y));
-                    if (y + 1 < cells.height && cells.of_pixel[i + width] != cell &&
-                        cells.of_pixel[i + width] != kNone)
+                    if (differs(cell, x, y + 1))
                         contrasts.down[i] += share * contrast(squares.clamped(x, y - radius),
                                                               squares.clamped(x, y + 1 + radius));
                 }

@@ -23,6 +23,6 @@ double color_equivalent(double population_distance);
 /// Returns the contrast of every pair of neighbours in different cells: 1 - exp(-d), mean over r = 2, 4, 8. d
 /// is the population distance of the two squares of (2r+1)^2 pixels that meet between them, as far as they
 /// are inside the mask. In [0, 1). The result is the same for any number of threads.
-PairContrasts pair_contrasts(const FeatureImage& picture, const Cells& cells);
+PairContrasts pair_contrasts(const FeatureImage& image, const Cells& cells);
 
 }  // namespace imgmesh

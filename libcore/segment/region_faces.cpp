@@ -39,8 +39,8 @@ std::vector<std::pair<Id, Id>> face_neighbors(const BaseMesh& mesh) {
 
 std::vector<Id> region_of_faces(const BaseMesh& mesh, const PixelMap& map, const LabelImage& labels) {
     std::vector<std::pair<Id, Id>> owned;  // one pair (face, region) for each pixel
-    for (std::size_t i = 0; i < map.coords.size(); ++i)
-        if (map.coords[i].face != kNone) owned.emplace_back(map.coords[i].face, labels.labels[i]);
+    for (std::size_t i = 0; i < map.size(); ++i)
+        if (map[i].face != kNone) owned.emplace_back(map[i].face, labels[i]);
     std::sort(owned.begin(), owned.end());
     std::vector<Id> region(mesh.faces.size(), kNone);
     std::vector<std::size_t> most(mesh.faces.size(), 0);

@@ -13,15 +13,15 @@ struct Crossing {
 // Pairs of neighbours in different cells, in the order of their pixels.
 std::vector<Crossing> crossings(const Cells& cells, const PairContrasts& contrasts) {
     std::vector<Crossing> all;
-    const auto width = static_cast<std::size_t>(cells.width);
+    const std::size_t width = as_index(cells.width);
     const auto cross = [&](std::size_t i, std::size_t j, const std::vector<float>& contrast) {
-        const Id a = cells.of_pixel[i], b = cells.of_pixel[j];
+        const Id a = cells[i], b = cells[j];
         if (a == b || a == kNone || b == kNone) return;
         all.push_back({std::min(a, b), std::max(a, b), contrast.empty() ? 0.0f : contrast[i]});
     };
-    for (std::size_t i = 0; i < cells.of_pixel.size(); ++i) {
+    for (std::size_t i = 0; i < cells.size(); ++i) {
         if (i % width + 1 < width) cross(i, i + 1, contrasts.right);
-        if (i + width < cells.of_pixel.size()) cross(i, i + width, contrasts.down);
+        if (i + width < cells.size()) cross(i, i + width, contrasts.down);
     }
     return all;
 }
@@ -43,19 +43,18 @@ Vec3d RegionSums::variance() const {
     return (square / pixels - mean.cwiseProduct(mean)).cwiseMax(0.0);
 }
 
-RegionGraph region_graph(const Cells& cells, const PixelMap& map, const FeatureImage& picture,
+RegionGraph region_graph(const Cells& cells, const PixelMap& map, const FeatureImage& image,
                          const PairContrasts& contrasts) {
     RegionGraph graph;
     graph.regions.resize(cells.count());
-    for (std::size_t i = 0; i < cells.of_pixel.size(); ++i) {
-        if (cells.of_pixel[i] == kNone) continue;
-        RegionSums& sums = graph.regions[cells.of_pixel[i]];
-        const PixelCoord& coord = map.coords[i];
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+        if (cells[i] == kNone) continue;
+        RegionSums& sums = graph.regions[cells[i]];
+        const PixelCoord& coord = map[i];
         const double least =
             std::min({1 - double(coord.u) - double(coord.v), double(coord.u), double(coord.v)});
-        const Vec3d color = Eigen::Map<const Vec3f>(picture.pixel(i)).cast<double>();
-        const Vec2d place(static_cast<double>(i % static_cast<std::size_t>(cells.width)),
-                          static_cast<double>(i / static_cast<std::size_t>(cells.width)));
+        const Vec3d color = Eigen::Map<const Vec3f>(image.pixel(i)).cast<double>();
+        const Vec2d place(cells.x_of(i), cells.y_of(i));
         sums.pixels += 1;
         sums.color += color;
         sums.square += color.cwiseProduct(color);

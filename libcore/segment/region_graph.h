@@ -49,7 +49,7 @@ struct PairContrasts {
 };
 
 /// Returns the sums of every cell and every border. The image is L*u*v*, of the cells' size.
-RegionGraph region_graph(const Cells& cells, const PixelMap& map, const FeatureImage& picture,
+RegionGraph region_graph(const Cells& cells, const PixelMap& map, const FeatureImage& image,
                          const PairContrasts& contrasts);
 
 }  // namespace imgmesh

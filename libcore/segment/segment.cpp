@@ -10,7 +10,7 @@
 namespace imgmesh {
 namespace {
 
-void check(const Level& level, const FeatureImage& picture, const SegmentParams& params) {
+void check(const Level& level, const FeatureImage& image, const SegmentParams& params) {
     const auto fail = [](const std::string& text) { throw Error(ErrorKind::kBadArgument, text); };
     if (!(params.threshold > 0 && std::isfinite(params.threshold)))
         fail(cat("threshold is ", params.threshold, ", expected above 0"));
@@ -22,16 +22,16 @@ void check(const Level& level, const FeatureImage& picture, const SegmentParams&
     if (!(params.compactness >= 0 && std::isfinite(params.compactness)))
         fail(cat("compactness is ", params.compactness, ", expected at least 0"));
     if (params.min_size < 1) fail(cat("the least size is ", params.min_size, ", expected at least 1"));
-    if (picture.width != level.map.width || picture.height != level.map.height)
-        fail(cat("the image has ", picture.width, "x", picture.height, " pixels, the container ",
-                 level.map.width, "x", level.map.height));
-    if (picture.channels != 3)
+    if (image.width != level.map.width || image.height != level.map.height)
+        fail(cat("the image has ", image.width, "x", image.height, " pixels, the container ", level.map.width,
+                 "x", level.map.height));
+    if (image.channels != 3)
         throw Error(ErrorKind::kUnsupported,
-                    cat("the image has ", picture.channels, " channels, expected L*, u*, v*"));
+                    cat("the image has ", image.channels, " channels, expected L*, u*, v*"));
 }
 
 std::size_t merges_to_count(const Hierarchy& hierarchy, std::int64_t count, const std::string& what) {
-    const auto wanted = static_cast<std::size_t>(count);
+    const std::size_t wanted = as_index(count);
     const std::size_t least = hierarchy.cells - hierarchy.merges.size(),
                       most = hierarchy.cells - hierarchy.forced;
     if (wanted > most)
@@ -51,42 +51,41 @@ FeatureImage reconstruct_luv(const Level& level) {
     if (level.mesh.channels < 3)
         throw Error(ErrorKind::kUnsupported, cat("the base mesh has ", level.mesh.channels,
                                                  " channels, expected colour as L*, u*, v*"));
-    FeatureImage picture{level.map.width, level.map.height, 3, {}};
-    picture.data.assign(level.map.coords.size() * 3, 0.0f);
-    for (std::size_t i = 0; i < level.map.coords.size(); ++i) {
-        const PixelCoord& coord = level.map.coords[i];
+    FeatureImage image(level.map.width, level.map.height, 3, std::vector<float>(level.map.size() * 3));
+    for (std::size_t i = 0; i < level.map.size(); ++i) {
+        const PixelCoord& coord = level.map[i];
         if (coord.face == kNone) continue;
         const auto [a, b, c] = level.mesh.faces[coord.face];
         const auto color = [&](Id v) { return Eigen::Map<const Vec3f>(level.mesh.feature_of(v)); };
-        Eigen::Map<Vec3f>(picture.pixel(i)) =
+        Eigen::Map<Vec3f>(image.pixel(i)) =
             (1 - coord.u - coord.v) * color(a) + coord.u * color(b) + coord.v * color(c);
     }
-    return picture;
+    return image;
 }
 
-Segmentation segment(const Level& level, const FeatureImage& picture, const SegmentParams& params,
+Segmentation segment(const Level& level, const FeatureImage& image, const SegmentParams& params,
                      const Progress& progress) {
-    check(level, picture, params);
+    check(level, image, params);
     const auto tell = [&](double fraction, std::string_view stage) {
         if (progress) progress(fraction, stage);
     };
     Segmentation result;
     tell(0, "cells");
     result.cells = cut_cells(level.map);
-    const auto pixels = static_cast<double>(std::count_if(
-        result.cells.of_pixel.begin(), result.cells.of_pixel.end(), [](Id cell) { return cell != kNone; }));
+    const auto pixels = double(
+        std::count_if(result.cells.begin(), result.cells.end(), [](Id cell) { return cell != kNone; }));
     if (pixels == 0) throw Error(ErrorKind::kUnsupported, "every pixel is outside the mask");
 
     const bool contours = !params.superpixels && params.distance == DistanceRule::kContour;
     tell(0.1, "contrasts");
-    const PairContrasts contrasts = contours ? pair_contrasts(picture, result.cells) : PairContrasts{};
+    const PairContrasts contrasts = contours ? pair_contrasts(image, result.cells) : PairContrasts{};
     const RegionDistance distance =
-        params.superpixels ? superpixel_distance(params.compactness,
-                                                 std::sqrt(pixels / static_cast<double>(*params.superpixels)))
-                           : (contours ? contour_distance(pixels) : paper_distance());
+        params.superpixels
+            ? superpixel_distance(params.compactness, std::sqrt(pixels / double(*params.superpixels)))
+            : (contours ? contour_distance(pixels) : paper_distance());
     tell(0.5, "merge");
     result.hierarchy =
-        merge_regions(region_graph(result.cells, level.map, picture, contrasts), distance, params.min_size);
+        merge_regions(region_graph(result.cells, level.map, image, contrasts), distance, params.min_size);
     if (params.segments)
         result.merges = merges_to_count(result.hierarchy, *params.segments, "segments");
     else if (params.superpixels)

@@ -46,7 +46,7 @@ FeatureImage reconstruct_luv(const Level& level);
 /// Throws Error(kBadArgument) for a parameter out of range, an image of another size, more regions than there
 /// are cells (of at least min_size pixels), or fewer than the mask has islands; Error(kUnsupported) for an
 /// image without colour or a mask without a pixel inside.
-Segmentation segment(const Level& level, const FeatureImage& picture, const SegmentParams& params,
+Segmentation segment(const Level& level, const FeatureImage& image, const SegmentParams& params,
                      const Progress& progress = {});
 
 }  // namespace imgmesh

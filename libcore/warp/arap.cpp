@@ -99,22 +99,22 @@ void ArapSolver::State::factorise() {
     unknown.assign(rest.size(), kNone);
     for (Id v = 0; v < rest.size(); ++v) {
         if (is_fixed[v] || !reached[part[v]]) continue;
-        unknown[v] = static_cast<Id>(free.size());
+        unknown[v] = as_id(free.size());
         free.push_back(v);
     }
     if (free.empty()) return;
     std::vector<Eigen::Triplet<double>> entries;
     for (const Id v : free) {
-        const int row = static_cast<int>(unknown[v]);
+        const int row = as_int(unknown[v]);
         double sum = 0;
         for (std::size_t k = first[v]; k < first[v + 1]; ++k) {
             sum += neighbors[k].weight;
             if (const Id column = unknown[neighbors[k].vertex]; column != kNone)
-                entries.emplace_back(row, static_cast<int>(column), -neighbors[k].weight);
+                entries.emplace_back(row, as_int(column), -neighbors[k].weight);
         }
         entries.emplace_back(row, row, sum);
     }
-    const auto size = static_cast<Eigen::Index>(free.size());
+    const auto size = as_int(free.size());
     Eigen::SparseMatrix<double> matrix(size, size);
     matrix.setFromTriplets(entries.begin(), entries.end());
     factor.compute(matrix);
@@ -166,7 +166,7 @@ std::vector<Vec2d> ArapSolver::State::rotations(const std::vector<Vec2d>& place)
 // Finds the best places of the free vertices for given rotations.
 Eigen::MatrixX2d ArapSolver::State::places(const std::vector<Vec2d>& place,
                                            const std::vector<Vec2d>& rotation) const {
-    Eigen::MatrixX2d right(static_cast<Eigen::Index>(free.size()), 2);
+    Eigen::MatrixX2d right(as_int(free.size()), 2);
     for (std::size_t i = 0; i < free.size(); ++i) {
         const Id v = free[i];
         Vec2d sum(0, 0);

@@ -40,8 +40,7 @@ class CellRaster {
           width_(width),
           first_row_(first_row),
           last_row_(last_row),
-          cover_(static_cast<std::size_t>(width) * static_cast<std::size_t>(last_row - first_row),
-                 Cover::kNothing),
+          cover_({width, last_row - first_row}, Cover::kNothing),
           sink_(sink) {}
 
     void draw() {
@@ -71,7 +70,7 @@ class CellRaster {
     };
 
     static Point point(const PlaceRow& row, int x) {
-        const auto i = static_cast<std::size_t>(x + 1);
+        const std::size_t i = as_index(x + 1);
         return {row.x[i], row.y[i]};
     }
     static std::int64_t cross(const Point& p, const Point& q, const Point& r) {
@@ -182,7 +181,7 @@ class CellRaster {
                      row_c = cross(a, b, start) - least_c;
         const std::int64_t step_a = std::int64_t{b.y - c.y} * kOne, step_b = std::int64_t{c.y - a.y} * kOne,
                            step_c = std::int64_t{a.y - b.y} * kOne;
-        const double inverse = 1 / static_cast<double>(area);
+        const double inverse = 1 / double(area);
         CellPoint point{x, y, 0, 0, {}, {}};
         bool ready = false;
         for (int row = top; row <= bottom; ++row) {
@@ -195,10 +194,8 @@ class CellRaster {
                     }
                     // These are sums of whole numbers, so a centre on a corner gives exactly 0 and 1.
                     const std::int64_t wa = ea + least_a, wb = eb + least_b, wc = ec + least_c;
-                    point.fx =
-                        static_cast<float>(static_cast<double>(wa * p.sx + wb * q.sx + wc * r.sx) * inverse);
-                    point.fy =
-                        static_cast<float>(static_cast<double>(wa * p.sy + wb * q.sy + wc * r.sy) * inverse);
+                    point.fx = static_cast<float>(double(wa * p.sx + wb * q.sx + wc * r.sx) * inverse);
+                    point.fy = static_cast<float>(double(wa * p.sy + wb * q.sy + wc * r.sy) * inverse);
                     sink_.sample(column, row, point);
                 }
                 ea += step_a;
@@ -225,8 +222,7 @@ class CellRaster {
     }
 
     bool take(int column, int row, Cover cover) {
-        Cover& at = cover_[static_cast<std::size_t>(row - first_row_) * static_cast<std::size_t>(width_) +
-                           static_cast<std::size_t>(column)];
+        Cover& at = cover_.at(column, row - first_row_);
         if (cover < at) return false;
         at = cover;
         return true;
@@ -234,7 +230,7 @@ class CellRaster {
 
     const CellPlaces& places_;
     int width_, first_row_, last_row_;
-    std::vector<Cover> cover_;
+    Grid<Cover> cover_;
     Sink& sink_;
 };
 

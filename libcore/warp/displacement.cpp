@@ -45,8 +45,7 @@ void add_row(const LevelMove& level, std::span<const PixelCoord> coords, Vec2f* 
 // Calls visit(neighbour) for the neighbours of pixel i, in ascending order.
 template <typename Visit>
 void for_neighbors(const DisplacementField& field, std::size_t i, const Visit& visit) {
-    const int x = static_cast<int>(i % static_cast<std::size_t>(field.width)),
-              y = static_cast<int>(i / static_cast<std::size_t>(field.width));
+    const int x = field.x_of(i), y = field.y_of(i);
     for (int ny = std::max(y - 1, 0); ny <= std::min(y + 1, field.height - 1); ++ny)
         for (int nx = std::max(x - 1, 0); nx <= std::min(x + 1, field.width - 1); ++nx)
             if (nx != x || ny != y) visit(field.index(nx, ny));
@@ -72,13 +71,10 @@ double doubled_area(const Vec2d& a, const Vec2d& b, const Vec2d& c) {
 }  // namespace
 
 DisplacementField displacement_field(const MeshImage& mesh_image, const std::vector<VertexMoves>& moves) {
-    DisplacementField field;
-    field.width = mesh_image.source.width;
-    field.height = mesh_image.source.height;
-    field.has_mask = mesh_image.source.has_mask;
-    const std::size_t size = mesh_image.levels[0].map.coords.size();
-    field.move.assign(size, Vec2f(0, 0));
-    field.role.assign(size, PixelRole::kInside);
+    const SourceInfo& source = mesh_image.source;
+    DisplacementField field{source, std::vector<Vec2f>(source.pixel_count(), Vec2f(0, 0)),
+                            std::vector<PixelRole>(source.pixel_count(), PixelRole::kInside),
+                            source.has_mask};
     std::vector<LevelMove> levels;
     std::vector<const PixelMap*> maps;
     for (std::size_t k = 0; k < moves.size(); ++k) {
@@ -89,9 +85,9 @@ DisplacementField displacement_field(const MeshImage& mesh_image, const std::vec
     parallel_blocks(0, field.height, kGrainRows, [&](int first, int last) {
         for (int y = first; y < last; ++y) {
             for (std::size_t k = 0; k < levels.size(); ++k)
-                add_row(levels[k], maps[k]->row(y), field.move.data() + field.index(0, y));
+                add_row(levels[k], maps[k]->row(y), field.move.data() + field.row_begin(y));
             if (!field.has_mask) continue;
-            PixelRole* role = field.role.data() + field.index(0, y);
+            PixelRole* role = field.role.data() + field.row_begin(y);
             for (const PixelCoord& c : mesh_image.levels[0].map.row(y))
                 *role++ = c.face == kNone ? PixelRole::kOutside : PixelRole::kInside;
         }

@@ -17,17 +17,11 @@ enum class PixelRole : std::uint8_t {
 };
 
 /// The forward displacement of every pixel of a W x H image.
-struct DisplacementField {
-    int width = 0;
-    int height = 0;
+struct DisplacementField : GridSize {
     std::vector<Vec2f> move;      ///< size W * H [pixels]; 0 outside
     std::vector<PixelRole> role;  ///< size W * H
 
     bool has_mask = false;  ///< whether some pixels are not kInside
-
-    std::size_t index(int x, int y) const {
-        return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
-    }
 };
 
 /// Moves each pixel as the corners of its face move, weighted by the pixel's three weights, summed over the

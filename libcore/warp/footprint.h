@@ -12,7 +12,7 @@ namespace imgmesh {
 // How many source pixels one step of an output pixel covers.
 inline int taps_of(const Vec2f& step) {
     constexpr float kMostTaps = 64;
-    return static_cast<int>(std::lround(std::clamp(step.norm(), 1.0f, kMostTaps)));
+    return as_int(std::lround(std::clamp(step.norm(), 1.0f, kMostTaps)));
 }
 // Whether a single point stands for its pixel: both numbers of taps are 1.
 inline bool is_plain(const CellPoint& p) {

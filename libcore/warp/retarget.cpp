@@ -23,7 +23,7 @@ std::vector<double> importance(const BaseMesh& mesh, const std::vector<double>& 
     constexpr double kLeast = 0.02, kMost = 50;
     double total = 0;
     for (const double a : area) total += a;
-    const double mean = total / static_cast<double>(area.size());
+    const double mean = total / double(area.size());
     std::vector<double> around(mesh.vertex_count(), 0.0), count(mesh.vertex_count(), 0.0);
     for (std::size_t f = 0; f < area.size(); ++f)
         for (const Id v : mesh.faces[f]) {
@@ -67,7 +67,7 @@ class Axis {
     Axis(const BaseMesh& mesh, const std::vector<FaceEnergy>& energy, std::vector<double> given)
         : mesh_(mesh), energy_(energy), place(std::move(given)), unknown_(mesh.vertex_count(), -1) {
         for (Id v = 0; v < place.size(); ++v)
-            if (std::isnan(place[v])) unknown_[v] = static_cast<int>(count_++);
+            if (std::isnan(place[v])) unknown_[v] = as_int(count_++);
         std::vector<Eigen::Triplet<double>> entries;
         for_pairs([&](Id i, Id j, double value) {
             if (unknown_[i] >= 0 && unknown_[j] >= 0) entries.emplace_back(unknown_[i], unknown_[j], value);

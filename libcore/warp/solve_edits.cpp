@@ -131,10 +131,10 @@ std::vector<Vec2d> solve_edit(const BaseMesh& mesh, const WarpEdit& edit) {
 std::vector<VertexMoves> solve_edits(const MeshImage& mesh_image, const WarpEdits& edits) {
     std::vector<std::vector<Vec2d>> sums(mesh_image.levels.size());
     for (const WarpEdit& edit : edits) {
-        if (edit.level < 0 || edit.level >= static_cast<int>(sums.size()))
+        if (edit.level < 0 || edit.level >= as_int(sums.size()))
             fail(edit.where,
                  cat("level ", edit.level, " is not there; the container has levels 0 to ", sums.size() - 1));
-        const auto level = static_cast<std::size_t>(edit.level);
+        const auto level = as_index(edit.level);
         const std::vector<Vec2d> moves = solve_edit(mesh_image.levels[level].mesh, edit);
         sums[level].resize(moves.size(), Vec2d(0, 0));
         for (std::size_t v = 0; v < moves.size(); ++v) sums[level][v] += moves[v];

@@ -38,7 +38,7 @@ class ImageSink {
                  static_cast<float>(out.height) / static_cast<float>(field.height)) {}
 
     void copy(int column, int row, int x, int y) {
-        const std::size_t from = field_.index(x, y), to = at(column, row);
+        const std::size_t from = field_.index(x, y), to = out_.index(column, row);
         const float* source = in_.data.data() + from * size();
         std::copy_n(source, size(), out_.data.data() + to * size());
         coverage_[to] = alpha_.empty() ? 1.0f : alpha_[from];
@@ -49,7 +49,7 @@ class ImageSink {
             sample(column, row, {x, y, fx, fy, {1, 0}, {0, 1}});
             return;
         }
-        const std::size_t to = at(column, row);
+        const std::size_t to = out_.index(column, row);
         const float *a = in_.data.data() + field_.index(x, y) * size(), *b = a + size(),
                     *c = a + in_.row_size(), *d = c + size();
         float* out = out_.data.data() + to * size();
@@ -61,7 +61,7 @@ class ImageSink {
     }
 
     void sample(int column, int row, const CellPoint& p) {
-        const std::size_t to = at(column, row);
+        const std::size_t to = out_.index(column, row);
         float* out = out_.data.data() + to * size();
         const float sides = is_plain(p) && !on_rim(field_, p) ? 1.0f : side_coverage(field_, scale_, p);
         std::fill_n(out, size(), 0.0f);
@@ -85,13 +85,7 @@ class ImageSink {
     }
 
   private:
-    std::size_t size() const {
-        return kChannels > 0 ? static_cast<std::size_t>(kChannels) : static_cast<std::size_t>(in_.channels);
-    }
-    std::size_t at(int column, int row) const {
-        return static_cast<std::size_t>(row) * static_cast<std::size_t>(out_.width) +
-               static_cast<std::size_t>(column);
-    }
+    std::size_t size() const { return kChannels > 0 ? std::size_t{kChannels} : as_index(in_.channels); }
     void add(const Taps& taps, float share, const float* weight, float* out) const {
         const float *a = in_.data.data() + taps.index[0] * size(),
                     *b = in_.data.data() + taps.index[1] * size(),
@@ -120,7 +114,7 @@ class MapSink {
                  static_cast<float>(out.height) / static_cast<float>(field.height)) {}
 
     void copy(int column, int row, int x, int y) {
-        const std::size_t from = field_.index(x, y), to = at(column, row);
+        const std::size_t from = field_.index(x, y), to = out_.index(column, row);
         out_.source[to] = Vec2f(static_cast<float>(x), static_cast<float>(y));
         out_.coverage[to] = alpha_.empty() ? 1.0f : alpha_[from];
     }
@@ -130,7 +124,7 @@ class MapSink {
     }
 
     void sample(int column, int row, const CellPoint& p) {
-        const std::size_t to = at(column, row);
+        const std::size_t to = out_.index(column, row);
         float total = 0;
         for_points(field_, p, [&](const Taps& taps, float share) {
             for (int t = 0; t < 4; ++t)
@@ -142,10 +136,6 @@ class MapSink {
     }
 
   private:
-    std::size_t at(int column, int row) const {
-        return static_cast<std::size_t>(row) * static_cast<std::size_t>(out_.width) +
-               static_cast<std::size_t>(column);
-    }
     const DisplacementField& field_;
     const std::vector<float>& alpha_;
     InverseMap& out_;
@@ -156,18 +146,14 @@ class MapSink {
 void set_alpha(Image& image, const std::vector<float>& alpha) {
     const int channel = image.channel("A");
     if (channel >= 0) {
-        for (std::size_t i = 0; i < alpha.size(); ++i)
-            image.data[i * static_cast<std::size_t>(image.channels) + static_cast<std::size_t>(channel)] =
-                alpha[i];
+        for (std::size_t i = 0; i < alpha.size(); ++i) image.pixel(i)[channel] = alpha[i];
         return;
     }
     if (std::all_of(alpha.begin(), alpha.end(), [](float a) { return a == 1; })) return;
-    const auto channels = static_cast<std::size_t>(image.channels);
     std::vector<float> data;
-    data.reserve(alpha.size() * (channels + 1));
+    data.reserve(image.data.size() + alpha.size());
     for (std::size_t i = 0; i < alpha.size(); ++i) {
-        const auto pixel = image.data.begin() + static_cast<std::ptrdiff_t>(i * channels);
-        data.insert(data.end(), pixel, pixel + image.channels);
+        data.insert(data.end(), image.pixel(i), image.pixel(i) + image.channels);
         data.push_back(alpha[i]);
     }
     image.data = std::move(data);
@@ -205,9 +191,7 @@ std::vector<float> alpha_of(const Image& image) {
     const int channel = image.channel("A");
     if (channel < 0) return alpha;
     alpha.reserve(image.pixel_count());
-    for (std::size_t i = static_cast<std::size_t>(channel); i < image.data.size();
-         i += static_cast<std::size_t>(image.channels))
-        alpha.push_back(image.data[i]);
+    for (std::size_t i = 0; i < image.pixel_count(); ++i) alpha.push_back(image.pixel(i)[channel]);
     return alpha;
 }
 
@@ -232,7 +216,7 @@ Image warp_image(const Image& image, const DisplacementField& given, const Outpu
     out.channel_names = image.channel_names;
     out.sample_type = image.sample_type;
     out.color_space = image.color_space;
-    out.data.resize(out.pixel_count() * static_cast<std::size_t>(out.channels));
+    out.data.resize(out.sample_count());
     std::vector<float> coverage(out.pixel_count());
     switch (image.channels) {
         case 1:
@@ -255,12 +239,9 @@ InverseMap inverse_map(const DisplacementField& given, std::vector<float> alpha,
     const OutputSize size = checked_size(given, wanted);
     DisplacementField field = given;
     extend_outside(field, alpha);
-    InverseMap map;
-    map.width = size.width;
-    map.height = size.height;
-    const std::size_t count = static_cast<std::size_t>(size.width) * static_cast<std::size_t>(size.height);
-    map.source.assign(count, Vec2f(0, 0));
-    map.coverage.assign(count, 0.0f);
+    InverseMap map{{size.width, size.height}, {}, {}};
+    map.source.assign(map.pixel_count(), Vec2f(0, 0));
+    map.coverage.assign(map.pixel_count(), 0.0f);
     MapSink sink(field, alpha, map);
     raster_cells(CellPlaces(field, size.width, size.height), size.width, size.height, sink);
     return map;

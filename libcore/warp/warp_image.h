@@ -41,9 +41,7 @@ Image warp_image(const Image& image, const DisplacementField& field, const Outpu
 std::vector<float> alpha_of(const Image& image);
 
 /// Which point of the image each pixel of the drawing shows.
-struct InverseMap {
-    int width = 0;
-    int height = 0;
+struct InverseMap : GridSize {
     std::vector<Vec2f> source;    ///< size width * height [pixels of the image]; 0 where nothing is shown
     std::vector<float> coverage;  ///< share of the pixel that the image covers; 0 outside the mask
 };

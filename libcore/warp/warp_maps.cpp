@@ -4,7 +4,7 @@ namespace imgmesh {
 namespace {
 
 Image float_image(int width, int height, std::vector<std::string> channels) {
-    Image image = make_image(width, height, static_cast<int>(channels.size()));
+    Image image = make_image(width, height, as_int(channels.size()));
     image.channel_names = std::move(channels);
     image.sample_type = SampleType::kFloat;
     image.color_space = ColorSpace::kLinear;

@@ -14,17 +14,16 @@ constexpr float kFarthest = 131072;
 
 // Returns the pixel with a face nearest to a point, searched in growing squares; of equal ones the first.
 std::size_t nearest_pixel(const PixelMap& map, const Vec2f& p) {
-    const int cx = std::clamp(static_cast<int>(std::lround(p.x())), 0, map.width - 1),
-              cy = std::clamp(static_cast<int>(std::lround(p.y())), 0, map.height - 1);
+    const int cx = std::clamp(as_int(std::lround(p.x())), 0, map.width - 1),
+              cy = std::clamp(as_int(std::lround(p.y())), 0, map.height - 1);
     std::size_t best = 0;
     float least = INFINITY;
     for (int r = 0; r <= std::max(map.width, map.height) && least == INFINITY; ++r)
         for (int y = std::max(cy - r, 0); y <= std::min(cy + r, map.height - 1); ++y)
             for (int x = std::max(cx - r, 0); x <= std::min(cx + r, map.width - 1); ++x) {
-                const std::size_t i = static_cast<std::size_t>(y) * static_cast<std::size_t>(map.width) +
-                                      static_cast<std::size_t>(x);
+                const std::size_t i = map.index(x, y);
                 const float distance = (Vec2f(static_cast<float>(x), static_cast<float>(y)) - p).norm();
-                if (map.coords[i].face == kNone || distance >= least) continue;
+                if (map[i].face == kNone || distance >= least) continue;
                 least = distance;
                 best = i;
             }
@@ -39,7 +38,7 @@ void add_moves(const Level& level, const VertexMoves& moves, const std::vector<V
                std::vector<Vec2f>& sum) {
     const PixelMap cover = trivial_map(level.mesh, level.map.width, level.map.height);
     for (std::size_t i = 0; i < at.size(); ++i) {
-        const PixelCoord& c = cover.coords[nearest_pixel(cover, at[i])];
+        const PixelCoord& c = cover[nearest_pixel(cover, at[i])];
         if (c.face == kNone) continue;
         const auto [ia, ib, ic] = level.mesh.faces[c.face];
         const Vec2f &pa = level.mesh.position[ia], &pb = level.mesh.position[ib],

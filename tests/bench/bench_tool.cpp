@@ -109,8 +109,8 @@ int measure(const Arguments& a) {
     BaseMesh mesh = read_mesh(a.at(1));
     const MeshQuality quality = mesh_quality(mesh);
     const PixelMap map = trivial_map(mesh, feature.width, feature.height);
-    const auto uncovered = std::count_if(map.coords.begin(), map.coords.end(),
-                                         [](const PixelCoord& c) { return c.face == kNone; });
+    const auto uncovered =
+        std::count_if(map.begin(), map.end(), [](const PixelCoord& c) { return c.face == kNone; });
     Json out = {{"vertices", mesh.vertex_count()},
                 {"uncovered_pixels", uncovered},
                 {"mean_edge_ratio", quality.mean_edge_ratio},

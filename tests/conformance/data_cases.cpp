@@ -37,7 +37,7 @@ Case mesh_case(const std::function<void(StoredMesh&)>& edit) {
 Case masked_case(const std::function<void(StoredMesh&)>& edit) {
     Case c = mesh_case(edit);
     c.sample.asset.source.has_mask = true;
-    c.sample.parts[0].map.coords[4] = {};
+    c.sample.parts[0].map[4] = {};
     return c;
 }
 

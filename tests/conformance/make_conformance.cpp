@@ -47,7 +47,7 @@ int run(const fs::path& out) {
                     .write(out / cat("valid-", name, "-", levels, glb ? "-glb" : "-gltf"), glb);
     Sample masked;
     masked.asset.source.has_mask = true;
-    masked.parts[0].map.coords[4] = {};
+    masked.parts[0].map[4] = {};
     masked.parts[0].visits.assign(9, 2);
     masked.write(out / "valid-mask-visits", true);
     Sample channels(2, DracoMode::kEdgebreaker);

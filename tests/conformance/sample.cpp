@@ -125,7 +125,7 @@ Sample::Sample(int levels, DracoMode mode) {
         mesh.faces = {{0, 1, 2}, {0, 2, 3}};
         meshes.push_back(mesh);
         PixelMap map{kSide, kSide, {}, WeightPrecision::kHalf};
-        for (Id i = 0; i < kSide * kSide; ++i) map.coords.push_back({i % 2, 0.25f, 0.5f});
+        for (Id i = 0; i < kSide * kSide; ++i) map.values.push_back({i % 2, 0.25f, 0.5f});
         parts.push_back({level_name(static_cast<std::size_t>(k)), map, {}, {}});
         modes.push_back(mode);
     }

@@ -131,7 +131,7 @@ std::vector<Bytes> seeds(Target target) {
             for (const WeightPrecision precision : {WeightPrecision::kHalf, WeightPrecision::kFloat}) {
                 const bool mask = ++seed % 2 == 0;
                 MeshImage image = random_mesh_image(17, 11, 1 + int(seed % 3), precision, mask, seed);
-                if (mask) image.visits.assign(image.levels[0].map.coords.size(), 3);
+                if (mask) image.visits.assign(image.levels[0].map.size(), 3);
                 ContainerOptions options{mode, true};
                 if (!mask) options.texture = {red_png(), texture_coords(image)};
                 write_container(folder / "x.glb", image, options);

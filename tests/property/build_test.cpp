@@ -35,7 +35,7 @@ void check_sound(const MeshImage& built, const Image& image) {
     const auto& [mesh, map, error] = built.levels[0];
     CHECK(map.width == image.width);
     CHECK(map.height == image.height);
-    CHECK(map.coords.size() == image.pixel_count());
+    CHECK(map.size() == image.pixel_count());
     const MeshQuality q = mesh_quality(mesh);
     CHECK(q.euler == 1);
     CHECK(q.nonmanifold_edges + q.nonmanifold_vertices + q.flipped_faces == 0);
@@ -48,7 +48,7 @@ void check_sound(const MeshImage& built, const Image& image) {
 
 bool same(const Level& a, const Level& b) {
     return a.mesh.position == b.mesh.position && a.mesh.feature == b.mesh.feature &&
-           a.mesh.faces == b.mesh.faces && a.map.coords == b.map.coords &&
+           a.mesh.faces == b.mesh.faces && a.map.values == b.map.values &&
            a.map.precision == b.map.precision && a.error == b.error;
 }
 
@@ -124,7 +124,7 @@ TEST_CASE("build: the ratio of geometry and color weight") {
     const Level one = build_mesh_image(image, with(3, 1)).mesh_image.levels[0],
                 other = build_mesh_image(image, with(12, 4)).mesh_image.levels[0];
     CHECK(one.mesh.position == other.mesh.position);
-    CHECK(one.map.coords == other.map.coords);
+    CHECK(one.map.values == other.map.values);
     CHECK(other.error == doctest::Approx(4 * one.error));
     for (const double ratio : {1e-6, 1e6})
         check_sound(build_mesh_image(image, with(ratio, 1)).mesh_image, image);

@@ -82,7 +82,7 @@ TEST_CASE("channels: features that are zero everywhere change nothing, to the bi
             const Fitted got = fitted(joined(color, zeros(45, 34, more)), 40, space);
             CHECK(got.mesh.position == expected.mesh.position);
             CHECK(got.mesh.faces == expected.mesh.faces);
-            CHECK(got.map.coords == expected.map.coords);
+            CHECK(got.map.values == expected.map.values);
             REQUIRE(got.mesh.channels == 3 + more);
             for (Id v = 0; v < got.mesh.vertex_count(); ++v) {
                 CHECK(std::equal(got.mesh.feature_of(v), got.mesh.feature_of(v) + 3,
@@ -264,7 +264,7 @@ TEST_CASE("channels: grey with a channel keeps its name, and pixels outside the 
     CHECK(drawn.pixel(3, 3)[0] == doctest::Approx(0.5).epsilon(1e-3));
     CHECK(drawn.pixel(3, 3)[1] == doctest::Approx(5).epsilon(1e-5));
     built.source.has_mask = true;
-    built.levels[0].map.coords[0] = {};
+    built.levels[0].map[0] = {};
     drawn = draw_channels(built, 0, {});
     CHECK(drawn.channel_names == std::vector<std::string>{"Y", "A", "Z"});
     CHECK(drawn.pixel(0, 0)[1] == 0);
@@ -305,6 +305,6 @@ TEST_CASE("light: a float image within 0 and 1 is what an integer one is, to the
     image.sample_type = SampleType::kFloat;
     const MeshImage built = build_mesh_image(image, {}).mesh_image;
     CHECK(built.levels[0].mesh.feature == expected.mesh.feature);
-    CHECK(built.levels[0].map.coords == expected.map.coords);
+    CHECK(built.levels[0].map.values == expected.map.values);
     CHECK(built.source.gamut == Gamut::kDisplay);
 }

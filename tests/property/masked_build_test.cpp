@@ -24,7 +24,7 @@ std::optional<ErrorKind> failure(const Image& image, const Mask& mask) {
 
 bool same(const Level& a, const Level& b) {
     return a.mesh.position == b.mesh.position && a.mesh.feature == b.mesh.feature &&
-           a.mesh.faces == b.mesh.faces && a.map.coords == b.map.coords;
+           a.mesh.faces == b.mesh.faces && a.map.values == b.map.values;
 }
 
 }  // namespace
@@ -71,7 +71,7 @@ TEST_CASE("masked images: every level has the mask, no fold, and no more pixels 
             CHECK(q.pixels == inside);
             CHECK(q.unmapped + q.outside_simplex + q.flipped_triangles == 0);
             std::vector<int> pixels(level.mesh.faces.size());
-            for (const PixelCoord& coord : level.map.coords)
+            for (const PixelCoord& coord : level.map)
                 if (coord.face != kNone && ++pixels[coord.face] > 30) FAIL("a face with more than 30 pixels");
         }
     }

@@ -186,8 +186,8 @@ TEST_CASE("masked images: what is stored has the mask to the pixel and no fold")
             const FeatureImage feature = sample_feature(kind, mask.width, mask.height);
             BaseMesh mesh = simplify(grid_mesh(feature, mask), {}, SimplifyTarget{.vertices = 80}).mesh;
             const PixelMap map = fit_map(mesh, feature, {}, {}, mask);
-            for (std::size_t i = 0; i < map.coords.size(); ++i)
-                if (mask.contains(i) != (map.coords[i].face != kNone)) FAIL_CHECK("pixel " << i);
+            for (std::size_t i = 0; i < map.size(); ++i)
+                if (mask.contains(i) != (map[i].face != kNone)) FAIL_CHECK("pixel " << i);
             const MapQuality q = map_quality(mesh, map, true);
             CHECK(q.pixels == mask.count());
             CHECK(q.unmapped + q.outside_simplex + q.flipped_triangles == 0);
@@ -204,7 +204,7 @@ TEST_CASE("masked images: the same map with any number of threads") {
     const FeatureImage feature = sample_feature(Kind::kNoise, 90, 90);
     const auto made = [&] {
         BaseMesh mesh = simplify(grid_mesh(feature, mask), {}, SimplifyTarget{.vertices = 300}).mesh;
-        return fit_map(mesh, feature, {}, {}, mask).coords;
+        return fit_map(mesh, feature, {}, {}, mask).values;
     };
     const std::vector<PixelCoord> first = made();
     for (const int threads : {1, 2, 3}) {

@@ -41,7 +41,7 @@ BaseMesh coarse_mesh(const GridMesh& grid, std::int64_t vertices) {
 // 1), and a bare pixel alone makes 2. Counted by flags of cells, not by the surroundings of a pixel.
 std::int64_t expected_faces(const Mask& m, double& area) {
     std::int64_t faces = 0;
-    std::vector<bool> covered(m.inside.size());
+    std::vector<bool> covered(m.size());
     const auto index = [&](int x, int y) { return static_cast<std::size_t>(y * m.width + x); };
     for (int y = 0; y + 1 < m.height; ++y)
         for (int x = 0; x + 1 < m.width; ++x) {
@@ -88,8 +88,7 @@ void check_topology(const BaseMesh& mesh, const MeshQuality& dense) {
 void check_covers(const BaseMesh& mesh, const Mask& mask) {
     const PixelMap map = rasterize(mesh, sample_grid(mask.width, mask.height, 1));
     std::int64_t uncovered = 0;
-    for (std::size_t i = 0; i < map.coords.size(); ++i)
-        uncovered += mask.contains(i) && map.coords[i].face == kNone;
+    for (std::size_t i = 0; i < map.size(); ++i) uncovered += mask.contains(i) && map[i].face == kNone;
     CHECK(uncovered == 0);
 }
 

@@ -50,8 +50,8 @@ bool whole(double x) {
 void check_storable(const Scene& s, const PixelMap& map, WeightPrecision precision) {
     const double steps = precision == WeightPrecision::kHalf ? 2048 : 16777216;
     CHECK(map.precision == precision);
-    REQUIRE(map.coords.size() == s.pixels.face.size());
-    for (const PixelCoord& coord : map.coords) {
+    REQUIRE(map.size() == s.pixels.face.size());
+    for (const PixelCoord& coord : map) {
         REQUIRE(coord.face < s.mesh.faces.size());
         const double u = double(coord.u), v = double(coord.v), w = 1 - u - v;
         CHECK(whole(u * steps));
@@ -75,7 +75,7 @@ PixelMap carelessly_rounded(const Scene& s) {
             const Id face = s.pixels.face[s.pixels.index(x, y)];
             const Vec2f p = s.pixels.image_of(x, y);
             const auto nearest = [](float w) { return std::round(w / kHalfWeightStep) * kHalfWeightStep; };
-            map.coords.push_back(
+            map.values.push_back(
                 {face, nearest(s.fields[face].u(p.x(), p.y())), nearest(s.fields[face].v(p.x(), p.y()))});
         }
     return map;

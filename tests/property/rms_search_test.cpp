@@ -133,7 +133,7 @@ TEST_CASE("build: a wanted RMS is reached on strips") {
     CHECK(build_mesh_image(strip, params).report.levels.front().map_rms <= 0.1);
     const Image image = sample_picture(Kind::kNoise, 24, 16);
     Mask columns{24, 16, std::vector<std::uint8_t>(24 * 16, 0)};
-    for (std::size_t i = 0; i < columns.inside.size(); i += 2) columns.inside[i] = 1;
+    for (std::size_t i = 0; i < columns.size(); i += 2) columns[i] = 1;
     CHECK(build_mesh_image(image, params, {}, columns).report.levels.front().map_rms <= 0.1);
 }
 

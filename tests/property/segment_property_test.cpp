@@ -47,7 +47,7 @@ Sample sample(int width, int height, int patches, bool mask, std::uint32_t seed)
             for (int c = 0; c < 3; ++c) picture.data.push_back(colors[best][c] + float(below(1000)) / 250);
         }
     PixelMap map = map_of_faces(width, height, faces);
-    for (PixelCoord& coord : map.coords) {
+    for (PixelCoord& coord : map) {
         if (coord.face == kNone) continue;
         coord.u = float(below(512)) / 1024;
         coord.v = float(below(512)) / 1024;
@@ -98,7 +98,7 @@ std::vector<Id> regions_of_map(const ContourMap& map, double threshold, const st
 std::vector<std::vector<Id>> slow_merges(const Sample& s, const RegionDistance& distance,
                                          const PairContrasts& contrasts, std::int64_t min_size) {
     Cells cells = cut_cells(s.level.map);
-    std::vector<std::vector<Id>> steps = {cells.of_pixel};
+    std::vector<std::vector<Id>> steps = {cells.values};
     for (;;) {
         const RegionGraph graph = region_graph(cells, s.level.map, s.picture, contrasts);
         const Border* best = nullptr;
@@ -112,12 +112,12 @@ std::vector<std::vector<Id>> slow_merges(const Sample& s, const RegionDistance& 
             least = key;
         }
         if (!best) return steps;
-        for (Id& cell : cells.of_pixel) {
+        for (Id& cell : cells.values) {
             if (cell == kNone || cell < best->b) continue;
             cell = cell == best->b ? best->a : cell - 1;
         }
         cells.face.pop_back();
-        steps.push_back(cells.of_pixel);
+        steps.push_back(cells.values);
     }
 }
 
@@ -137,7 +137,7 @@ TEST_CASE("merging agrees with regions made anew at every step") {
                 merge_regions(region_graph(cells, s.level.map, s.picture, contrasts), distance, min_size);
             REQUIRE(fast.merges.size() + 1 == steps.size());
             for (std::size_t k = 0; k < steps.size(); ++k)
-                CHECK(labels_after(cells, fast, k).labels == steps[k]);
+                CHECK(labels_after(cells, fast, k).values == steps[k]);
         }
     }
 }
@@ -166,7 +166,7 @@ TEST_CASE("contour map: any threshold gives the regions of the tool") {
                 for (const double threshold : thresholds) {
                     params.threshold = threshold;
                     const LabelImage labels = segment(s.level, s.picture, params).labels;
-                    CHECK(labels.labels == regions_of_map(map, threshold, labels.labels));
+                    CHECK(labels.values == regions_of_map(map, threshold, labels.values));
                 }
             }
     }
@@ -186,12 +186,12 @@ TEST_CASE("regions are connected, numbered by their first pixel, as many as aske
             const LabelImage labels = segment(s.level, s.picture, params).labels;
             CHECK(labels.count == islands + extra);
             std::vector<std::pair<std::size_t, std::size_t>> joined;
-            for (std::size_t i = 0; i < labels.labels.size(); ++i) {
-                if (i % 31 != 30 && labels.labels[i] == labels.labels[i + 1]) joined.emplace_back(i, i + 1);
-                if (i + 31 < labels.labels.size() && labels.labels[i] == labels.labels[i + 31])
+            for (std::size_t i = 0; i < labels.values.size(); ++i) {
+                if (i % 31 != 30 && labels.values[i] == labels.values[i + 1]) joined.emplace_back(i, i + 1);
+                if (i + 31 < labels.values.size() && labels.values[i] == labels.values[i + 31])
                     joined.emplace_back(i, i + 31);
             }
-            CHECK(parts(labels.labels.size(), joined, labels.labels) == labels.labels);
+            CHECK(parts(labels.values.size(), joined, labels.values) == labels.values);
         }
         if (seed % 2 == 0) continue;  // islands may be of any size
         params.segments.reset();

@@ -26,7 +26,7 @@ BuildParams with_map(MapKind kind, double density = 5) {
 
 bool on_grid(const PixelMap& map) {
     const double steps = map.precision == WeightPrecision::kHalf ? 2048 : 16777216;
-    for (const PixelCoord& c : map.coords)
+    for (const PixelCoord& c : map)
         for (const double w : {double(c.u) * steps, double(c.v) * steps})
             if (w != std::floor(w)) return false;
     return true;
@@ -110,7 +110,7 @@ TEST_CASE("tracked build: the same result for any number of threads") {
         const MeshImage other = build_mesh_image(image, params).mesh_image;
         CHECK(other.levels[0].mesh.position == first.levels[0].mesh.position);
         CHECK(other.levels[0].mesh.feature == first.levels[0].mesh.feature);
-        CHECK(other.levels[0].map.coords == first.levels[0].map.coords);
+        CHECK(other.levels[0].map.values == first.levels[0].map.values);
         CHECK(other.visits == first.visits);
     }
 }
@@ -122,9 +122,9 @@ TEST_CASE("tracked build: masked images keep their mask to the pixel") {
         for (int x = 0; x < 40; ++x) {
             const auto i = static_cast<std::size_t>(y * 40 + x);
             const int r = (x - 20) * (x - 20) + (y - 18) * (y - 18);
-            ring.inside[i] = r > 30 && r < 260;
+            ring[i] = r > 30 && r < 260;
             // Islands that touch at corners, single pixels, lines one pixel wide.
-            specks.inside[i] = (x / 5 + y / 5) % 2 == 0 || x == 33 || (x % 7 == 3 && y % 11 == 2);
+            specks[i] = (x / 5 + y / 5) % 2 == 0 || x == 33 || (x % 7 == 3 && y % 11 == 2);
         }
     for (const Mask& mask : {ring, specks})
         for (const MapKind kind : {MapKind::kTracked, MapKind::kRelaxed}) {
@@ -133,13 +133,13 @@ TEST_CASE("tracked build: masked images keep their mask to the pixel") {
             params.levels.count = 2;
             const MeshImage built = build_mesh_image(image, params, {}, mask).mesh_image;
             for (const Level& level : built.levels) {
-                for (std::size_t i = 0; i < mask.inside.size(); ++i)
-                    CHECK((level.map.coords[i].face != kNone) == (mask.inside[i] != 0));
+                for (std::size_t i = 0; i < mask.size(); ++i)
+                    CHECK((level.map[i].face != kNone) == (mask[i] != 0));
                 const MapQuality q = map_quality(level.mesh, level.map, true);
                 CHECK(q.unmapped + q.outside_simplex == 0);
             }
-            for (std::size_t i = 0; i < mask.inside.size(); ++i)
-                if (mask.inside[i] == 0) CHECK(built.visits[i] == 0);
+            for (std::size_t i = 0; i < mask.size(); ++i)
+                if (mask[i] == 0) CHECK(built.visits[i] == 0);
         }
 }
 

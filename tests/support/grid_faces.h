@@ -20,7 +20,7 @@ inline std::vector<Face> grid_faces(const GridMesh& grid) {
     for (int y = 0; y + 1 < h; ++y)
         for (int x = 0; x + 1 < w; ++x) {
             const Id tl = static_cast<Id>(y * w + x), tr = tl + 1, bl = tl + static_cast<Id>(w), br = bl + 1;
-            if (grid.diagonal[static_cast<std::size_t>(y * (w - 1) + x)]) {
+            if (grid.falling_diagonal(x, y)) {
                 faces.push_back({tl, bl, br});
                 faces.push_back({tl, br, tr});
             } else {

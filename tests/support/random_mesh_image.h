@@ -61,13 +61,13 @@ inline PixelMap random_map(int width, int height, std::size_t faces, WeightPreci
     const auto steps = static_cast<std::uint32_t>(1 / step);
     for (int i = 0; i < width * height; ++i) {
         if (mask && random() % 4 == 0) {
-            map.coords.push_back({});
+            map.values.push_back({});
             continue;
         }
         const std::uint32_t u = random() % 8 == 0 ? random() % 2 * steps : random() % (steps + 1);
         const std::uint32_t rest = steps - u;
         const std::uint32_t v = random() % 8 == 0 ? random() % 2 * rest : random() % (rest + 1);
-        map.coords.push_back(
+        map.values.push_back(
             {static_cast<Id>(random() % faces), static_cast<float>(u) * step, static_cast<float>(v) * step});
     }
     return map;

@@ -16,7 +16,7 @@ template <typename Inside>
 Mask mask_where(int width, int height, Inside inside) {
     Mask mask{width, height, {}};
     for (int y = 0; y < height; ++y)
-        for (int x = 0; x < width; ++x) mask.inside.push_back(inside(x, y));
+        for (int x = 0; x < width; ++x) mask.values.push_back(inside(x, y));
     return mask;
 }
 
@@ -45,7 +45,7 @@ inline Mask random_mask(std::uint32_t seed) {
         for (int k = 0; k < 4; ++k) inside ^= std::hypot(x - cx[k], y - cy[k]) < cr[k];
         return inside != (kind == 2 && below(20) == 0);
     });
-    mask.inside[static_cast<std::size_t>(below(static_cast<unsigned>(mask.inside.size())))] = 1;
+    mask[static_cast<std::size_t>(below(static_cast<unsigned>(mask.size())))] = 1;
     return mask;
 }
 

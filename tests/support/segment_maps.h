@@ -12,7 +12,7 @@ namespace imgmesh::test {
 inline PixelMap map_of_faces(int width, int height, const std::vector<Id>& faces) {
     PixelMap map{width, height, {}, WeightPrecision::kFloat};
     for (const Id face : faces)
-        map.coords.push_back(face == kNone ? PixelCoord{} : PixelCoord{face, 1.0f / 3, 1.0f / 3});
+        map.values.push_back(face == kNone ? PixelCoord{} : PixelCoord{face, 1.0f / 3, 1.0f / 3});
     return map;
 }
 

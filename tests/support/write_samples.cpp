@@ -31,7 +31,7 @@ void write_picture(const std::string& path, const MeshImage& image) {
     std::ofstream out(path, std::ios::binary);
     out << "P6\n" << image.source.width << " " << image.source.height << "\n255\n";
     const Level& level = image.levels[0];
-    for (const PixelCoord& c : level.map.coords) {
+    for (const PixelCoord& c : level.map) {
         Vec3f srgb(0, 0, 0);
         if (c.face != kNone) {
             const auto corner = [&](std::size_t i) {
@@ -111,7 +111,7 @@ int main(int argc, char** argv) {
                 const bool mask = ++seed % 2 == 0;
                 MeshImage image = random_mesh_image(width, height, 1 + int(seed % 3), precision, mask, seed);
                 paint(image);
-                if (mask) image.visits.assign(image.levels[0].map.coords.size(), 3);
+                if (mask) image.visits.assign(image.levels[0].map.size(), 3);
                 const std::string name = std::string(mode_name) + " " + precision_name + " " +
                                          std::to_string(width) + "x" + std::to_string(height);
                 for (const char* extension : {".glb", ".gltf"})

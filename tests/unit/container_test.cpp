@@ -46,7 +46,7 @@ struct Mapped {
 
 std::vector<Mapped> mapped(const MeshImage& image, const Level& level) {
     std::vector<Mapped> out;
-    for (const PixelCoord& c : level.map.coords) {
+    for (const PixelCoord& c : level.map) {
         Mapped m;
         m.inside = c.face != kNone;
         const std::array<double, 3> weight = {1.0 - double(c.u) - double(c.v), double(c.u), double(c.v)};
@@ -120,7 +120,7 @@ TEST_CASE("container: what is read back is what was written, for every spelling,
                     const bool mask = ++seed % 2;
                     MeshImage image =
                         random_mesh_image(width, height, 1 + int(seed % 3), precision, mask, seed);
-                    if (seed % 3 == 0) image.visits.assign(image.levels[0].map.coords.size(), seed);
+                    if (seed % 3 == 0) image.visits.assign(image.levels[0].map.size(), seed);
                     const std::string path = folder / cat("a b\u00fc%", seed, extension);
                     INFO(path);
                     write_container(path, image, {mode, true});
@@ -185,8 +185,7 @@ TEST_CASE("container: faces that differ by a channel alone are told apart") {
         const auto [a, b, c] = mesh.faces[f];
         mesh.faces.push_back({a + vertices, b + vertices, c + vertices});
     }
-    for (std::size_t i = 0; i < image.levels[0].map.coords.size(); i += 2)
-        image.levels[0].map.coords[i].face += faces;
+    for (std::size_t i = 0; i < image.levels[0].map.size(); i += 2) image.levels[0].map[i].face += faces;
     for (const DracoMode mode : {DracoMode::kEdgebreaker, DracoMode::kSequential, DracoMode::kOff}) {
         write_container(folder / "x.glb", image, {mode, true});
         check_same(image, read_container(folder / "x.glb").mesh_image);
@@ -249,17 +248,17 @@ TEST_CASE("container: a wrong face, a wrong rotation and a swapped weight are al
     const MeshImage image = random_mesh_image(30, 20, 1, WeightPrecision::kFloat, false, 7);
     const Level& level = image.levels[0];
     Level other = level;
-    std::rotate(other.map.coords.begin(), other.map.coords.begin() + 1, other.map.coords.end());
+    std::rotate(other.map.begin(), other.map.begin() + 1, other.map.end());
     CHECK_FALSE(mapped(image, other) == mapped(image, level));
     other = level;
-    for (PixelCoord& c : other.map.coords) c.face = (c.face + 1) % static_cast<Id>(level.mesh.faces.size());
+    for (PixelCoord& c : other.map) c.face = (c.face + 1) % static_cast<Id>(level.mesh.faces.size());
     CHECK_FALSE(mapped(image, other) == mapped(image, level));
     other = level;
     for (Face& face : other.mesh.faces) std::rotate(face.begin(), face.begin() + 1, face.end());
     CHECK_FALSE(mapped(image, other) == mapped(image, level));
     CHECK(face_set(other.mesh) == face_set(level.mesh));
     other = level;
-    for (PixelCoord& c : other.map.coords) std::swap(c.u, c.v);
+    for (PixelCoord& c : other.map) std::swap(c.u, c.v);
     CHECK_FALSE(mapped(image, other) == mapped(image, level));
 }
 
@@ -320,9 +319,9 @@ TEST_CASE("container: the writer refuses parts that do not fit each other") {
     };
     refused([](MeshImage& m) { m.levels.clear(); });
     refused([](MeshImage& m) { m.source.width = 8; });
-    refused([](MeshImage& m) { m.levels[1].map.coords.pop_back(); });
+    refused([](MeshImage& m) { m.levels[1].map.values.pop_back(); });
     refused([](MeshImage& m) { m.visits.resize(5); });
-    refused([](MeshImage& m) { m.levels[1].map.coords[5].face = 1000; });
+    refused([](MeshImage& m) { m.levels[1].map[5].face = 1000; });
     refused([](MeshImage& m) { m.source.has_mask = false; });
     refused([](MeshImage& m) { m.source.channel_names.push_back("Z"); });
     refused([](MeshImage& m) { m.source.channel_names = {"Z"}; });

@@ -133,7 +133,7 @@ TEST_CASE("map_distributions: the trivial map of a square, then one pixel moved"
     CHECK(d.jump.max == Approx(std::sqrt(5.0)));
     CHECK(d.jump.max == Approx(map_quality(mesh, map).max_jump));
 
-    for (PixelCoord& c : map.coords)
+    for (PixelCoord& c : map)
         if (c.face == 1) c = {};  // outside
     d = map_distributions(mesh, map);
     CHECK(d.empty_patches == 1);

@@ -103,7 +103,7 @@ TEST_CASE("layers: decode(encode(x)) == x, and the same bytes each time") {
             REQUIRE(back.size() == count);
             for (std::size_t i = 0; i < count; ++i) {
                 CHECK(back[i].name == parts[i].name);
-                CHECK(back[i].map.coords == parts[i].map.coords);
+                CHECK(back[i].map.values == parts[i].map.values);
                 CHECK(back[i].map.precision == precision);
                 CHECK(back[i].visits == parts[i].visits);
                 CHECK(back[i].topology == parts[i].topology);
@@ -116,7 +116,7 @@ TEST_CASE("layers: the writer refuses weights that would not survive") {
          {PixelCoord{1, 0.3f, 0.1f}, PixelCoord{1, 0.75f, 0.5f}, PixelCoord{1, -0.25f, 0.5f},
           PixelCoord{1, NAN, 0}, PixelCoord{kNone, 0.5f, 0}}) {
         std::vector<LayerPart> parts = random_parts(WeightPrecision::kHalf, true);
-        parts[1].map.coords[20] = bad;
+        parts[1].map[20] = bad;
         CHECK_THROWS_AS(encode_exr_layers(parts), Error);
     }
 }
@@ -145,7 +145,7 @@ TEST_CASE("layers: what does not fit the container is refused by its code") {
 TEST_CASE("layers: files of other software") {
     // Weights off the grid are rounded down to it, so u + v <= 1 still holds.
     const std::vector<LayerPart> parts = decode_exr_layers(Foreign().write(), Foreign().expected);
-    const PixelCoord c = parts[0].map.coords[11];
+    const PixelCoord c = parts[0].map[11];
     CHECK(parts[0].map.precision == WeightPrecision::kFloat);
     CHECK(c.face == 7);
     CHECK(c.u / kFloatWeightStep == std::floor(0.1f / kFloatWeightStep));
@@ -206,7 +206,7 @@ TEST_CASE("layers: truncated and flipped bytes give a finding or the right sizes
         flipped[at] = static_cast<std::uint8_t>(flipped[at] ^ (1 + random() % 255));
         try {
             for (const LayerPart& part : decode_exr_layers(flipped, expected))
-                CHECK(part.map.coords.size() == kWidth * kHeight);
+                CHECK(part.map.size() == kWidth * kHeight);
         } catch (const FindingError&) {
         }
     }

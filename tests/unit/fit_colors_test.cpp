@@ -21,7 +21,7 @@ namespace {
 
 // The trivial map with every pixel's weights turned towards the middle of its face: another valid map.
 PixelMap towards_middle(PixelMap map) {
-    for (PixelCoord& coord : map.coords) {
+    for (PixelCoord& coord : map) {
         coord.u = 0.5f * coord.u + 1.0f / 6;
         coord.v = 0.5f * coord.v + 1.0f / 6;
     }
@@ -37,8 +37,8 @@ Eigen::MatrixXd dense_solution(const BaseMesh& mesh, const FeatureImage& feature
     Eigen::MatrixXd a = Eigen::MatrixXd::Zero(rows, vertices), b(rows, 3);
     Eigen::Index row = 0;
     for (const FitTerm& term : terms)
-        for (std::size_t i = 0; i < term.map->coords.size(); ++i, ++row) {
-            const PixelCoord& coord = term.map->coords[i];
+        for (std::size_t i = 0; i < term.map->size(); ++i, ++row) {
+            const PixelCoord& coord = (*term.map)[i];
             const double root = std::sqrt(term.weight);
             const double w[3] = {1.0 - double(coord.u) - double(coord.v), double(coord.u), double(coord.v)};
             for (std::size_t k = 0; k < 3; ++k) a(row, mesh.faces[coord.face][k]) += root * w[k];
@@ -95,8 +95,8 @@ TEST_CASE("fit colours: pixels outside the mask do not count") {
     BaseMesh mesh = jittered_grid(0, 0, 9, 9, 2, 2, 1);
     FeatureImage feature = sample_feature(Kind::kConstant, 10, 10);
     PixelMap map = trivial_map(mesh, 10, 10);
-    for (std::size_t i = 0; i < map.coords.size(); i += 7) {
-        map.coords[i] = {};
+    for (std::size_t i = 0; i < map.size(); i += 7) {
+        map[i] = {};
         feature.pixel(i)[0] = 1e6f;
     }
     for (Id v = 0; v < mesh.vertex_count(); ++v)

@@ -17,8 +17,8 @@ FeatureImage one_channel(int width, int height, std::vector<float> data) {
 GridMesh patterned_grid(int width, int height, std::uint32_t pattern) {
     GridMesh grid;
     grid.feature = one_channel(width, height, std::vector<float>(static_cast<std::size_t>(width * height)));
-    for (int k = 0; k < (width - 1) * (height - 1); ++k)
-        grid.diagonal.push_back(static_cast<std::uint8_t>(pattern >> k & 1));
+    grid.diagonal = Grid<std::uint8_t>({width - 1, height - 1});
+    for (std::size_t k = 0; k < grid.diagonal.size(); ++k) grid.diagonal[k] = pattern >> k & 1;
     return grid;
 }
 

@@ -21,22 +21,22 @@ Image row_of(int channels, const std::vector<float>& samples) {
 
 TEST_CASE("masks: alpha from the threshold on") {
     const Image image = row_of(2, {0.9f, 0.49f, 0.1f, 0.5f, 0.2f, 1.0f});
-    CHECK(alpha_mask(image, 0.5f).inside == Inside{0, 1, 1});
-    CHECK(alpha_mask(image, 0.75f).inside == Inside{0, 0, 1});
+    CHECK(alpha_mask(image, 0.5f).values == Inside{0, 1, 1});
+    CHECK(alpha_mask(image, 0.75f).values == Inside{0, 0, 1});
     CHECK(alpha_mask(image, 0.5f).count() == 2);
     CHECK(alpha_mask(image, 0.4f).empty());                                   // all are inside
     CHECK(alpha_mask(row_of(3, {0, 0, 0, 0, 0, 0, 0, 0, 0}), 0.5f).empty());  // no alpha
 }
 
 TEST_CASE("masks: a mask's image counts by its alpha, else by its light") {
-    CHECK(image_mask(row_of(1, {0, 0.5f, 1}), 0.5f).inside == Inside{0, 1, 1});
-    CHECK(image_mask(row_of(3, {0, 0, 0, 0.6f, 0.6f, 0.2f, 1, 0.5f, 0}), 0.5f).inside == Inside{0, 0, 1});
+    CHECK(image_mask(row_of(1, {0, 0.5f, 1}), 0.5f).values == Inside{0, 1, 1});
+    CHECK(image_mask(row_of(3, {0, 0, 0, 0.6f, 0.6f, 0.2f, 1, 0.5f, 0}), 0.5f).values == Inside{0, 0, 1});
     // An alpha that shows something, and one that is opaque.
-    CHECK(image_mask(row_of(2, {1, 0, 0, 1, 1, 1}), 0.5f).inside == Inside{0, 1, 1});
-    CHECK(image_mask(row_of(2, {1, 1, 0, 1, 1, 1}), 0.5f).inside == Inside{1, 0, 1});
+    CHECK(image_mask(row_of(2, {1, 0, 0, 1, 1, 1}), 0.5f).values == Inside{0, 1, 1});
+    CHECK(image_mask(row_of(2, {1, 1, 0, 1, 1, 1}), 0.5f).values == Inside{1, 0, 1});
     Image alpha = row_of(1, {1, 1, 1});
     alpha.channel_names = {"A"};
-    CHECK(image_mask(alpha, 0.5f).inside == Inside{1, 1, 1});
+    CHECK(image_mask(alpha, 0.5f).values == Inside{1, 1, 1});
     alpha.channel_names = {"Z"};
     CHECK_THROWS_AS(image_mask(alpha, 0.5f), Error);
 }

@@ -194,7 +194,7 @@ TEST_CASE("map_rms: features linear in position are exact, an offset shows as it
         reference.pixel(i)[2] -= 4;
     }
     CHECK(map_rms(mesh, map, reference) == Approx(5).epsilon(1e-5));
-    for (PixelCoord& c : map.coords) c = {};
+    for (PixelCoord& c : map) c = {};
     CHECK(map_rms(mesh, map, reference) == 0);
     reference.height = 29;
     CHECK_THROWS_AS(map_rms(mesh, map, reference), Error);

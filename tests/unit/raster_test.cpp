@@ -27,12 +27,11 @@ PixelCoord brute_force(const BaseMesh& mesh, double x, double y) {
 
 void check_against_brute_force(const BaseMesh& mesh, const SampleGrid& grid, bool covered) {
     const PixelMap map = rasterize(mesh, grid);
-    REQUIRE(map.coords.size() == grid.x.size() * grid.y.size());
+    REQUIRE(map.size() == grid.x.size() * grid.y.size());
     int wrong_face = 0, wrong_weight = 0, uncovered = 0;
     for (std::size_t j = 0; j < grid.y.size(); ++j)
         for (std::size_t i = 0; i < grid.x.size(); ++i) {
-            const PixelCoord got = map.coords[j * grid.x.size() + i],
-                             want = brute_force(mesh, grid.x[i], grid.y[j]);
+            const PixelCoord got = map[j * grid.x.size() + i], want = brute_force(mesh, grid.x[i], grid.y[j]);
             wrong_face += got.face != want.face;
             uncovered += got.face == kNone;
             const float w = 1 - got.u - got.v, steps = got.u / kFloatWeightStep;
@@ -87,14 +86,14 @@ TEST_CASE("rasterize: flipped and degenerate faces cover nothing") {
     BaseMesh mesh = test::jittered_grid(0, 0, 8, 8, 1, 1, 1);
     for (Face& f : mesh.faces) std::swap(f[0], f[1]);
     mesh.faces.push_back({0, 1, 1});
-    for (const PixelCoord& c : trivial_map(mesh, 9, 9).coords) CHECK(c == PixelCoord{});
+    for (const PixelCoord& c : trivial_map(mesh, 9, 9).values) CHECK(c == PixelCoord{});
 }
 
 TEST_CASE("rasterize: one thread and several give the same map") {
     const BaseMesh mesh = test::jittered_grid(0, 0, 199, 149, 20, 15, 4);
     const PixelMap many = trivial_map(mesh, 200, 150);
     const ThreadLimit limit(1);
-    CHECK(trivial_map(mesh, 200, 150).coords == many.coords);
+    CHECK(trivial_map(mesh, 200, 150).values == many.values);
 }
 
 TEST_CASE("sample_grid: positions of an enlarged image") {

@@ -133,7 +133,7 @@ TEST_CASE("draw map: every pixel interpolates its face's corners with its own we
     MeshImage m = random_mesh_image(40, 30, 5, 4, 3);
     std::mt19937 random(4);
     Level& level = m.levels[0];
-    for (PixelCoord& c : level.map.coords) {
+    for (PixelCoord& c : level.map) {
         const float u = float(random() % 1025) / 1024, v = (1 - u) * float(random() % 1025) / 1024;
         c = {static_cast<Id>(random() % level.mesh.faces.size()), u, v};
     }
@@ -290,7 +290,7 @@ TEST_CASE("draw: visits, the less the brighter") {
             CHECK(image.pixel(x, 4)[c] == Approx(image.pixel(x, 4)[0]).epsilon(1e-3));  // grey
             if (x > 0) CHECK(image.pixel(x, 4)[c] < image.pixel(x - 1, 4)[c]);
         }
-    m.levels[0].map.coords[0] = {};  // outside the mask
+    m.levels[0].map[0] = {};  // outside the mask
     CHECK(visit_lightness(m)[0] == 0);
     std::fill(m.visits.begin(), m.visits.end(), 7);
     CHECK(visit_lightness(m)[5] == 100);

@@ -34,23 +34,23 @@ TEST_CASE("cells: the connected parts of patches, numbered by their first pixel"
                                        7, 5, kNone,  //
                                        5, 5, 7});
     const Cells cells = cut_cells(map);
-    CHECK(cells.of_pixel == std::vector<Id>{0, 0, 1, 0, 2, kNone, 2, 2, 3});
+    CHECK(cells.values == std::vector<Id>{0, 0, 1, 0, 2, kNone, 2, 2, 3});
     CHECK(cells.face == std::vector<Id>{7, 5, 5, 7});
 }
 
 // A ring whose arms meet only in its last row: their trees of pixels are joined late.
 TEST_CASE("cells: arms that meet below are one cell") {
     const Cells cells = cut_cells(map_of_faces(3, 3, {1, 2, 1, 1, 2, 1, 1, 1, 1}));
-    CHECK(cells.of_pixel == std::vector<Id>{0, 1, 0, 0, 1, 0, 0, 0, 0});
+    CHECK(cells.values == std::vector<Id>{0, 1, 0, 0, 1, 0, 0, 0, 0});
 }
 
 // The pixel in the middle has weights of one third each, the others lie at their face's corners and edges.
 TEST_CASE("paper: a patch's colour is weighted by the least weight") {
     PixelMap map = map_of_faces(4, 1, {0, 0, 1, 1});
-    map.coords[0] = {0, 0.25f, 0.25f};  // least 1/4
-    map.coords[1] = {0, 0.5f, 0.375f};  // least 1/8
-    map.coords[2] = {1, 0.5f, 0.5f};    // least 0: this patch counts all of its pixels alike
-    map.coords[3] = {1, 1, 0};
+    map[0] = {0, 0.25f, 0.25f};  // least 1/4
+    map[1] = {0, 0.5f, 0.375f};  // least 1/8
+    map[2] = {1, 0.5f, 0.5f};    // least 0: this patch counts all of its pixels alike
+    map[3] = {1, 1, 0};
     const FeatureImage picture{4, 1, 3, {30, 0, 0, 60, 9, 0, 10, 0, 4, 20, 0, 8}};
     const RegionGraph graph = region_graph(cut_cells(map), map, picture, {});
     CHECK((graph.regions[0].paper_color() - Vec3d(40, 3, 0)).norm() < 1e-9);
@@ -65,7 +65,7 @@ TEST_CASE("paper: closest first, colours averaged anew, strictly below the thres
     const PixelMap map = map_of_faces(4, 1, {0, 1, 2, 3});
     const FeatureImage picture{4, 1, 3, {0, 0, 0, 4, 0, 0, 10, 0, 0, 20, 0, 0}};
     const auto regions = [&](double threshold) {
-        return segment(level_of(map), picture, by_threshold(DistanceRule::kPaper, threshold)).labels.labels;
+        return segment(level_of(map), picture, by_threshold(DistanceRule::kPaper, threshold)).labels.values;
     };
     CHECK(regions(4) == std::vector<Id>{0, 1, 2, 3});
     CHECK(regions(4.01) == std::vector<Id>{0, 0, 1, 2});
@@ -81,7 +81,7 @@ TEST_CASE("ties go to the lower regions") {
     const FeatureImage picture{4, 1, 3, {0, 0, 0, 1, 0, 0, 0, 0, 0, 1, 0, 0}};
     SegmentParams params = by_threshold(DistanceRule::kPaper, 1);
     params.segments = 3;
-    CHECK(segment(level_of(map), picture, params).labels.labels == std::vector<Id>{0, 0, 1, 2});
+    CHECK(segment(level_of(map), picture, params).labels.values == std::vector<Id>{0, 0, 1, 2});
 }
 
 TEST_CASE("population distance: the textbook's values") {
@@ -104,7 +104,7 @@ TEST_CASE("contour distance of two plain halves is that of their colours") {
     for (int y = 0; y < kSide; ++y)
         for (int x = kSide / 2; x < kSide; ++x) {
             const auto i = static_cast<std::size_t>(y * kSide + x);
-            map.coords[i].face = 1;
+            map[i].face = 1;
             picture.data[3 * i] = 53;
             picture.data[3 * i + 1] = 54;
         }
@@ -139,7 +139,7 @@ TEST_CASE("min size: small regions go to their closest neighbour first") {
     CHECK(segment(level_of(map), picture, params).labels.count == 3);
     params.min_size = 2;
     const Segmentation result = segment(level_of(map), picture, params);
-    CHECK(result.labels.labels == std::vector<Id>{0, 0, 0, 1, 1, 1, 1});
+    CHECK(result.labels.values == std::vector<Id>{0, 0, 0, 1, 1, 1, 1});
     CHECK(result.hierarchy.forced == 1);
     params.segments = 3;
     CHECK_THROWS_AS(segment(level_of(map), picture, params), Error);
@@ -151,7 +151,7 @@ TEST_CASE("islands of a mask stay apart") {
     const FeatureImage picture{5, 1, 3, std::vector<float>(15, 0.0f)};
     SegmentParams params = by_threshold(DistanceRule::kContour, 1e9);
     params.min_size = 100;
-    CHECK(segment(level_of(map), picture, params).labels.labels == std::vector<Id>{0, 0, kNone, 1, 1});
+    CHECK(segment(level_of(map), picture, params).labels.values == std::vector<Id>{0, 0, kNone, 1, 1});
     params.segments = 1;
     CHECK_THROWS_WITH_AS(segment(level_of(map), picture, params), doctest::Contains("expected at least 2"),
                          Error);
@@ -185,7 +185,7 @@ TEST_CASE("superpixels follow edges, and without edges are of similar size") {
     SegmentParams params;
     params.superpixels = 64;
     std::vector<std::int64_t> sizes(64, 0);
-    for (const Id label : segment(level, picture, params).labels.labels) ++sizes[label];
+    for (const Id label : segment(level, picture, params).labels.values) ++sizes[label];
     CHECK(*std::min_element(sizes.begin(), sizes.end()) >= 6);
     CHECK(*std::max_element(sizes.begin(), sizes.end()) <= 40);
 
@@ -203,15 +203,15 @@ TEST_CASE("a face's region is that of most of its pixels, or its neighbour's") {
     mesh.position = {{0, 0}, {0, 2}, {2, 0}, {2, 2}, {4, 0}, {4, 2}};
     mesh.faces = {{0, 1, 2}, {2, 1, 3}, {2, 3, 4}, {4, 3, 5}};
     const PixelMap map = map_of_faces(5, 1, {0, 1, 3, 3, 3});
-    const LabelImage labels{5, 1, 2, {0, 0, 0, 1, 1}};
+    const LabelImage labels({5, 1, {0, 0, 0, 1, 1}}, 2);
     CHECK(region_of_faces(mesh, map, labels) == std::vector<Id>{0, 0, 0, 1});
-    const LabelImage none{5, 1, 0, std::vector<Id>(5, kNone)};
+    const LabelImage none({5, 1, std::vector<Id>(5, kNone)}, 0);
     CHECK(region_of_faces(mesh, map_of_faces(5, 1, std::vector<Id>(5, kNone)), none) ==
           std::vector<Id>(4, kNone));
 }
 
 TEST_CASE("drawings: lines on the pixels before a border, alpha where there is a mask") {
-    const LabelImage labels{3, 1, 2, {0, 0, 1}};
+    const LabelImage labels({3, 1, {0, 0, 1}}, 2);
     const FeatureImage picture{3, 1, 3, {0, 0, 0, 0, 0, 0, 100, 0, 0}};
     SourceInfo source;
     source.width = 3;
@@ -222,7 +222,7 @@ TEST_CASE("drawings: lines on the pixels before a border, alpha where there is a
     CHECK(lines.pixel(1, 0)[0] > 0.9f);  // yellow
     CHECK(lines.pixel(1, 0)[2] < 0.3f);
     CHECK(lines.pixel(2, 0)[2] > 0.99f);
-    const Image flat = draw_flat({3, 1, 1, {0, kNone, 0}}, {Vec3f(100, 0, 0)}, source);
+    const Image flat = draw_flat({{3, 1, {0, kNone, 0}}, 1}, {Vec3f(100, 0, 0)}, source);
     REQUIRE(flat.channels == 4);
     CHECK(flat.pixel(0, 0)[1] > 0.99f);
     CHECK(flat.pixel(0, 0)[3] == 1.0f);

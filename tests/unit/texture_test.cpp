@@ -14,7 +14,7 @@ namespace {
 // The mask of the middle pixel of `side` x `side`.
 Mask middle(int side) {
     Mask mask{side, side, std::vector<std::uint8_t>(static_cast<std::size_t>(side * side))};
-    mask.inside[mask.inside.size() / 2] = 1;
+    mask[mask.size() / 2] = 1;
     return mask;
 }
 
@@ -70,7 +70,7 @@ TEST_CASE("texture: colours spread ring by ring, and the rest has their mean") {
     CHECK(Vec3f(texture.data.data() + 8) == Vec3f(0, 0, 1));
     Image wide = make_image(40, 1, 3);
     Mask ends{40, 1, std::vector<std::uint8_t>(40)};
-    ends.inside.front() = ends.inside.back() = 1;
+    ends.values.front() = ends.values.back() = 1;
     wide.data.front() = wide.data.back() = 1;
     CHECK(Vec3f(texture_image(wide, ends).data.data() + 4 * 20) == Vec3f(0.5f, 0, 0.5f));
     CHECK(Vec3f(texture_image(wide, ends).data.data() + 4 * 8) == Vec3f(1, 0, 0));
@@ -84,15 +84,15 @@ TEST_CASE("texture: colours spread as they are said to, out of masks of any shap
         Image image = make_image(width, height, 3);
         Mask mask{width, height, {}};
         for (std::size_t i = 0; i < image.pixel_count(); ++i)
-            mask.inside.push_back(random() % static_cast<unsigned>(share) == 0);
-        mask.inside[5] = 1;
+            mask.values.push_back(random() % static_cast<unsigned>(share) == 0);
+        mask[5] = 1;
         for (float& v : image.data) v = static_cast<float>(random() % 256) / 255;
         std::vector<Vec3f> color(image.pixel_count());
-        std::vector<std::uint8_t> colored = mask.inside;
+        std::vector<std::uint8_t> colored = mask.values;
         Vec3d sum(0, 0, 0);
         for (std::size_t i = 0; i < color.size(); ++i) {
             color[i] = Vec3f(image.data.data() + 3 * i);
-            if (mask.inside[i]) sum += color[i].cast<double>();
+            if (mask[i]) sum += color[i].cast<double>();
         }
         for (int ring = 0; ring < 8; ++ring) {
             const std::vector<std::uint8_t> before = colored;

@@ -111,7 +111,7 @@ TEST_CASE("layers: OpenEXR reads the numbers that were written") {
                 Imf::InputPart in(file, p);
                 in.setFrameBuffer(frame);
                 in.readPixels(0, kHeight - 1);
-                CHECK(coords == part.map.coords);
+                CHECK(coords == part.map.values);
                 CHECK(visits == part.visits);
             }
         }
@@ -134,7 +134,7 @@ TEST_CASE("layers: blocks of OpenEXR's own packing, in either order") {
                 std::vector<Id> ids;
                 std::vector<float> u, v;
                 std::vector<half> hu, hv;
-                for (const PixelCoord& c : part.map.coords) {
+                for (const PixelCoord& c : part.map) {
                     ids.push_back(c.face);
                     u.push_back(c.u);
                     v.push_back(c.v);
@@ -155,7 +155,7 @@ TEST_CASE("layers: blocks of OpenEXR's own packing, in either order") {
                 }
                 const Bytes bytes = read_file(folder / "o.exr", 1 << 20);
                 const auto read = decode_exr_layers(bytes, {kWidth, kHeight, {"lod0"}, {kFaces}, true});
-                CHECK(read[0].map.coords == part.map.coords);
+                CHECK(read[0].map.values == part.map.values);
                 CHECK(read[0].map.precision == precision);
             }
 }
