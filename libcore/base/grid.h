@@ -1,5 +1,5 @@
-// What has a value for every pixel: rows from top to bottom, each from left to right. This is the one place
-// where a column and a row become an index.
+// Values on pixels: rows from top to bottom, each from left to right. Only here a column and a row become an
+// index.
 #pragma once
 
 #include <cassert>
@@ -12,7 +12,7 @@
 
 namespace imgmesh {
 
-/// The size of an image and of all that has its pixels.
+/// The size of an image, and of everything that has the same pixels.
 struct GridSize {
     int width = 0;
     int height = 0;
@@ -24,17 +24,17 @@ struct GridSize {
         assert(contains(x, y));
         return as_index(y) * as_index(width) + as_index(x);
     }
-    /// The index of a row's first pixel.
+    /// Returns the index of a row's first pixel.
     std::size_t row_begin(int y) const {
         assert(y >= 0 && y < height);
         return as_index(y) * as_index(width);
     }
-    /// Column and row of a pixel.
+    /// Return the column and the row of a pixel.
     int x_of(std::size_t pixel) const { return as_int(pixel % as_index(width)); }
     int y_of(std::size_t pixel) const { return as_int(pixel / as_index(width)); }
 };
 
-/// One value a pixel.
+/// One value for each pixel.
 template <typename T>
 struct Grid : GridSize {
     std::vector<T> values;  ///< size width * height
@@ -42,7 +42,7 @@ struct Grid : GridSize {
     Grid() = default;
     /// `values` may be empty, to be filled by push_back.
     Grid(int columns, int rows, std::vector<T> all) : GridSize{columns, rows}, values(std::move(all)) {}
-    /// The same value everywhere.
+    /// Fills the grid with one value.
     explicit Grid(const GridSize& size, const T& value = {})
         : GridSize(size), values(size.pixel_count(), value) {}
 
@@ -62,7 +62,7 @@ struct Grid : GridSize {
     std::span<T> row(int y) { return {values.data() + row_begin(y), as_index(width)}; }
 };
 
-/// Several floats a pixel, interleaved.
+/// Several floats for each pixel, interleaved.
 struct ChannelGrid : GridSize {
     int channels = 0;
     std::vector<float> data;  ///< size width * height * channels
@@ -79,7 +79,7 @@ struct ChannelGrid : GridSize {
     }
     std::span<float> row(int y) { return {data.data() + row_begin(y) * as_index(channels), row_size()}; }
 
-    /// The first of the samples of a pixel.
+    /// Returns a pointer to the first of a pixel's samples.
     const float* pixel(std::size_t index) const { return data.data() + index * as_index(channels); }
     float* pixel(std::size_t index) { return data.data() + index * as_index(channels); }
     const float* pixel(int x, int y) const { return pixel(index(x, y)); }

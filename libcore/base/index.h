@@ -1,5 +1,5 @@
-// Numbers that become indices, ids and counts. Each conversion says what it is for and is checked in builds
-// with assertions.
+// Conversions of numbers to indices, ids and counts. Each names its purpose and is checked in builds with
+// assertions.
 #pragma once
 
 #include <cassert>
@@ -12,21 +12,21 @@
 
 namespace imgmesh {
 
-/// As containers count; not negative.
+/// For indices and sizes of containers; not negative.
 template <std::integral T>
 constexpr std::size_t as_index(T number) {
     assert(std::cmp_greater_equal(number, 0));
     return static_cast<std::size_t>(number);
 }
 
-/// As loops over rows, and libraries, count: below 2^31.
+/// For loops over rows, and for libraries that count in int: below 2^31.
 template <std::integral T>
 constexpr int as_int(T number) {
     assert(std::in_range<int>(number));
     return static_cast<int>(number);
 }
 
-/// As the number of a vertex, a face or a pixel.
+/// For the number of a vertex, a face or a pixel.
 template <std::integral T>
 constexpr Id as_id(T number) {
     assert(std::cmp_greater_equal(number, 0) && std::cmp_less(number, kNone));

@@ -21,12 +21,12 @@
 namespace imgmesh {
 namespace {
 
-// A step assumes that the mesh's colour is linear, which it is inside one face alone: half a pixel is as far
-// as that is trusted. Where the step would fold the grid, shorter ones are tried.
+// A step assumes that the mesh's colour is linear, which holds only inside one face, so a step is at most
+// half a pixel. Where it would fold the grid, shorter ones are tried.
 constexpr float kLongestStep = 0.5f;
 constexpr int kHalvings = 2;
 
-// Rows of a block: enough work beside the cost of handing it over, few enough for all threads to have some.
+// Rows of a block: enough work for the cost of a hand-over, few enough for all threads.
 constexpr int kSweptRows = 16;
 constexpr int kCopiedRows = 64;
 
@@ -108,7 +108,7 @@ struct EightFields {
     Float8 ax, ay, ux, uy, vx, vy;
     Float8 f[3], fx[3], fy[3];
 
-    // Each is read as a whole; its last four bytes are none of its members and go nowhere.
+    // Each is read as a whole; its last four bytes are no member and are ignored.
     IMGMESH_INLINE explicit EightFields(const FaceField* const (&fields)[8]) {
         static_assert(sizeof(FaceField) == 2 * sizeof(Float8) && offsetof(FaceField, ay) == 4 &&
                       offsetof(FaceField, ux) == 8 && offsetof(FaceField, vy) == 20 &&
