@@ -11,7 +11,7 @@ namespace imgmesh {
 /// Whether write_labels() can write a file of this extension: .exr or .png.
 bool can_write_labels(const std::string& path);
 
-/// Writes one label a pixel, such as LabelImage::labels: width * height of them, rows from top to bottom,
+/// Writes one label a pixel, such as LabelImage::values: width * height of them, rows from top to bottom,
 /// kNone for none. An .exr gets one UINT channel `id`; a .png is 16-bit grey, with 65535 for none.
 ///
 /// The file appears whole or not at all; same bytes for the same labels. Throws Error: kBadArgument for
