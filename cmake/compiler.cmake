@@ -6,8 +6,9 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL GNU AND CMAKE_CXX_COMPILER_VERSION VERSION_LES
   target_compile_options(imgmesh_compiler INTERFACE -Wno-restrict)
 endif()
 if(CMAKE_CXX_COMPILER_ID MATCHES Clang)
-  # Eigen's and the standard library's sizes are signed and unsigned; g++ does not ask for this either.
-  target_compile_options(imgmesh_compiler INTERFACE -Wno-sign-conversion)
+  # Eigen's and the standard library's sizes are signed and unsigned, and braces may be left out around the first member
+  # of an aggregate; g++ asks for neither.
+  target_compile_options(imgmesh_compiler INTERFACE -Wno-sign-conversion -Wno-missing-braces)
 endif()
 # Results are the same bytes on any machine of one architecture: no contraction of a*b+c that depends on flags.
 target_compile_options(imgmesh_compiler INTERFACE -ffp-contract=off)
