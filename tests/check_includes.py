@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
 """Fails on an include against tools -> formats -> libcore, against the ranks of the rooms in a layer, or from a public
-header (cmake/public_headers.cmake) to one that is not installed.
+header (cmake/public_headers.cmake) to one that is not installed; and on a message below the tools that names an option of
+the command line.
 
-check_includes.py [ROOT]     prints each wrong include of the tree, exit 1 if there is one
-check_includes.py --self-test   plants includes, wrong and right, into small trees and expects each to be judged so
+check_includes.py [ROOT]     prints what is wrong in the tree, exit 1 if there is anything
+check_includes.py --self-test   plants lines, wrong and right, into small trees and expects each to be judged so
 """
 import re
 import sys
@@ -12,6 +13,8 @@ from collections import Counter
 from pathlib import Path
 
 INCLUDE = re.compile(r'^\s*#\s*include\s*[<"]([^>"]+)[>"]', re.MULTILINE)
+# A string that names an option: libraries are used without a command line too.
+OPTION = re.compile(r'"[^"\n]*(?<![\w-])--[a-z][^"\n]*"')
 SOURCES = {".h", ".hpp", ".cpp", ".inl"}
 
 # Rooms of a layer, from the lowest rank up. A file includes rooms of lower rank and its own room, nothing else: rooms of
@@ -137,6 +140,9 @@ def findings(root):
                     reason = leaks(root, include, set())
                 if reason:
                     yield f"{relative} includes {include}: {reason}"
+            if layer != "tools":
+                for text in OPTION.findall(path.read_text(encoding="utf-8")):
+                    yield f"{relative} has the text {text}: only tools know options"
 
 
 # (file, include, whether it is wrong)
@@ -192,6 +198,14 @@ CASES = [
 ]
 
 
+# (file, line, whether it is wrong)
+TEXT_CASES = [
+    ("libcore/mesh/a.cpp", 'throw Error("too coarse: --bary float holds it");', True),
+    ("formats/gltf/a.cpp", 'throw Error("--bary is wrong");', True),
+    ("formats/gltf/a.cpp", 'if (--left == 0) throw Error("none is left");', False),
+    ("tools/a.cpp", 'throw Error("--bary is wrong");', False),
+]
+
 # A tool includes formats/a.h, which includes formats/b.h, which includes this.
 LEAK_CASES = [("OpenEXR/ImfHeader.h", True), ("nlohmann/json_fwd.hpp", True), ("vector", False)]
 
@@ -228,6 +242,8 @@ def self_test():
     for name, include, is_wrong in CASES:
         failed += failures({name: f"// a file\n#include <{include}>\n"}, is_wrong)
         failed += failures({name: f'// a file\n  #  include "{include}"  // why\n'}, is_wrong)
+    for name, line, is_wrong in TEXT_CASES:
+        failed += failures({name: f"// a file\n{line}\n"}, is_wrong)
     for include, is_wrong in LEAK_CASES:
         failed += failures({"tools/a.cpp": '#include "formats/gltf/a.h"\n', "formats/gltf/a.h": '#include "formats/gltf/b.h"\n',
                             "formats/gltf/b.h": f"#include <{include}>\n"}, is_wrong)

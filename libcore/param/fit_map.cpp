@@ -35,7 +35,7 @@ PixelMap stored(const BaseMesh& mesh, const PixelEmbedding& pixels, const std::v
         if (!wanted || *wanted == precision)
             if (auto map = quantize_map(mesh, pixels, fields, neighbors, precision)) return *std::move(map);
     throw Error(ErrorKind::kUnsupported,
-                "the weights are too coarse for faces this large: --bary float holds them");
+                "weights of half precision are too coarse for faces this large, those of float are not");
 }
 
 void round_colors(BaseMesh& mesh, const FeatureSpace& space) {
