@@ -6,6 +6,7 @@
 #include <ostream>
 
 #include "formats/container/container.h"
+#include "formats/files/extension.h"
 #include "formats/picture/image_io.h"
 #include "libcore/base/parallel.h"
 #include "libcore/base/stopwatch.h"

@@ -1,4 +1,5 @@
-// imgmesh-convert: a container in another spelling or compression, with fewer levels, or in another format.
+// imgmesh-convert: a container as another file variant or with another compression, with fewer levels, or in
+// another format.
 #include <filesystem>
 #include <optional>
 #include <ostream>
@@ -6,6 +7,7 @@
 #include "formats/container/container.h"
 #include "formats/export/mesh_export.h"
 #include "formats/files/atomic_file.h"
+#include "formats/files/extension.h"
 #include "formats/picture/image_io.h"
 #include "libcore/image/feature_space.h"
 #include "libcore/recon/draw.h"
@@ -253,6 +255,6 @@ void print(const Report& report, std::ostream& out) {
 
 int main(int argc, char** argv) {
     return tool_main<Options>("imgmesh-convert",
-                              "Turn a container into another spelling or compression, or another format.",
+                              "Turn a container into another file variant or compression, or another format.",
                               argc, argv, add_options, run, print);
 }

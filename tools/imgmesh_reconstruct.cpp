@@ -6,6 +6,7 @@
 
 #include "formats/container/container.h"
 #include "formats/files/atomic_file.h"
+#include "formats/files/extension.h"
 #include "formats/picture/image_io.h"
 #include "libcore/image/feature_space.h"
 #include "libcore/recon/draw.h"

@@ -4,6 +4,7 @@
 #include "formats/container/container.h"
 #include "formats/export/label_files.h"
 #include "formats/files/atomic_file.h"
+#include "formats/files/extension.h"
 #include "formats/gltf/region_gltf.h"
 #include "formats/picture/image_io.h"
 #include "libcore/image/color.h"

@@ -9,6 +9,7 @@
 #include "formats/container/container.h"
 #include "formats/container/edit_file.h"
 #include "formats/exr/exr_parts.h"
+#include "formats/files/extension.h"
 #include "formats/picture/image_io.h"
 #include "libcore/warp/retarget.h"
 #include "libcore/warp/solve_edits.h"

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -10,6 +9,7 @@
 #include "formats/container/sidecar_file.h"
 #include "formats/exr/exr_layers.h"
 #include "formats/files/atomic_file.h"
+#include "formats/files/extension.h"
 #include "formats/gltf/glb.h"
 #include "formats/gltf/gltf_asset.h"
 #include "formats/gltf/gltf_texture.h"
@@ -87,13 +87,12 @@ AssetLevel store_level(const Level& level, const StoredLayout& layout, std::span
     return out;
 }
 
-enum class Spelling { kGlb, kGltf };
+enum class FileVariant { kGlb, kGltf };
 
-Spelling spelling_of(const std::string& path) {
-    std::string extension = std::filesystem::path(path).extension().string();
-    for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    if (extension == ".glb") return Spelling::kGlb;
-    if (extension == ".gltf") return Spelling::kGltf;
+FileVariant variant_of(const std::string& path) {
+    const std::string extension = lower_extension(path);
+    if (extension == ".glb") return FileVariant::kGlb;
+    if (extension == ".gltf") return FileVariant::kGltf;
     throw Error(ErrorKind::kBadArgument, cat(path, ": a container's name ends with .glb or .gltf"));
 }
 
@@ -160,13 +159,13 @@ std::vector<std::vector<Vec2f>> texture_coords(const MeshImage& mesh_image) {
 }
 
 std::vector<std::string> container_files(const std::string& path) {
-    if (spelling_of(path) == Spelling::kGlb) return {path};
+    if (variant_of(path) == FileVariant::kGlb) return {path};
     const std::string stem = std::filesystem::path(path).replace_extension().string();
     return {path, stem + ".bin", stem + ".exr"};
 }
 
 void write_container(const std::string& path, const MeshImage& mesh_image, const ContainerOptions& options) {
-    const Spelling spelling = spelling_of(path);
+    const FileVariant variant = variant_of(path);
     check_writable(mesh_image, options.texture);
     Asset asset;
     asset.version = kVersion;
@@ -192,7 +191,7 @@ void write_container(const std::string& path, const MeshImage& mesh_image, const
     asset.has_layers = options.layers;
     const std::vector<std::uint8_t> layers =
         options.layers ? encode_exr_layers(parts) : std::vector<std::uint8_t>();
-    if (spelling == Spelling::kGlb)
+    if (variant == FileVariant::kGlb)
         write_glb(path, asset, buffer, layers, options.overwrite);
     else
         write_gltf(path, asset, buffer, layers, options);

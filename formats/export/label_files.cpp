@@ -6,10 +6,9 @@
 #include <OpenEXR/ImfOutputFile.h>
 
 #include <algorithm>
-#include <cctype>
-#include <filesystem>
 
 #include "formats/files/atomic_file.h"
+#include "formats/files/extension.h"
 #include "formats/picture/image_io.h"
 #include "formats/picture/picture_decoders.h"
 #include "libcore/base/error.h"
@@ -18,12 +17,6 @@ namespace imgmesh {
 namespace {
 
 constexpr Id kPngNone = 65535;
-
-std::string extension_of(const std::string& path) {
-    std::string extension = std::filesystem::path(path).extension().string();
-    for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    return extension;
-}
 
 template <typename Value>
 void write_layer(const std::string& path, const std::string& channel, Imf::PixelType type, int width,
@@ -46,14 +39,14 @@ void write_layer(const std::string& path, const std::string& channel, Imf::Pixel
 }  // namespace
 
 bool can_write_labels(const std::string& path) {
-    return extension_of(path) == ".exr" || extension_of(path) == ".png";
+    return lower_extension(path) == ".exr" || lower_extension(path) == ".png";
 }
 
 void write_labels(const std::string& path, int width, int height, std::span<const Id> labels,
                   bool overwrite) {
     if (!can_write_labels(path))
         throw Error(ErrorKind::kBadArgument, cat(path, ": labels are written as .exr or .png"));
-    if (extension_of(path) == ".exr") {
+    if (lower_extension(path) == ".exr") {
         write_layer(path, "id", Imf::UINT, width, height, labels, overwrite);
         return;
     }

@@ -2,12 +2,11 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
-#include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
 
 #include "formats/files/atomic_file.h"
+#include "formats/files/extension.h"
 #include "formats/gltf/glb.h"
 #include "formats/gltf/gltf_asset.h"
 #include "formats/gltf/gltf_names.h"
@@ -134,9 +133,7 @@ json document(const Pieces& pieces, const SourceInfo& source, const std::string&
 
 void write_region_mesh(const std::string& path, const BaseMesh& mesh, std::span<const Id> region_of_face,
                        const SourceInfo& source, const std::string& generator, bool overwrite) {
-    std::string extension = std::filesystem::path(path).extension().string();
-    for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    if (extension != ".glb")
+    if (lower_extension(path) != ".glb")
         throw Error(ErrorKind::kBadArgument, cat(path, ": a region mesh is written as .glb"));
     AtomicFile file(path, overwrite);
     const Pieces pieces = cut(stored_from_base(mesh, layout_of(source)), region_of_face);

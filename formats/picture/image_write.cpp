@@ -1,14 +1,13 @@
 // write_image: the colour space and samples that the format can hold, its bytes in memory, then one atomic
 // write.
 #include <algorithm>
-#include <cctype>
 #include <cmath>
-#include <filesystem>
 #include <limits>
 #include <memory>
 #include <string_view>
 
 #include "formats/files/atomic_file.h"
+#include "formats/files/extension.h"
 #include "formats/picture/icc_profile.h"
 #include "formats/picture/image_io.h"
 #include "formats/picture/oiio_module.h"
@@ -48,8 +47,7 @@ const std::vector<Format>& formats() {
 }
 
 const Format* find_format(const std::string& path) {
-    std::string extension = std::filesystem::path(path).extension().string();
-    for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    const std::string extension = lower_extension(path);
     const auto& all = formats();
     const auto at =
         std::find_if(all.begin(), all.end(), [&](const Format& f) { return f.extension == extension; });

@@ -8,10 +8,10 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <filesystem>
 #include <optional>
 #include <string_view>
 
+#include "formats/files/extension.h"
 #include "libcore/base/error.h"
 
 namespace imgmesh {
@@ -157,8 +157,7 @@ constexpr std::string_view kRawExtensions[] = {".3fr", ".arw", ".cr2", ".dcr", "
                                                ".pef", ".rw2", ".sr2", ".srw"};
 
 PictureFormat recognise(const std::string& path, Bytes b) {
-    std::string extension = std::filesystem::path(path).extension().string();
-    for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    const std::string extension = lower_extension(path);
     if (b.empty()) throw broken(path, "is empty, expected an image");
     for (const Signature& s : kSignatures) {
         if (!has(b, s.offset, s.bytes)) continue;

@@ -1,6 +1,5 @@
 #include "tools/common/output.h"
 
-#include <cctype>
 #include <filesystem>
 #include <set>
 #include <system_error>
@@ -10,12 +9,6 @@
 namespace fs = std::filesystem;
 
 namespace imgmesh {
-
-std::string lower_extension(const std::string& path) {
-    std::string extension = fs::path(path).extension().string();
-    for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    return extension;
-}
 
 void check_output(const std::string& path, bool overwrite) {
     std::error_code error;

@@ -6,9 +6,6 @@
 
 namespace imgmesh {
 
-/// The extension of a file name in lower case, as in ".glb"; empty without one.
-std::string lower_extension(const std::string& path);
-
 /// Throws Error(kIo) where `path` cannot become a new file: its folder is not there, it is a folder itself,
 /// or it exists and `overwrite` is false.
 void check_output(const std::string& path, bool overwrite);
@@ -16,7 +13,7 @@ void check_output(const std::string& path, bool overwrite);
 /// Throws Error(kBadArgument) where one of the `outputs` is one of the files of `inputs`, by whatever name.
 void check_distinct(const std::vector<std::string>& inputs, const std::vector<std::string>& outputs);
 
-/// Throws Error(kBadArgument) where two of the `outputs` are one file, however they are spelled.
+/// Throws Error(kBadArgument) where two of the `outputs` are one file, whatever their names.
 void check_separate(const std::vector<std::string>& outputs);
 
 /// `path` as a folder, made where it is not there. Throws Error(kIo) where that fails.
