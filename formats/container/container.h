@@ -33,7 +33,7 @@ struct ContainerOptions {
     Texture texture = {};  ///< with the coordinates of all vertices of all levels
 };
 
-/// Writes `mesh_image`; the extension of `path` (.glb or .gltf) decides the spelling.
+/// Writes `mesh_image`; the extension of `path` (.glb or .gltf) decides the file variant.
 ///
 /// Nothing is lost of what build_mesh_image() returns, nor of any MeshImage whose positions lie on
 /// kPositionStep, whose colours are those of quantized_color() and whose weights lie on the grid of the map's

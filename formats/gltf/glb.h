@@ -1,4 +1,4 @@
-// The binary spelling of glTF: a header, a JSON chunk and a binary chunk.
+// The binary file variant of glTF: a header, a JSON chunk and a binary chunk.
 #pragma once
 
 #include <cstdint>

@@ -33,7 +33,7 @@ class Batch(CliCase):
             self.assertEqual((self.folder / f"one{i}.glb").read_bytes(),
                              (self.folder / f"all/p{i}.glb").read_bytes())
 
-    def test_same_bytes_of_the_other_spelling_and_drawings(self):
+    def test_same_bytes_of_the_other_file_variant_and_drawings(self):
         self.build("p0.png", "--threads", "1", output="a.gltf")
         first = self.outputs("a.")
         for threads in ("1", "2"):

@@ -1,4 +1,4 @@
-"""imgmesh-convert: the same image in every spelling, and exports that other programs read."""
+"""imgmesh-convert: the same image in every file variant, and exports that other programs read."""
 import json
 import xml.etree.ElementTree
 
@@ -46,7 +46,7 @@ class Convert(CliCase):
             self.assertEqual(self.report("imgmesh-info", output, "--validate")["findings"], [])
             source = output
 
-    def test_the_spelling_alone_keeps_everything(self):
+    def test_the_file_variant_alone_keeps_everything(self):
         """Without options the compression stays what it is; edgebreaker's order comes back to itself after one round."""
         self.run_ok("imgmesh-convert", "c.glb", "-o", "a.gltf", "-q")
         self.assertEqual(self.report("imgmesh-info", "a.gltf")["draco"], "edgebreaker")

@@ -137,7 +137,7 @@ class Faults(CliCase):
             for size in [100, *(s - 1 for s in sizes)]:
                 limit = lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (size, size))
                 result = self.run_tool("imgmesh-build", "new.png", "-o", name, preexec_fn=limit)
-                if result.returncode == 0:  # longer than all files of this spelling
+                if result.returncode == 0:  # longer than all files of this variant
                     self.run_ok("imgmesh-build", "old.png", "-o", name, "-q")
                 else:
                     self.assert_error_lines("imgmesh-build", result, 3, 1)

@@ -46,7 +46,7 @@ class Info(CliCase):
         for count in ("unmapped", "outside_simplex", "flipped_triangles"):
             self.assertEqual(pixel_map[count], 0)
 
-    def test_both_spellings_say_the_same(self):
+    def test_both_file_variants_say_the_same(self):
         facts = [self.report("imgmesh-info", name) for name in ("c.glb", "g.gltf")]
         for member in ("levels", "build", "channels", "version"):
             self.assertEqual(facts[0][member], facts[1][member])

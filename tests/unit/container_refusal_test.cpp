@@ -171,7 +171,7 @@ TEST_CASE("refusals: every invalid example of the schemas") {
     CHECK(examples >= 20);
 }
 
-TEST_CASE("refusals: URIs leave the folder in no spelling") {
+TEST_CASE("refusals: no form of a URI leaves the folder") {
     Broken file;
     for (const char* uri :
          {"../x.bin", "/etc/passwd", "a/x.bin", "..", ".", "", "%2e%2e%2fx.bin", "..%5Cx.bin", "a\\x.bin",

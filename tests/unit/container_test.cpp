@@ -109,7 +109,8 @@ std::vector<std::uint8_t> bytes_of(const std::string& path) {
 
 }  // namespace
 
-TEST_CASE("container: what is read back is what was written, for every spelling, mode, precision and shape") {
+TEST_CASE(
+    "container: what is read back is what was written, for every file variant, mode, precision and shape") {
     const TemporaryFolder folder;
     std::uint32_t seed = 0;
     const std::array<std::array<int, 2>, 5> sizes = {{{1, 1}, {1, 9}, {17, 1}, {23, 18}, {64, 40}}};

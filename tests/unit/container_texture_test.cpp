@@ -69,7 +69,7 @@ TEST_CASE("refusals: the texture; one of another kind is for viewers alone") {
     CHECK(file.with([](json& d) { d["meshes"][0]["primitives"][0]["attributes"].erase("_COLOR"); }) ==
           "gltf.attribute");
     // What viewers do with it is for a validator to report.
-    const auto advice = [&](const auto& change) {
+    const auto lint_codes = [&](const auto& change) {
         std::set<std::string_view> codes;
         file.with(change, [&] {
             for (const Issue& issue : validate_container(file.path)) codes.insert(issue.finding->code);
@@ -78,13 +78,14 @@ TEST_CASE("refusals: the texture; one of another kind is for viewers alone") {
     };
     using Codes = std::set<std::string_view>;
     const auto attributes = [](json& d) -> json& { return d["meshes"][0]["primitives"][0]["attributes"]; };
-    CHECK(advice([&](json& d) { attributes(d)["COLOR_0"] = attributes(d)["_COLOR"]; }) ==
+    CHECK(lint_codes([&](json& d) { attributes(d)["COLOR_0"] = attributes(d)["_COLOR"]; }) ==
           Codes{"gltf.texture"});
-    CHECK(advice([&](json& d) { attributes(d).erase("TEXCOORD_0"); }) ==
+    CHECK(lint_codes([&](json& d) { attributes(d).erase("TEXCOORD_0"); }) ==
           Codes{"gltf.texture", "gltf.unused"});
-    CHECK(advice([&](json& d) { d["materials"][0].erase("pbrMetallicRoughness"); }) == Codes{"gltf.texture"});
-    CHECK(advice([&](json& d) { d["images"][0]["mimeType"] = "image/ktx2"; }) == Codes{"gltf.foreign"});
-    CHECK(advice([&](json& d) { d["images"][0]["mimeType"] = "image/jpeg"; }) == Codes{"texture.data"});
+    CHECK(lint_codes([&](json& d) { d["materials"][0].erase("pbrMetallicRoughness"); }) ==
+          Codes{"gltf.texture"});
+    CHECK(lint_codes([&](json& d) { d["images"][0]["mimeType"] = "image/ktx2"; }) == Codes{"gltf.foreign"});
+    CHECK(lint_codes([&](json& d) { d["images"][0]["mimeType"] = "image/jpeg"; }) == Codes{"texture.data"});
     CHECK_FALSE(has_texture([](json& d) { d["materials"][0].erase("pbrMetallicRoughness"); }));
     CHECK_FALSE(has_texture([](json& d) { d["textures"][0].erase("source"); }));
     CHECK_FALSE(has_texture([](json& d) { d["images"][0]["mimeType"] = "image/ktx2"; }));
