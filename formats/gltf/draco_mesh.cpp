@@ -11,6 +11,7 @@
 #include <memory>
 #include <type_traits>
 
+#include "formats/files/byte_reader.h"
 #include "formats/findings/findings.h"
 #include "libcore/base/error.h"
 
@@ -53,34 +54,35 @@ struct Header {
     std::uint8_t seams;  // edgebreaker: attributes with connectivity of their own
 };
 
-class HeaderReader {
-  public:
-    explicit HeaderReader(std::span<const std::uint8_t> bytes) : bytes_(bytes) {}
-
-    std::uint8_t byte() {
-        if (at_ == bytes_.size())
-            refuse("draco.header", "the Draco mesh ends in its header", at_byte("draco", kHeaderBytes + at_));
-        return bytes_[at_++];
+// LEB128, at most 32 bits.
+std::uint64_t varint(ByteReader& in) {
+    std::uint64_t value = 0;
+    for (int shift = 0; shift < 35; shift += 7) {
+        const std::uint32_t b = in.number(1);
+        value |= std::uint64_t{b & 127} << shift;
+        if (b < 128) return value;
     }
-    // LEB128, at most 32 bits.
-    std::uint64_t varint() {
-        std::uint64_t value = 0;
-        for (int shift = 0; shift < 35; shift += 7) {
-            const std::uint8_t b = byte();
-            value |= std::uint64_t{b & 127u} << shift;
-            if (b < 128) return value;
-        }
-        refuse("draco.header", "a number in the Draco mesh's header is longer than 32 bits",
-               at_byte("draco", kHeaderBytes + at_));
-    }
+    refuse("draco.header", "a number in the Draco mesh's header is longer than 32 bits",
+           at_byte("draco", in.position()));
+}
 
-  private:
-    std::span<const std::uint8_t> bytes_;
-    std::size_t at_ = 0;
-};
+// The numbers behind the fixed part.
+Header read_numbers(ByteReader in, std::uint8_t method) {
+    Header header{method, 0, 0, 0};
+    if (method == draco::MESH_EDGEBREAKER_ENCODING) {
+        in.take(1);  // how the traversal is coded
+        header.vertices = varint(in);
+        header.faces = varint(in);
+        header.seams = in.take(1)[0];
+    } else {
+        header.faces = varint(in);
+        header.vertices = varint(in);
+    }
+    return header;
+}
 
 Header read_header(std::span<const std::uint8_t> bytes) {
-    if (bytes.size() < kHeaderBytes || !std::equal(bytes.begin(), bytes.begin() + 5, "DRACO"))
+    if (bytes.size() < kHeaderBytes || text_of(bytes.first(5)) != "DRACO")
         refuse("draco.header", "the mesh does not start with DRACO", at_byte("draco", 0));
     if (bytes[5] != draco::kDracoMeshBitstreamVersionMajor ||
         bytes[6] != draco::kDracoMeshBitstreamVersionMinor)
@@ -94,18 +96,11 @@ Header read_header(std::span<const std::uint8_t> bytes) {
     if (bytes[9] != 0 || bytes[10] != 0)
         refuse("draco.metadata", "the Draco mesh has metadata or unknown flags", at_byte("draco", 9));
 
-    HeaderReader in(bytes.subspan(kHeaderBytes));
-    Header header{bytes[8], 0, 0, 0};
-    if (header.method == draco::MESH_EDGEBREAKER_ENCODING) {
-        in.byte();  // how the traversal is coded
-        header.vertices = in.varint();
-        header.faces = in.varint();
-        header.seams = in.byte();
-    } else {
-        header.faces = in.varint();
-        header.vertices = in.varint();
+    try {
+        return read_numbers({bytes.subspan(kHeaderBytes), ByteOrder::kLittle, kHeaderBytes}, bytes[8]);
+    } catch (const EndOfBytes& end) {
+        refuse("draco.header", "the Draco mesh ends in its header", at_byte("draco", end.position));
     }
-    return header;
 }
 
 template <typename T, std::size_t N>

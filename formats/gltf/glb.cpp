@@ -1,9 +1,10 @@
 // Source: glTF 2.0 specification, section 4 "GLB File Format Specification".
 #include "formats/gltf/glb.h"
 
-#include <cstring>
 #include <limits>
 
+#include "formats/files/byte_reader.h"
+#include "formats/files/byte_writer.h"
 #include "formats/findings/findings.h"
 #include "libcore/base/error.h"
 
@@ -13,12 +14,6 @@ namespace {
 constexpr std::uint32_t kMagic = 0x46546C67, kJson = 0x4E4F534A, kBinary = 0x004E4942;
 constexpr std::size_t kHeaderBytes = 12, kChunkHeaderBytes = 8;
 
-std::uint32_t number(std::span<const std::uint8_t> bytes, std::size_t at) {
-    std::uint32_t value = 0;
-    std::memcpy(&value, bytes.data() + at, sizeof value);
-    return value;
-}
-
 std::size_t padded(std::size_t size) {
     return (size + 3) / 4 * 4;
 }
@@ -26,7 +21,7 @@ std::size_t padded(std::size_t size) {
 }  // namespace
 
 bool is_glb(std::span<const std::uint8_t> bytes) {
-    return bytes.size() >= 4 && number(bytes, 0) == kMagic;
+    return ByteReader(bytes, ByteOrder::kLittle).number_at(0, 4) == kMagic;
 }
 
 std::vector<std::uint8_t> glb_head(std::string_view json, std::uint64_t binary_bytes) {
@@ -36,10 +31,7 @@ std::vector<std::uint8_t> glb_head(std::string_view json, std::uint64_t binary_b
         throw Error(ErrorKind::kUnsupported,
                     cat("a .glb holds at most 4 GiB, this one would need ", total, " bytes; write a .gltf"));
     std::vector<std::uint8_t> bytes;
-    const auto put = [&](std::uint64_t value) {
-        for (int shift = 0; shift < 32; shift += 8)
-            bytes.push_back(static_cast<std::uint8_t>(value >> shift));
-    };
+    const auto put = [&](std::uint64_t value) { append_number(bytes, value, 4, ByteOrder::kLittle); };
     put(kMagic);
     put(2);
     put(total);
@@ -61,36 +53,36 @@ std::vector<std::uint8_t> pack_glb(std::string_view json, std::span<const std::u
 }
 
 GlbView unpack_glb(std::span<const std::uint8_t> bytes, Findings& findings) {
-    if (!is_glb(bytes) || bytes.size() < kHeaderBytes || number(bytes, 4) != 2)
-        refuse("glb.header", "not a glTF 2.0 binary file", at_byte("file", 0));
-    if (number(bytes, 8) != bytes.size())
-        findings.add("glb.length",
-                     cat("the header says ", number(bytes, 8), " bytes, the file has ", bytes.size()),
-                     at_byte("file", 8));
+    ByteReader in(bytes, ByteOrder::kLittle);
+    const auto place = [&] { return at_byte("file", in.position()); };
+    if (!is_glb(bytes) || bytes.size() < kHeaderBytes || in.number_at(4, 4) != 2)
+        refuse("glb.header", "not a glTF 2.0 binary file", place());
+    in.take(kHeaderBytes - 4);
+    const std::uint32_t total = in.number_at(8, 4);
+    if (total != bytes.size())
+        findings.add("glb.length", cat("the header says ", total, " bytes, the file has ", bytes.size()),
+                     place());
+    in.take(4);
     GlbView view;
     bool has_json = false, has_binary = false;
-    for (std::size_t at = kHeaderBytes; at < bytes.size();) {
-        if (bytes.size() - at < kChunkHeaderBytes)
-            refuse("glb.chunk", "the file ends in a chunk's header", at_byte("file", at));
-        const std::uint32_t length = number(bytes, at), type = number(bytes, at + 4);
-        at += kChunkHeaderBytes;
-        if (length > bytes.size() - at)
-            refuse("glb.chunk", cat("a chunk of ", length, " bytes, ", bytes.size() - at, " are left"),
-                   at_byte("file", at));
-        if (length % 4 != 0)
-            findings.add("glb.padding", cat("a chunk of ", length, " bytes"), at_byte("file", at));
-        const auto content = bytes.subspan(at, length);
+    while (in.left() > 0) {
+        if (in.left() < kChunkHeaderBytes) refuse("glb.chunk", "the file ends in a chunk's header", place());
+        const std::uint32_t length = in.number(4), type = in.number(4);
+        if (length > in.left())
+            refuse("glb.chunk", cat("a chunk of ", length, " bytes, ", in.left(), " are left"), place());
+        const Place start = place();
+        if (length % 4 != 0) findings.add("glb.padding", cat("a chunk of ", length, " bytes"), start);
+        const auto content = in.take(length);
         if (!has_json) {
-            if (type != kJson) refuse("glb.chunk", "the first chunk is not JSON", at_byte("file", at));
-            view.json = {reinterpret_cast<const char*>(content.data()), content.size()};
+            if (type != kJson) refuse("glb.chunk", "the first chunk is not JSON", start);
+            view.json = text_of(content);
             has_json = true;
         } else if (type == kBinary && !has_binary) {
             view.binary = content;
             has_binary = true;
         } else {
-            findings.add("glb.unknown_chunk", cat("a chunk of type ", type), at_byte("file", at));
+            findings.add("glb.unknown_chunk", cat("a chunk of type ", type), start);
         }
-        at += length;
     }
     if (!has_json) refuse("glb.chunk", "no JSON chunk", at_byte("file", kHeaderBytes));
     return view;

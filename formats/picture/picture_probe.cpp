@@ -11,6 +11,7 @@
 #include <optional>
 #include <string_view>
 
+#include "formats/files/byte_reader.h"
 #include "formats/files/extension.h"
 #include "libcore/base/error.h"
 
@@ -23,54 +24,42 @@ Error broken(const std::string& path, const std::string& what) {
     return Error(ErrorKind::kBadFile, cat(path, ": ", what));
 }
 
-// Unsigned numbers of 1 to 4 bytes; 0 past the end, which no check below takes for a size.
-std::uint32_t big_endian(Bytes b, std::size_t at, std::size_t count) {
-    std::uint32_t value = 0;
-    if (at > b.size() || count > b.size() - at) return 0;
-    for (std::size_t i = 0; i < count; ++i) value = value << 8 | b[at + i];
-    return value;
+// Numbers past the end are 0, which no check below takes for a size.
+ByteReader big_endian(Bytes b) {
+    return {b, ByteOrder::kBig};
 }
-std::uint32_t little_endian(Bytes b, std::size_t at, std::size_t count) {
-    std::uint32_t value = 0;
-    if (at > b.size() || count > b.size() - at) return 0;
-    for (std::size_t i = count; i-- > 0;) value = value << 8 | b[at + i];
-    return value;
+ByteReader little_endian(Bytes b) {
+    return {b, ByteOrder::kLittle};
 }
 
-bool has(Bytes b, std::size_t at, std::string_view text) {
-    return at <= b.size() && text.size() <= b.size() - at &&
-           std::equal(text.begin(), text.end(), b.begin() + static_cast<std::ptrdiff_t>(at),
-                      [](char t, std::uint8_t x) { return static_cast<std::uint8_t>(t) == x; });
-}
-
-// Position of `text` in the first `window` bytes, or nothing.
+// Position of `text` in the first megabyte, from `from` on: headers of JPEG 2000 and HEIF stand at the front.
 std::optional<std::size_t> find(Bytes b, std::size_t from, std::string_view text) {
-    constexpr std::size_t kWindow = std::size_t{1} << 20;  // headers of JPEG 2000 and HEIF stand at the front
-    const std::size_t end = std::min(b.size(), kWindow);
-    for (std::size_t at = from; at + text.size() <= end; ++at)
-        if (has(b, at, text)) return at;
-    return std::nullopt;
+    constexpr std::size_t kWindow = std::size_t{1} << 20;
+    const std::size_t at = text_of(b.first(std::min(b.size(), kWindow))).find(text, from);
+    return at == std::string_view::npos ? std::nullopt : std::optional(at);
 }
 
 // libpng reports a broken file on stderr besides its error, and takes one without an end for whole; this walk
 // finds both first.
 void check_png(const std::string& path, Bytes b) {
-    for (std::size_t at = 8;;) {
-        if (b.size() - at < 12) throw broken(path, "the PNG is truncated: it ends without an IEND chunk");
-        const std::uint32_t length = big_endian(b, at, 4);
-        if (length > b.size() - at - 12)
-            throw broken(path, cat("the PNG is truncated: a chunk of ", length, " bytes, ",
-                                   b.size() - at - 12, " are left"));
-        if (libdeflate_crc32(0, b.data() + at + 4, std::size_t{length} + 4) !=
-            big_endian(b, at + 8 + length, 4))
+    ByteReader in = big_endian(b);
+    in.take(8);  // the signature
+    for (;;) {
+        if (in.left() < 12) throw broken(path, "the PNG is truncated: it ends without an IEND chunk");
+        const std::uint32_t length = in.number(4);
+        if (length > in.left() - 8)
+            throw broken(path, cat("the PNG is truncated: a chunk of ", length, " bytes, ", in.left() - 8,
+                                   " are left"));
+        const Bytes chunk = in.take(4 + std::size_t{length});  // its name and its content
+        if (libdeflate_crc32(0, chunk.data(), chunk.size()) != in.number(4))
             throw broken(path, "the PNG is broken: a chunk's checksum is wrong");
-        if (has(b, at + 4, "IEND")) return;
-        at += std::size_t{length} + 12;
+        if (text_of(chunk).starts_with("IEND")) return;
     }
 }
 
 // The frame header; a progressive file makes libjpeg take memory for the whole image when it is opened.
 void claim_jpeg(Bytes b, PictureClaim& claim) {
+    const ByteReader in = big_endian(b);
     for (std::size_t at = 2; at + 9 < b.size();) {
         if (b[at] != 0xFF || b[at + 1] == 0 || b[at + 1] == 0xFF) {
             ++at;  // libjpeg skips to the next marker as well
@@ -78,30 +67,32 @@ void claim_jpeg(Bytes b, PictureClaim& claim) {
         }
         const std::uint8_t marker = b[at + 1];
         if (marker >= 0xC0 && marker <= 0xCF && marker != 0xC4 && marker != 0xC8 && marker != 0xCC) {
-            claim.height = big_endian(b, at + 5, 2);
-            claim.width = big_endian(b, at + 7, 2);
+            claim.height = in.number_at(at + 5, 2);
+            claim.width = in.number_at(at + 7, 2);
             return;
         }
         const bool alone = marker == 0x01 || (marker >= 0xD0 && marker <= 0xD8);
-        at += alone ? 2 : 2 + big_endian(b, at + 2, 2);
+        at += alone ? 2 : 2 + in.number_at(at + 2, 2);
     }
 }
 
 void claim_bmp(Bytes b, PictureClaim& claim) {
-    const bool core = little_endian(b, 14, 4) == 12;
+    const ByteReader in = little_endian(b);
+    const bool core = in.number_at(14, 4) == 12;
     const auto side = [&](std::size_t at) {  // a negative height means top-down rows
-        const auto value = static_cast<std::int32_t>(little_endian(b, at, 4));
+        const auto value = static_cast<std::int32_t>(in.number_at(at, 4));
         return value < 0 ? -std::int64_t{value} : std::int64_t{value};
     };
-    claim.width = core ? little_endian(b, 18, 2) : side(18);
-    claim.height = core ? little_endian(b, 20, 2) : side(22);
+    claim.width = core ? in.number_at(18, 2) : side(18);
+    claim.height = core ? in.number_at(20, 2) : side(22);
 }
 
 // Runs are of a palette's indices. OpenImageIO 2.4 looks them up in a palette that other depths do not have,
 // and crashes; and takes compressions that it does not know for none.
 void check_bmp_compression(const std::string& path, Bytes b) {
-    const std::uint32_t header = little_endian(b, 14, 4), bits = little_endian(b, 28, 2);
-    const std::uint32_t compression = header < 40 ? 0 : little_endian(b, 30, 4);
+    const ByteReader in = little_endian(b);
+    const std::uint32_t header = in.number_at(14, 4), bits = in.number_at(28, 2);
+    const std::uint32_t compression = header < 40 ? 0 : in.number_at(30, 4);
     constexpr std::uint32_t kNone = 0, kRuns8 = 1, kRuns4 = 2, kMasks = 3, kMasksWithAlpha = 6;
     if (compression > kMasks && compression != kMasksWithAlpha)
         throw Error(ErrorKind::kUnsupported, cat(path, ": BMP of compression ", compression, ", expected ",
@@ -112,18 +103,20 @@ void check_bmp_compression(const std::string& path, Bytes b) {
 }
 
 void claim_jpeg2000(Bytes b, PictureClaim& claim) {
+    const ByteReader in = big_endian(b);
     if (const auto at = find(b, 0, "\xFF\x4F\xFF\x51")) {
-        claim.width = std::int64_t{big_endian(b, *at + 8, 4)} - big_endian(b, *at + 16, 4);
-        claim.height = std::int64_t{big_endian(b, *at + 12, 4)} - big_endian(b, *at + 20, 4);
-        claim.channels = big_endian(b, *at + 40, 2);
+        claim.width = std::int64_t{in.number_at(*at + 8, 4)} - in.number_at(*at + 16, 4);
+        claim.height = std::int64_t{in.number_at(*at + 12, 4)} - in.number_at(*at + 20, 4);
+        claim.channels = in.number_at(*at + 40, 2);
     }
 }
 
 // A file holds several sizes (tiles, thumbnails); the image's is the largest.
 void claim_heif(Bytes b, PictureClaim& claim) {
+    const ByteReader in = big_endian(b);
     for (auto at = find(b, 0, "ispe"); at; at = find(b, *at + 4, "ispe")) {
-        claim.width = std::max<std::int64_t>(claim.width, big_endian(b, *at + 8, 4));
-        claim.height = std::max<std::int64_t>(claim.height, big_endian(b, *at + 12, 4));
+        claim.width = std::max<std::int64_t>(claim.width, in.number_at(*at + 8, 4));
+        claim.height = std::max<std::int64_t>(claim.height, in.number_at(*at + 12, 4));
     }
 }
 
@@ -159,8 +152,9 @@ constexpr std::string_view kRawExtensions[] = {".3fr", ".arw", ".cr2", ".dcr", "
 PictureFormat recognise(const std::string& path, Bytes b) {
     const std::string extension = lower_extension(path);
     if (b.empty()) throw broken(path, "is empty, expected an image");
+    const ByteReader in = big_endian(b);
     for (const Signature& s : kSignatures) {
-        if (!has(b, s.offset, s.bytes)) continue;
+        if (!in.has_at(s.offset, s.bytes)) continue;
         if (s.format == PictureFormat::kTiff && std::ranges::count(kRawExtensions, extension))
             throw Error(ErrorKind::kUnsupported,
                         cat(path, ": camera raw files are not supported; develop it to TIFF, EXR or PNG"));
@@ -178,26 +172,27 @@ PictureFormat recognise(const std::string& path, Bytes b) {
 
 PictureClaim probe_picture(const std::string& path, Bytes b) {
     PictureClaim claim{recognise(path, b)};
+    const ByteReader big = big_endian(b), little = little_endian(b);
     switch (claim.format) {
         case PictureFormat::kPng:
             check_png(path, b);
-            claim.width = big_endian(b, 16, 4);
-            claim.height = big_endian(b, 20, 4);
+            claim.width = big.number_at(16, 4);
+            claim.height = big.number_at(20, 4);
             break;
         case PictureFormat::kJpeg:
             claim_jpeg(b, claim);
             break;
         case PictureFormat::kGif:
-            claim.width = little_endian(b, 6, 2);
-            claim.height = little_endian(b, 8, 2);
+            claim.width = little.number_at(6, 2);
+            claim.height = little.number_at(8, 2);
             break;
         case PictureFormat::kBmp:
             check_bmp_compression(path, b);
             claim_bmp(b, claim);
             break;
         case PictureFormat::kTga:
-            claim.width = little_endian(b, 12, 2);
-            claim.height = little_endian(b, 14, 2);
+            claim.width = little.number_at(12, 2);
+            claim.height = little.number_at(14, 2);
             break;
         case PictureFormat::kJpeg2000:
             claim_jpeg2000(b, claim);

@@ -10,6 +10,7 @@
 #include <new>
 #include <string_view>
 
+#include "formats/files/byte_writer.h"
 #include "formats/picture/icc_profile.h"
 #include "formats/picture/picture_decoders.h"
 #include "formats/picture/sample_codes.h"
@@ -28,16 +29,12 @@ constexpr int kLevel = 6;  // of libdeflate: faster ones grow the file, slower o
 // Some readers take no longer chunk in one piece; all must take several.
 constexpr std::size_t kMaxChunk = std::size_t{1} << 30;
 
-void put(Bytes& out, std::uint32_t value) {
-    for (int shift = 24; shift >= 0; shift -= 8) out.push_back(static_cast<std::uint8_t>(value >> shift));
-}
-
 void put_chunk(Bytes& out, std::string_view name, View content) {
-    put(out, static_cast<std::uint32_t>(content.size()));
+    append_number(out, content.size(), 4, ByteOrder::kBig);
     const std::size_t start = out.size();
     out.insert(out.end(), name.begin(), name.end());
     out.insert(out.end(), content.begin(), content.end());
-    put(out, libdeflate_crc32(0, out.data() + start, out.size() - start));
+    append_number(out, libdeflate_crc32(0, out.data() + start, out.size() - start), 4, ByteOrder::kBig);
 }
 
 Bytes packed(View bytes) {
@@ -148,8 +145,8 @@ Bytes encode_png(const Image& image, SampleType type) {
     constexpr std::uint8_t kColorTypes[] = {0, 4, 2, 6};  // by channels, from 1
     const bool wide = type == SampleType::kUint16;
     Bytes out(std::begin(kSignature), std::end(kSignature)), header;
-    put(header, static_cast<std::uint32_t>(image.width));
-    put(header, static_cast<std::uint32_t>(image.height));
+    append_number(header, static_cast<std::uint32_t>(image.width), 4, ByteOrder::kBig);
+    append_number(header, static_cast<std::uint32_t>(image.height), 4, ByteOrder::kBig);
     // Bits; then neither another compression nor filters nor interlacing.
     for (const std::uint8_t byte : {std::uint8_t(wide ? 16 : 8), kColorTypes[image.channels - 1],
                                     std::uint8_t{0}, std::uint8_t{0}, std::uint8_t{0}})
