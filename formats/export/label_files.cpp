@@ -9,6 +9,7 @@
 
 #include "formats/files/atomic_file.h"
 #include "formats/files/extension.h"
+#include "formats/files/library_error.h"
 #include "formats/picture/image_io.h"
 #include "formats/picture/picture_decoders.h"
 #include "libcore/base/error.h"
@@ -22,7 +23,7 @@ template <typename Value>
 void write_layer(const std::string& path, const std::string& channel, Imf::PixelType type, int width,
                  int height, std::span<const Value> values, bool overwrite) {
     AtomicFile target(path, overwrite);
-    try {
+    translate_errors(ErrorKind::kIo, cat(path, ": cannot write the EXR"), [&] {
         Imf::Header header(width, height, 1, {0, 0}, 1, Imf::INCREASING_Y, Imf::ZIP_COMPRESSION);
         header.channels().insert(channel, Imf::Channel(type));
         Imf::FrameBuffer buffer;
@@ -30,9 +31,7 @@ void write_layer(const std::string& path, const std::string& channel, Imf::Pixel
         Imf::OutputFile file(target.temporary_path().c_str(), header, /*numThreads=*/0);
         file.setFrameBuffer(buffer);
         file.writePixels(height);
-    } catch (const std::exception& e) {
-        throw Error(ErrorKind::kIo, cat(path, ": cannot write the EXR: ", one_line(e.what())));
-    }
+    });
     target.commit();
 }
 

@@ -3,7 +3,6 @@
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
-#include <ImfIO.h>
 #include <ImfInputPart.h>
 #include <ImfMultiPartInputFile.h>
 #include <ImfPartType.h>
@@ -13,12 +12,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <stdexcept>
 #include <string_view>
 
 #include "formats/exr/exr_header.h"
 #include "formats/exr/exr_part_checks.h"
+#include "formats/exr/memory_input.h"
 #include "formats/exr/zip_blocks.h"
+#include "formats/files/one_line.h"
 #include "formats/findings/findings.h"
 #include "libcore/base/error.h"
 #include "libcore/base/parallel.h"
@@ -28,25 +28,6 @@ namespace {
 
 // Deflate never packs more than this many bytes into one.
 constexpr std::uint64_t kMaxDeflateRatio = 1032;
-
-class MemoryInput : public Imf::IStream {
-  public:
-    explicit MemoryInput(std::span<const std::uint8_t> bytes) : IStream("layers"), bytes_(bytes) {}
-    bool read(char* out, int count) override {
-        const auto wanted = static_cast<std::size_t>(count);
-        if (count < 0 || position_ > bytes_.size() || wanted > bytes_.size() - position_)
-            throw std::runtime_error("unexpected end");
-        std::memcpy(out, bytes_.data() + position_, wanted);
-        position_ += wanted;
-        return position_ < bytes_.size();
-    }
-    std::uint64_t tellg() override { return position_; }
-    void seekg(std::uint64_t position) override { position_ = position; }
-
-  private:
-    std::span<const std::uint8_t> bytes_;
-    std::uint64_t position_ = 0;
-};
 
 // A slice over one member of an array of structures of `stride` bytes.
 Imf::Slice slice(Imf::PixelType type, const void* first, std::size_t stride, int width) {
@@ -161,7 +142,7 @@ LayerPart read_part(Imf::MultiPartInputFile& file, int index, const ExpectedLaye
 
 std::vector<LayerPart> read_parts(std::span<const std::uint8_t> bytes, const ExpectedLayers& expected,
                                   Findings& findings) {
-    MemoryInput stream(bytes);
+    MemoryInput stream("layers", bytes);
     Imf::MultiPartInputFile file(stream, /*numThreads=*/0, /*reconstructChunkOffsetTable=*/false);
     if (file.parts() != static_cast<int>(expected.parts.size()))
         refuse("layers.parts", cat("the EXR has ", file.parts(), " parts, expected ", expected.parts.size()));
@@ -210,9 +191,7 @@ std::vector<LayerPart> decode_exr_layers(std::span<const std::uint8_t> bytes, co
     } catch (const FindingError&) {
         throw;
     } catch (const std::exception& error) {  // OpenEXR's own, and what std containers throw for its sizes
-        std::string text = error.what();
-        std::replace(text.begin(), text.end(), '\n', ' ');
-        refuse("layers.data", cat("OpenEXR cannot read the layers: ", text));
+        refuse("layers.data", cat("OpenEXR cannot read the layers: ", one_line(error.what())));
     }
 }
 

@@ -3,7 +3,6 @@
 #include <OpenEXR/ImfChromaticities.h>
 #include <OpenEXR/ImfFrameBuffer.h>
 #include <OpenEXR/ImfHeader.h>
-#include <OpenEXR/ImfIO.h>
 #include <OpenEXR/ImfInputPart.h>
 #include <OpenEXR/ImfMultiPartInputFile.h>
 #include <OpenEXR/ImfOutputFile.h>
@@ -13,10 +12,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <new>
 #include <string_view>
 
 #include "formats/exr/exr_opaque.h"
+#include "formats/exr/memory_input.h"
+#include "formats/files/library_error.h"
 #include "formats/picture/picture_decoders.h"
 #include "libcore/base/error.h"
 
@@ -24,25 +24,6 @@ namespace imgmesh {
 namespace {
 
 using Bytes = std::span<const std::uint8_t>;
-
-class MemoryInput : public Imf::IStream {
-  public:
-    MemoryInput(const std::string& path, Bytes bytes) : IStream(path.c_str()), bytes_(bytes) {}
-    bool read(char* out, int count) override {
-        const auto n = static_cast<std::size_t>(count);
-        if (at_ > bytes_.size() || n > bytes_.size() - at_)
-            throw std::runtime_error("the file ends too early");
-        std::memcpy(out, bytes_.data() + at_, n);
-        at_ += n;
-        return at_ < bytes_.size();
-    }
-    std::uint64_t tellg() override { return at_; }
-    void seekg(std::uint64_t at) override { at_ = at; }
-
-  private:
-    Bytes bytes_;
-    std::uint64_t at_ = 0;
-};
 
 class MemoryOutput : public Imf::OStream {
   public:
@@ -127,8 +108,8 @@ void check_part(const std::string& path, const Imf::Header& header, const ImageL
 DecodedPicture decode_exr(const std::string& path, std::span<std::uint8_t> bytes, const ImageLimits& limits,
                           bool any_primaries) {
     make_attributes_opaque(path, bytes);
-    try {
-        MemoryInput stream(path, bytes);
+    return translate_errors(ErrorKind::kBadFile, cat(path, ": cannot read the EXR"), [&] {
+        MemoryInput stream(path.c_str(), bytes);
         Imf::MultiPartInputFile file(stream, /*numThreads=*/0, /*reconstructChunkOffsetTable=*/false);
         const Imf::Header& header = file.header(0);
         check_part(path, header, limits);
@@ -167,13 +148,7 @@ DecodedPicture decode_exr(const std::string& path, std::span<std::uint8_t> bytes
                         out.image.pixel(left - shown.min.x, y - shown.min.y));
         }
         return out;
-    } catch (const Error&) {
-        throw;
-    } catch (const std::bad_alloc&) {
-        throw;
-    } catch (const std::exception& e) {
-        throw Error(ErrorKind::kBadFile, cat(path, ": cannot read the EXR: ", one_line(e.what())));
-    }
+    });
 }
 
 std::vector<std::uint8_t> encode_exr(const Image& image, SampleType type) {

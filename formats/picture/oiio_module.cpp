@@ -10,6 +10,7 @@
 #include <memory>
 #include <string_view>
 
+#include "formats/files/library_error.h"
 #include "formats/files/one_line.h"
 #include "formats/picture/oiio_module.h"
 #include "libcore/base/error.h"
@@ -155,12 +156,13 @@ OiioPicture decode(const std::string& path, std::span<const std::uint8_t> bytes,
                    const ImageLimits& limits, decltype(&check_size) check) {
     use_one_thread();
     const std::string format = reader_name(claim.format);
+    const std::string cannot_read = cat(path, ": cannot read the image");
     const auto broken = [&](const std::string& reason) {
-        return Error(ErrorKind::kBadFile, cat(path, ": cannot read the image: ", one_line(reason)));
+        return Error(ErrorKind::kBadFile, cat(cannot_read, ": ", one_line(reason)));
     };
     if (claim.width != 0 || claim.height != 0)
         check(path, claim.width, claim.height, std::max<std::int64_t>(claim.channels, 1), limits);
-    try {
+    return translate_errors(ErrorKind::kBadFile, cannot_read, [&] {
         BoundedReader memory(bytes.data(), bytes.size());
         const std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::create(format);
         if (!input)
@@ -188,13 +190,7 @@ OiioPicture decode(const std::string& path, std::span<const std::uint8_t> bytes,
         out.orientation = spec.get_int_attribute("Orientation", 1);
         state_color(spec, claim.format, out);
         return out;
-    } catch (const Error&) {
-        throw;
-    } catch (const std::bad_alloc&) {
-        throw;
-    } catch (const std::exception& e) {
-        throw broken(e.what());
-    }
+    });
 }
 
 std::vector<std::uint8_t> encode(const std::string& path, const OiioTask& task) {
