@@ -31,7 +31,7 @@ RANK_OF = {layer: {room: rank for rank, rooms in enumerate(ranks) for room in ro
 VALUES = re.compile(r"libcore/(base/|image/|mesh/(base_mesh|mesh_image|pixel_map)\.h$|warp/warp_edits\.h$)")
 # Libraries by the names of their headers.
 TBB = re.compile(r"(oneapi/)?tbb(/|\.h$)")
-FILE_LIBRARIES = re.compile(r"OpenEXR/|Imath/|Imf\w*\.h|OpenImageIO/|png\.h$|libdeflate\.h$|draco/|tiny_gltf|tinygltf|nlohmann/|webp/|json/")
+FILE_LIBRARIES = re.compile(r"OpenEXR/|Imath/|Imf\w*\.h|OpenImageIO/|png\.h$|libdeflate\.h$|lcms2\.h$|draco/|tiny_gltf|tinygltf|nlohmann/|webp/|json/")
 COMMAND_LINE = re.compile(r"CLI/|CLI11")
 STREAMS = re.compile(r"(fstream|filesystem|cstdio|stdio\.h)$")
 # A header that a comment names.
@@ -157,6 +157,7 @@ CASES = [
     ("libcore/mesh/a.cpp", "nlohmann/json.hpp", True),
     ("libcore/mesh/a.cpp", "png.h", True),
     ("libcore/mesh/a.cpp", "libdeflate.h", True),
+    ("libcore/mesh/a.cpp", "lcms2.h", True),
     ("libcore/mesh/a.cpp", "fstream", True),
     ("libcore/mesh/a.cpp", "tbb/parallel_for.h", True),
     ("libcore/base/parallel.cpp", "tbb/parallel_for.h", False),

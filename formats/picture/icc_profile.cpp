@@ -1,221 +1,172 @@
+// ICC profiles through Little CMS. Source of the header's layout: ICC.1:2010 (4.3), section 7.2.
 #include "formats/picture/icc_profile.h"
 
+#include <lcms2.h>
+
+#include <Eigen/LU>
+#include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstring>
+#include <memory>
+#include <new>
 #include <string>
-#include <string_view>
 
 #include "libcore/image/color.h"
 
 namespace imgmesh {
 namespace {
 
-using Bytes = std::span<const std::uint8_t>;
-constexpr std::size_t kHeaderSize = 128;
+constexpr ColorSpace kSpaces[] = {ColorSpace::kSrgb,    ColorSpace::kLinear,   ColorSpace::kRec709,
+                                  ColorSpace::kGamma22, ColorSpace::kAdobeRgb, ColorSpace::kDisplayP3};
 
-// Red, green and blue in XYZ, adapted from D65 to the profiles' white D50 by the Bradford matrix (columns of
-// Lindbloom's tables); together they make D50.
-struct Primaries {
-    ColorSpace space;
-    double xyz[3][3];
-};
-constexpr Primaries kPrimaries[] = {
-    {ColorSpace::kSrgb,
-     {{0.43607, 0.22250, 0.01393}, {0.38506, 0.71688, 0.09710}, {0.14308, 0.06062, 0.71417}}},
-    {ColorSpace::kAdobeRgb,
-     {{0.60974, 0.31111, 0.01947}, {0.20528, 0.62567, 0.06087}, {0.14919, 0.06322, 0.74457}}},
-    {ColorSpace::kDisplayP3,
-     {{0.51512, 0.24120, -0.00105}, {0.29198, 0.69225, 0.04189}, {0.15710, 0.06657, 0.78407}}}};
-// Profiles round differently, and old ones adapt by other matrices; neighbours are 0.07 apart.
-constexpr double kPrimaryTolerance = 0.005;
+// Little CMS copies the bytes. JPEG holds no longer profile, and matrix profiles have a few kilobytes.
+constexpr std::size_t kMaxProfileBytes = std::size_t{16} << 20;
 
-// Spaces with sRGB's primaries tell themselves apart by their curve; in the middle it is 0.214 for sRGB,
-// 0.218 for 2.2, 0.260 for Rec.709 and 0.5 for linear light.
-constexpr ColorSpace kSrgbPrimaries[] = {ColorSpace::kSrgb, ColorSpace::kGamma22, ColorSpace::kRec709,
-                                         ColorSpace::kLinear};
+// Profiles round differently, and old ones adapt white by other matrices; the primaries of our spaces are
+// 0.07 apart in XYZ.
+constexpr double kColorTolerance = 0.005;
+// Of linear light. Tables are rounded; sRGB and power 2.2 are 0.008 apart at 0.75, Rec.709 0.09 from both.
 constexpr double kCurveTolerance = 0.0015;
 
-std::uint32_t number(Bytes b, std::size_t at, std::size_t count) {
-    std::uint32_t value = 0;
-    if (at > b.size() || count > b.size() - at) return 0;
-    for (std::size_t i = 0; i < count; ++i) value = value << 8 | b[at + i];
-    return value;
+template <typename T, void (*close)(T*)>
+struct Closer {
+    void operator()(T* object) const { close(object); }
+};
+void close_profile(void* profile) {
+    cmsCloseProfile(profile);
 }
-double fixed(Bytes b, std::size_t at) {  // s15Fixed16Number
-    return static_cast<std::int32_t>(number(b, at, 4)) / 65536.0;
-}
-constexpr std::uint32_t tag_name(const char (&text)[5]) {
-    std::uint32_t name = 0;
-    for (int i = 0; i < 4; ++i) name = name << 8 | static_cast<std::uint8_t>(text[i]);
-    return name;
+using Profile = std::unique_ptr<void, Closer<void, close_profile>>;
+using Transform = std::unique_ptr<void, Closer<void, cmsDeleteTransform>>;
+using Curve = std::unique_ptr<cmsToneCurve, Closer<cmsToneCurve, cmsFreeToneCurve>>;
+using Text = std::unique_ptr<cmsMLU, Closer<cmsMLU, cmsMLUfree>>;
+
+// For what fails of our own doing only where memory is short.
+template <typename Pointer>
+Pointer made(Pointer object) {
+    if (!object) throw std::bad_alloc();
+    return object;
 }
 
-// The element of that tag, empty where there is none.
-Bytes find_tag(Bytes profile, std::uint32_t name) {
-    const std::uint32_t count = number(profile, kHeaderSize, 4);
-    for (std::size_t i = 0, at = kHeaderSize + 4; i < count && at + 12 <= profile.size(); ++i, at += 12) {
-        if (number(profile, at, 4) != name) continue;
-        const std::size_t offset = number(profile, at + 4, 4), size = number(profile, at + 8, 4);
-        if (offset > profile.size() || size > profile.size() - offset) return {};
-        return profile.subspan(offset, size);
-    }
-    return {};
-}
-
-// A tone curve's value at 0.5.
-std::optional<double> curve_middle(Bytes curve) {
-    if (number(curve, 0, 4) == tag_name("curv")) {
-        const std::size_t count = number(curve, 8, 4);
-        if (count == 0) return 0.5;
-        if (count == 1) return std::pow(0.5, number(curve, 12, 2) / 256.0);
-        if (curve.size() < 12 || count > (curve.size() - 12) / 2) return std::nullopt;
-        const std::size_t low = (count - 1) / 2, high = count / 2;
-        return (number(curve, 12 + 2 * low, 2) + number(curve, 12 + 2 * high, 2)) / (2 * 65535.0);
-    }
-    if (number(curve, 0, 4) == tag_name("para")) {
-        // 0.5 lies above the linear branch of every known curve: (a x + b)^g.
-        const double g = fixed(curve, 12);
-        if (number(curve, 8, 2) == 0) return std::pow(0.5, g);
-        return std::pow(0.5 * fixed(curve, 16) + fixed(curve, 20), g);
-    }
-    return std::nullopt;
-}
-
-double decode_middle(ColorSpace space) {
-    return linear_from_encoded(space, Vec3f::Constant(0.5f))[0];
-}
-
-// ---- Writing
-void put(std::vector<std::uint8_t>& out, std::uint32_t value, int count) {
-    for (int i = count - 1; i >= 0; --i) out.push_back(static_cast<std::uint8_t>(value >> (8 * i)));
-}
-void put_fixed(std::vector<std::uint8_t>& out, double value) {
-    put(out, static_cast<std::uint32_t>(static_cast<std::int32_t>(std::lround(value * 65536))), 4);
-}
-
-std::vector<std::uint8_t> xyz_element(double x, double y, double z) {
-    std::vector<std::uint8_t> out;
-    put(out, tag_name("XYZ "), 4);
-    put(out, 0, 4);
-    for (const double value : {x, y, z}) put_fixed(out, value);
-    return out;
-}
-
-std::vector<std::uint8_t> text_element(std::string_view text) {  // one English record, UTF-16
-    std::vector<std::uint8_t> out;
-    put(out, tag_name("mluc"), 4);
-    put(out, 0, 4);
-    put(out, 1, 4);
-    put(out, 12, 4);
-    put(out, 0x656E5553, 4);  // enUS
-    put(out, static_cast<std::uint32_t>(2 * text.size()), 4);
-    put(out, 28, 4);
-    for (const char c : text) put(out, static_cast<std::uint8_t>(c), 2);
-    return out;
-}
-
-std::vector<std::uint8_t> curve_element(ColorSpace space) {
-    std::vector<double> parameters;  // g, or g a b c d: (a x + b)^g for x >= d, else c x
+Curve curve_of(ColorSpace space) {
+    // Power g, or (a x + b)^g for x >= d and c x below: types 1 and 4 of Little CMS.
+    const auto power = [](double g) { return Curve(cmsBuildParametricToneCurve(nullptr, 1, &g)); };
+    const auto broken = [](std::array<double, 5> gabcd) {
+        return Curve(cmsBuildParametricToneCurve(nullptr, 4, gabcd.data()));
+    };
     switch (space) {
         case ColorSpace::kSrgb:
         case ColorSpace::kDisplayP3:
-            parameters = {2.4, 1 / 1.055, 0.055 / 1.055, 1 / 12.92, 0.04045};
-            break;
+            return broken({2.4, 1 / 1.055, 0.055 / 1.055, 1 / 12.92, 0.04045});
         case ColorSpace::kRec709:
-            parameters = {1 / 0.45, 1 / 1.099, 0.099 / 1.099, 1 / 4.5, 0.081};
-            break;
+            return broken({1 / 0.45, 1 / 1.099, 0.099 / 1.099, 1 / 4.5, 0.081});
         case ColorSpace::kLinear:
-            parameters = {1};
-            break;
+            return power(1);
         case ColorSpace::kGamma22:
-            parameters = {2.2};
-            break;
+            return power(2.2);
         case ColorSpace::kAdobeRgb:
-            parameters = {563.0 / 256};
-            break;
+            return power(563.0 / 256);
     }
-    std::vector<std::uint8_t> out;
-    put(out, tag_name("para"), 4);
-    put(out, 0, 4);
-    put(out, parameters.size() == 1 ? 0 : 3, 2);
-    put(out, 0, 2);
-    for (const double value : parameters) put_fixed(out, value);
+    return nullptr;
+}
+
+cmsCIExyY chromaticity(const Eigen::Vector3d& xyz) {
+    return {xyz[0] / xyz.sum(), xyz[1] / xyz.sum(), 1};
+}
+
+Profile profile_of(ColorSpace space) {
+    const Eigen::Matrix3d xyz = rgb_from_xyz(space).inverse();
+    const cmsCIExyY white = chromaticity(xyz.rowwise().sum());
+    const cmsCIExyYTRIPLE primaries = {chromaticity(xyz.col(0)), chromaticity(xyz.col(1)),
+                                       chromaticity(xyz.col(2))};
+    const Curve curve = made(curve_of(space));
+    cmsToneCurve* const curves[] = {curve.get(), curve.get(), curve.get()};
+    return made(Profile(cmsCreateRGBProfile(&white, &primaries, curves)));
+}
+
+// What a profile does to colours.
+constexpr int kSteps = 16;
+constexpr std::array<std::array<double, 3>, 7> kColors = {
+    {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 1}, {0.75, 0.5, 0.25}, {0.25, 0.75, 0.5}, {0.5, 0.25, 0.75}}};
+struct Behaviour {
+    std::array<std::array<float, kSteps>, 3> curves;
+    std::array<cmsCIEXYZ, kColors.size()> colors;
+};
+
+// Nothing for a profile without a matrix, or one that Little CMS cannot use.
+std::optional<Behaviour> behaviour_of(const Profile& profile) {
+    // Little CMS would prefer tables, which are made for one rendering intent each.
+    for (const cmsTagSignature table : {cmsSigAToB0Tag, cmsSigAToB1Tag, cmsSigAToB2Tag, cmsSigDToB0Tag,
+                                        cmsSigDToB1Tag, cmsSigDToB2Tag, cmsSigDToB3Tag})
+        cmsWriteTag(profile.get(), table, nullptr);  // takes it out of the copy in memory
+    if (cmsGetColorSpace(profile.get()) != cmsSigRgbData || cmsGetPCS(profile.get()) != cmsSigXYZData ||
+        !cmsIsMatrixShaper(profile.get()))
+        return std::nullopt;
+    Behaviour out;
+    constexpr std::array kCurves = {cmsSigRedTRCTag, cmsSigGreenTRCTag, cmsSigBlueTRCTag};
+    for (std::size_t c = 0; c < kCurves.size(); ++c) {
+        const auto* curve = static_cast<const cmsToneCurve*>(cmsReadTag(profile.get(), kCurves[c]));
+        if (!curve) return std::nullopt;
+        for (std::size_t i = 0; i < kSteps; ++i)
+            out.curves[c][i] = cmsEvalToneCurveFloat(curve, static_cast<float>(i + 1) / kSteps);
+    }
+    const Profile xyz = made(Profile(cmsCreateXYZProfile()));
+    const Transform transform(cmsCreateTransform(profile.get(), TYPE_RGB_DBL, xyz.get(), TYPE_XYZ_DBL,
+                                                 INTENT_RELATIVE_COLORIMETRIC,
+                                                 cmsFLAGS_NOOPTIMIZE | cmsFLAGS_NOCACHE));
+    if (!transform) return std::nullopt;
+    cmsDoTransform(transform.get(), kColors.data(), out.colors.data(), kColors.size());
     return out;
 }
 
-const Primaries& primaries_of(ColorSpace space) {
-    for (const Primaries& p : kPrimaries)
-        if (p.space == space) return p;
-    return kPrimaries[0];  // all the others have sRGB's
+// Numbers that are none are never alike.
+bool alike(const Behaviour& a, const Behaviour& b) {
+    for (std::size_t c = 0; c < 3; ++c)
+        for (std::size_t i = 0; i < kSteps; ++i)
+            if (!(std::abs(a.curves[c][i] - b.curves[c][i]) <= kCurveTolerance)) return false;
+    for (std::size_t i = 0; i < kColors.size(); ++i) {
+        const cmsCIEXYZ &p = a.colors[i], &q = b.colors[i];
+        if (!(std::abs(p.X - q.X) <= kColorTolerance && std::abs(p.Y - q.Y) <= kColorTolerance &&
+              std::abs(p.Z - q.Z) <= kColorTolerance))
+            return false;
+    }
+    return true;
+}
+
+std::array<Behaviour, std::size(kSpaces)> our_behaviours() {
+    std::array<Behaviour, std::size(kSpaces)> all;
+    for (std::size_t i = 0; i < all.size(); ++i) all[i] = behaviour_of(profile_of(kSpaces[i])).value();
+    return all;
 }
 
 }  // namespace
 
-std::optional<ColorSpace> color_space_from_icc(Bytes profile) {
-    if (number(profile, 16, 4) != tag_name("RGB ")) return std::nullopt;
-    const Bytes red = find_tag(profile, tag_name("rXYZ")), green = find_tag(profile, tag_name("gXYZ"));
-    const auto middle = curve_middle(find_tag(profile, tag_name("gTRC")));
-    if (red.size() < 20 || green.size() < 20 || !middle) return std::nullopt;
-    const auto near = [](Bytes element, const double(&xyz)[3]) {
-        for (std::size_t i = 0; i < 3; ++i)
-            if (std::abs(fixed(element, 8 + 4 * i) - xyz[i]) > kPrimaryTolerance) return false;
-        return true;
-    };
-    const auto same_curve = [&](ColorSpace space) {
-        return std::abs(*middle - decode_middle(space)) <= kCurveTolerance;
-    };
-    for (const Primaries& p : kPrimaries) {
-        if (!near(red, p.xyz[0]) || !near(green, p.xyz[1])) continue;
-        if (p.space == ColorSpace::kSrgb) {
-            for (const ColorSpace space : kSrgbPrimaries)
-                if (same_curve(space)) return space;
-        } else if (same_curve(p.space)) {
-            return p.space;
-        }
-    }
+std::optional<ColorSpace> color_space_from_icc(std::span<const std::uint8_t> bytes) {
+    if (bytes.size() > kMaxProfileBytes) return std::nullopt;
+    const Profile profile(cmsOpenProfileFromMem(bytes.data(), static_cast<cmsUInt32Number>(bytes.size())));
+    const std::optional<Behaviour> found = profile ? behaviour_of(profile) : std::nullopt;
+    if (!found) return std::nullopt;
+    static const auto kOurs = our_behaviours();
+    for (std::size_t i = 0; i < kOurs.size(); ++i)
+        if (alike(*found, kOurs[i])) return kSpaces[i];
     return std::nullopt;
 }
 
 std::vector<std::uint8_t> icc_from_color_space(ColorSpace space) {
-    const auto& xyz = primaries_of(space).xyz;
-    const auto curve = curve_element(space);
-    const std::pair<std::uint32_t, std::vector<std::uint8_t>> elements[] = {
-        {tag_name("desc"), text_element(color_space_name(space))},
-        {tag_name("cprt"), text_element("No copyright, use freely")},
-        {tag_name("wtpt"), xyz_element(0.9642, 1, 0.8249)},
-        {tag_name("rXYZ"), xyz_element(xyz[0][0], xyz[0][1], xyz[0][2])},
-        {tag_name("gXYZ"), xyz_element(xyz[1][0], xyz[1][1], xyz[1][2])},
-        {tag_name("bXYZ"), xyz_element(xyz[2][0], xyz[2][1], xyz[2][2])},
-        {tag_name("rTRC"), curve},
-        {tag_name("gTRC"), curve},
-        {tag_name("bTRC"), curve}};
-
-    std::vector<std::uint8_t> table, body;
-    put(table, static_cast<std::uint32_t>(std::size(elements)), 4);
-    const std::size_t start = kHeaderSize + 4 + 12 * std::size(elements);
-    for (const auto& [name, element] : elements) {
-        put(table, name, 4);
-        put(table, static_cast<std::uint32_t>(start + body.size()), 4);
-        put(table, static_cast<std::uint32_t>(element.size()), 4);
-        body.insert(body.end(), element.begin(), element.end());
-        while (body.size() % 4) body.push_back(0);
-    }
-
-    std::vector<std::uint8_t> out;
-    put(out, static_cast<std::uint32_t>(start + body.size()), 4);
-    put(out, 0, 4);
-    put(out, 0x04200000, 4);  // version 4.2
-    for (const auto name : {tag_name("mntr"), tag_name("RGB "), tag_name("XYZ ")}) put(out, name, 4);
-    // A fixed date, so that the same image gives the same file.
-    for (const std::uint32_t part : {2000u, 1u, 1u, 0u, 0u, 0u}) put(out, part, 2);
-    put(out, tag_name("acsp"), 4);
-    out.resize(68);  // platform, flags, device, attributes, intent: all zero
-    for (const double value : {0.9642, 1.0, 0.8249}) put_fixed(out, value);
-    out.resize(kHeaderSize);
-    out.insert(out.end(), table.begin(), table.end());
-    out.insert(out.end(), body.begin(), body.end());
-    return out;
+    const Profile profile = profile_of(space);
+    cmsSetProfileVersion(profile.get(), 4.3);
+    const Text name = made(Text(cmsMLUalloc(nullptr, 1)));
+    cmsUInt32Number size = 0;
+    if (!cmsMLUsetASCII(name.get(), "en", "US", std::string(color_space_name(space)).c_str()) ||
+        !cmsWriteTag(profile.get(), cmsSigProfileDescriptionTag, name.get()) ||
+        !cmsSaveProfileToMem(profile.get(), nullptr, &size))
+        throw std::bad_alloc();
+    std::vector<std::uint8_t> bytes(size);
+    if (!cmsSaveProfileToMem(profile.get(), bytes.data(), &size)) throw std::bad_alloc();
+    // Little CMS notes the time. The same image gives the same file: noon, 1 January 2000, instead.
+    constexpr std::size_t kDateOffset = 24;
+    constexpr std::array<std::uint8_t, 12> kDate = {2000 >> 8, 2000 & 0xFF, 0, 1, 0, 1, 0, 12, 0, 0, 0, 0};
+    std::ranges::copy(kDate, bytes.begin() + kDateOffset);
+    return bytes;
 }
 
 }  // namespace imgmesh

@@ -10,11 +10,12 @@
 
 namespace imgmesh {
 
-/// The colour space whose primaries and curve an RGB matrix profile has (any ICC version); nothing for other
-/// profiles and for bytes that are none. Source: ICC.1:2010 (4.3), sections 7 to 10.
+/// The colour space in which an RGB matrix profile (any ICC version) does the same to colours, up to what
+/// profiles differ by; nothing for other profiles and for bytes that are none. Of a profile that has tables
+/// as well, the matrix counts. Safe for any bytes.
 std::optional<ColorSpace> color_space_from_icc(std::span<const std::uint8_t> profile);
 
-/// A version 4 matrix profile of `space`; color_space_from_icc gives `space` back.
+/// A version 4 matrix profile of `space`, the same bytes each time; color_space_from_icc gives `space` back.
 std::vector<std::uint8_t> icc_from_color_space(ColorSpace space);
 
 }  // namespace imgmesh

@@ -24,7 +24,7 @@ struct ImageLimits {
 /// 8 and 16 bit integers are scaled to [0, 1], half and float kept; 1-bit, palette, CMYK and YCbCr become
 /// grey or RGB(A); associated alpha is divided out; EXIF orientation is applied (width and height as a viewer
 /// shows them). Channel names are R G B A Y where that is what they are. The colour space is `color_space`,
-/// else what the file says (an ICC profile by its primaries and curve, else the format's own means), else
+/// else what the file says (an ICC profile by what it does to colours, else the format's own means), else
 /// sRGB for integers and linear for floats. An EXR's image is its display window; pixels outside the data
 /// window are 0.
 ///

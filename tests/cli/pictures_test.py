@@ -1,7 +1,9 @@
 """imgmesh-build on every size and kind of image: a sound container, and the image comes back."""
+import io
 import os
 
 import numpy as np
+from PIL import Image, ImageCms
 
 import picture_files
 from support import CliCase, main
@@ -9,6 +11,21 @@ from support import CliCase, main
 # With faces enough to keep every vertex the pixel map is the identity, and colours are 16-bit codes: what is
 # left is rounding to the image's 8 bits. One code is 48 dB.
 EXACT_DB = 48
+
+
+# Linear RGB of a space's primaries to sRGB's (both with white D65).
+TO_SRGB = {
+    "AdobeRGB": [[1.39836, -0.39836, 0], [0, 1, 0], [0, -0.04293, 1.04293]],
+    "DisplayP3": [[1.22494, -0.22494, 0], [-0.04206, 1.04206, 0], [-0.01964, -0.07864, 1.09827]],
+}
+
+
+def srgb_decoded(x):
+    return np.where(x <= 0.04045, x / 12.92, ((x + 0.055) / 1.055) ** 2.4)
+
+
+def srgb_encoded(x):
+    return np.where(x <= 0.0031308, 12.92 * x, 1.055 * x ** (1 / 2.4) - 0.055)
 
 
 class Pictures(CliCase):
@@ -121,6 +138,23 @@ class Pictures(CliCase):
         report, _ = self.round_trip("in.png", "--color-space", "displayp3")
         self.assertEqual(report["color_space"], "DisplayP3")
         self.assertEqual(self.report("imgmesh-info", "out.glb")["color_space"], "DisplayP3")
+
+    def test_other_software_reads_the_profile(self):
+        """Pillow converts a drawing to sRGB by its embedded profile, to the colours that its space stands for."""
+        samples = 0.35 + 0.3 * picture_files.ramp(24, 16)  # within sRGB
+        picture_files.png(self.folder / "in.png", samples)
+        for space, matrix in TO_SRGB.items():
+            with self.subTest(space):
+                self.build("in.png", "--density", "100", "--color-space", space)
+                self.run_ok("imgmesh-reconstruct", "out.glb", "-o", "back.png")
+                image = Image.open(self.folder / "back.png")
+                profile = ImageCms.ImageCmsProfile(io.BytesIO(image.info["icc_profile"]))
+                self.assertEqual(ImageCms.getProfileDescription(profile).strip(), space)
+                found = ImageCms.profileToProfile(image, profile, ImageCms.createProfile("sRGB"))
+                light = samples ** (563 / 256) if space == "AdobeRGB" else srgb_decoded(samples)
+                expected = srgb_encoded(light @ np.transpose(matrix))
+                np.testing.assert_allclose(np.asarray(found) / 255, expected, atol=2.5 / 255)
+                self.assertEqual(self.build("back.png")["color_space"], space)
 
     def test_alpha_is_ignored_and_the_report_says_so(self):
         rgba = np.concatenate([picture_files.ramp(24, 16), picture_files.noise(24, 16, 1)], axis=-1)

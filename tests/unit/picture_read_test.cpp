@@ -156,7 +156,6 @@ TEST_CASE("read: the colour space is the caller's, else the profile's, else the 
     for (const ColorSpace space : {ColorSpace::kSrgb, ColorSpace::kLinear, ColorSpace::kRec709,
                                    ColorSpace::kGamma22, ColorSpace::kAdobeRgb, ColorSpace::kDisplayP3}) {
         const auto icc = icc_from_color_space(space);
-        CHECK(color_space_from_icc(icc) == space);
         for (const std::string name : {"c.png", "c.jpg", "c.tif"}) {
             INFO(name);
             write_with_oiio(folder / name, made, OIIO::TypeUInt8, [&](OIIO::ImageSpec& spec) {
@@ -182,9 +181,6 @@ TEST_CASE("read: the colour space is the caller's, else the profile's, else the 
     CHECK(other.color_space == ColorSpace::kGamma22);
     for (std::size_t i = 0; i < made.data.size(); ++i)
         CHECK(std::pow(other.data[i], 2.2f) == doctest::Approx(std::pow(made.data[i], 1.8f)).epsilon(1e-3));
-    std::vector<std::uint8_t> nonsense(200, 7);
-    CHECK_FALSE(color_space_from_icc(nonsense).has_value());
-    CHECK_FALSE(color_space_from_icc({}).has_value());
 }
 
 namespace {
