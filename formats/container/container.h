@@ -40,16 +40,16 @@ struct ContainerOptions {
 /// precision. read_container() gives the same meshes and maps back, but Draco chooses the order of vertices
 /// and faces and the first corner of each face, and vertices without a face are dropped.
 ///
-/// A .gltf appears after the files that it refers to, and the files of a container that it replaces go last:
-/// at any moment the old container stands there or the new one. Same bytes for the same mesh image and
-/// options. Takes O(pixels + faces) time. Throws Error: kBadArgument for another extension; kIo if a file
-/// cannot be written.
+/// A .gltf appears after its sidecar files, and the sidecar files of a container that it replaces are removed
+/// last: at any moment either the old container or the new one is there. The same mesh image and options give
+/// the same bytes. Takes O(pixels + faces) time. Throws Error: kBadArgument for another extension; kIo if a
+/// file cannot be written.
 void write_container(const std::string& path, const MeshImage& mesh_image,
                      const ContainerOptions& options = {});
 
-/// The files that write_container() writes for `path`, itself first. A .gltf has a .bin and a .exr beside it;
-/// where other files have these names already, they get names with a hash instead. Throws Error(kBadArgument)
-/// for another extension.
+/// The files that write_container() writes for `path`, itself first. A .gltf has a .bin and a .exr as sidecar
+/// files; if other files have these names already, they get names with a hash. Throws Error(kBadArgument) for
+/// another extension.
 std::vector<std::string> container_files(const std::string& path);
 
 /// Facts about the files that a MeshImage does not hold.

@@ -21,7 +21,7 @@ namespace {
 using Bytes = std::vector<std::uint8_t>;
 using View = std::span<const std::uint8_t>;
 
-// Reads files until all together are too many bytes.
+// Reads files until their total is too large.
 class FileReader {
   public:
     explicit FileReader(std::uint64_t max_bytes) : left_(max_bytes) {}
@@ -103,7 +103,7 @@ void add_level_facts(const Asset& asset, View buffer, ContainerFacts& facts) {
     if (asset.levels[0].is_draco) facts.draco = draco_mode(cut(buffer, asset.levels[0].draco));
 }
 
-// All levels whose meshes and parts can be looked at.
+// Returns all levels whose meshes and parts can be checked.
 void read_levels(const Asset& asset, View buffer, std::vector<LayerPart>& parts, Findings& findings,
                  MeshImage& image, std::vector<std::vector<Vec2f>>& coords) {
     for (std::size_t k = 0; k < asset.levels.size(); ++k) {
@@ -124,7 +124,7 @@ void read_levels(const Asset& asset, View buffer, std::vector<LayerPart>& parts,
     }
 }
 
-// A texture of which a level has no coordinates is for no viewer to show.
+// A texture is useless if a level has no coordinates for it.
 void read_texture(const Asset& asset, View buffer, Findings& findings, Container& container) {
     Texture& texture = container.texture;
     const View picture = cut(buffer, asset.texture);
@@ -172,8 +172,8 @@ Container read(const std::string& path, const ContainerLimits& limits, Findings&
     container.facts.files = files.names();
     container.facts.total_bytes = files.total();
     container.facts.layer_bytes = layers.size();
-    // Pixels come first: that so many are there bounds what the meshes may claim. So a validator does not
-    // decode meshes either where the layers are not read; what it has told by then says why.
+    // Pixels come first: their number bounds what the meshes may claim. So a validator does not decode meshes
+    // either if the layers are not read; earlier findings say why.
     std::vector<LayerPart> parts;
     if (!asset.has_levels || !asset.has_layers || !(is_whole || !asset.layers_name.empty())) return container;
     if (!findings.attempt(cat("/extensions/", kPixelMap, "/layers"),
@@ -200,7 +200,7 @@ Container read_container(const std::string& path, const ContainerLimits& limits)
         return read(path, limits, findings);
     } catch (const FindingError& finding) {
         std::string text = finding.what();
-        // Names from the file are quoted as they are; the message stays one line.
+        // Names from the file are quoted unchanged; the message stays one line.
         std::replace_if(
             text.begin(), text.end(), [](unsigned char c) { return c < 32 || c == 127; }, ' ');
         throw Error(finding.error_kind(), cat(path, ": [", finding.code(), "] ", text));

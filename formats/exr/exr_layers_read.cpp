@@ -35,7 +35,7 @@ Imf::Slice slice(Imf::PixelType type, const void* first, std::size_t stride, int
                       stride * static_cast<std::size_t>(width));
 }
 
-// OpenEXR puts tiles together, and turns HALF into FLOAT.
+// OpenEXR assembles tiles and converts HALF to FLOAT.
 void read_tiles(Imf::InputPart& in, LayerPart& part) {
     const int width = part.map.width;
     Imf::FrameBuffer frame;
@@ -55,8 +55,8 @@ T take(const std::uint8_t*& in) {
     return value;
 }
 
-// The rows from `first` on from the block that holds them: row by row, in each channel after channel, by
-// their names.
+// Reads the rows from `first` on from their block: row by row, in each row channel by channel, sorted by
+// name.
 void spread_block(const Imf::ChannelList& channels, const std::vector<std::uint8_t>& block, int first,
                   int last, LayerPart& part) {
     const std::uint8_t* in = block.data();
@@ -82,8 +82,8 @@ void spread_block(const Imf::ChannelList& channels, const std::vector<std::uint8
         }
 }
 
-// OpenEXR finds the blocks and checks their lengths; they are unpacked on all threads. Compression is one of
-// those that check_part_header() lets through.
+// OpenEXR finds the blocks and checks their lengths; all threads unpack them. The compression is one of those
+// that check_part_header() allows.
 void read_scanlines(Imf::InputPart& in, LayerPart& part) {
     constexpr int kGroupBlocks = 128;  // read at a time, before they are unpacked
     const Imf::ChannelList& channels = in.header().channels();

@@ -1,4 +1,4 @@
-// An EXR's header, made safe for OpenEXR to read.
+// Makes an EXR's header safe for OpenEXR to read.
 #pragma once
 
 #include <cstdint>
@@ -7,10 +7,10 @@
 
 namespace imgmesh {
 
-/// Walks the headers of an EXR file in memory. OpenEXR takes memory for an attribute before it sees that the
-/// file is shorter, and reads attributes of most types by sizes of its own; here each has to end within the
-/// file, and types that an image does not need (previews, id manifests, ...) are renamed, in `bytes`, to
-/// ones that OpenEXR does not know and therefore skips by the size that was checked.
+/// Checks the headers of an EXR file in memory. OpenEXR takes memory for an attribute before it notices that
+/// the file is shorter, and reads attributes of most types by its own sizes. Here each has to end within the
+/// file. Types that an image does not need (previews, id manifests, ...) are renamed, in `bytes`, to types
+/// unknown to OpenEXR, which it skips by the checked size.
 ///
 /// Throws Error: kBadFile for a broken header, kUnsupported for deep images.
 void make_attributes_opaque(const std::string& path, std::span<std::uint8_t> bytes);

@@ -1,4 +1,4 @@
-// Bytes in memory as OpenEXR reads them.
+// A stream of OpenEXR over bytes in memory.
 #pragma once
 
 #include <ImfIO.h>
@@ -10,7 +10,7 @@
 
 namespace imgmesh {
 
-/// A stream over bytes that outlive it. Reading beyond them throws, as OpenEXR expects; seeking does not.
+/// The bytes must outlive it. Reading beyond them throws, as OpenEXR expects; seeking does not.
 class MemoryInput : public Imf::IStream {
   public:
     MemoryInput(const char* name, std::span<const std::uint8_t> bytes) : IStream(name), bytes_(bytes) {}

@@ -1,4 +1,4 @@
-// Numbers and pieces from the bytes of a file of any origin.
+// Reads numbers and pieces from the bytes of a file of any origin.
 #pragma once
 
 #include <cstddef>
@@ -11,34 +11,34 @@ namespace imgmesh {
 
 enum class ByteOrder { kBig, kLittle };
 
-/// Thrown where the bytes end before what was asked for. Each format translates it into its own error.
+/// Thrown if the bytes end too early. Each format translates it into its own error.
 struct EndOfBytes {
     std::size_t position;  ///< where the missing piece starts, as of ByteReader::position()
 };
 
-/// Steps through bytes. Pieces that it hands out are views of the bytes; nothing is ever read beyond them.
+/// Steps through bytes. The pieces that it returns are views of the bytes; it never reads beyond them.
 class ByteReader {
   public:
-    /// `start`: the position of the first byte, where the bytes are a part of a file.
+    /// `start` is the position of the first byte, if the bytes are a part of a file.
     ByteReader(std::span<const std::uint8_t> bytes, ByteOrder order, std::size_t start = 0)
         : bytes_(bytes), order_(order), start_(start) {}
 
     std::size_t position() const { return start_ + at_; }
     std::size_t left() const { return bytes_.size() - at_; }
 
-    /// The next `count` bytes. Throws EndOfBytes, as do the next two, and stays where it is then.
+    /// Takes the next `count` bytes. Throws EndOfBytes, as the next two do, and then stays where it is.
     std::span<const std::uint8_t> take(std::size_t count);
-    /// An unsigned number of 1 to 4 bytes.
+    /// Takes an unsigned number of 1 to 4 bytes.
     std::uint32_t number(int count);
-    /// Whether the next byte is this one, which is stepped over then.
+    /// Returns whether the next byte is this one, and steps over it if so.
     bool take_if(std::uint8_t byte);
-    /// The text up to the next zero byte, which is stepped over. Nothing, and no step, where there is none
-    /// behind at most `most` other bytes.
+    /// Takes the text up to the next zero byte and steps over both. Returns nothing, without a step, if there
+    /// is no zero after at most `most` other bytes.
     std::optional<std::string_view> terminated_text(std::size_t most);
 
-    /// The number at a position, wherever the reader is; 0 where it is not all there.
+    /// Returns the number at any position; 0 if it is not complete.
     std::uint32_t number_at(std::size_t position, int count) const;
-    /// Whether this text stands at a position.
+    /// Returns whether this text is at a position.
     bool has_at(std::size_t position, std::string_view text) const;
 
   private:
@@ -51,7 +51,7 @@ class ByteReader {
     std::size_t at_ = 0;
 };
 
-/// Bytes as the characters that they are.
+/// Returns bytes as characters.
 inline std::string_view text_of(std::span<const std::uint8_t> bytes) {
     return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }

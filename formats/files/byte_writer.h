@@ -1,4 +1,4 @@
-// Numbers as the bytes of a file.
+// Writes numbers as the bytes of a file.
 #pragma once
 
 #include <cstdint>

@@ -1,12 +1,12 @@
-// What kind of file a name stands for.
+// The extension of a file name, which tells the kind of file.
 #pragma once
 
 #include <string>
 
 namespace imgmesh {
 
-/// The extension of a path's file name, with its dot and in lower case: ".glb" for "a.GLB". Empty where
-/// there is none, as for "a" and for ".png", a hidden file. Letters beyond ASCII stay as they are.
+/// Returns the extension of a path's file name, with its dot and in lower case: ".glb" for "a.GLB". Empty if
+/// there is none, as for "a" and for the hidden file ".png". Letters beyond ASCII stay.
 std::string lower_extension(const std::string& path);
 
 }  // namespace imgmesh

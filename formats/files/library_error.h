@@ -1,4 +1,4 @@
-// Other libraries' exceptions as Errors.
+// Translates other libraries' exceptions into Errors.
 #pragma once
 
 #include <exception>
@@ -10,8 +10,8 @@
 
 namespace imgmesh {
 
-/// Calls `work`, and gives what it gives. What another library throws in it becomes Error(kind) with the
-/// text "WHAT: the library's reason", one line. Errors of ours and a lack of memory pass as they are.
+/// Calls `work` and returns its result. Exceptions of another library become Error(kind) with the text "WHAT:
+/// the library's reason", one line. Our own Errors and std::bad_alloc pass unchanged.
 template <typename Work>
 auto translate_errors(ErrorKind kind, const std::string& what, Work&& work) {
     try {

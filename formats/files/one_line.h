@@ -1,11 +1,11 @@
-// Messages of other libraries, and names from files, within one line.
+// Puts messages of other libraries and names from files on one line.
 #pragma once
 
 #include <string>
 
 namespace imgmesh {
 
-/// A library's message as one line without control characters.
+/// Returns a library's message as one line without control characters.
 std::string one_line(const std::string& message);
 
 /// A name from a file as messages quote it: '?' for each control character.

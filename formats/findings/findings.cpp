@@ -18,7 +18,7 @@ std::size_t Findings::add(FindingCode code, const std::string& text, Place place
         place.pointer = std::move(pointer);
     }
     errors_ += finding.severity == Severity::kError;
-    // Names from the file are quoted as they are; the message stays one line.
+    // Names from the file are quoted unchanged; the message stays one line.
     std::string line = text;
     std::replace_if(
         line.begin(), line.end(), [](unsigned char c) { return c < 32 || c == 127; }, ' ');

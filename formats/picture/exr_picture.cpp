@@ -46,7 +46,7 @@ std::int64_t length(int first, int last) {
     return std::int64_t{last} - first + 1;
 }
 
-// Colour first, in our order, then the file's own by name.
+// Colour comes first, in our order, then the file's other channels by name.
 std::vector<std::string> channel_order(const Imf::ChannelList& channels) {
     constexpr std::string_view kColor[] = {"R", "G", "B", "Y", "A"};
     std::vector<std::string> names;
@@ -126,7 +126,7 @@ DecodedPicture decode_exr(const std::string& path, std::span<std::uint8_t> bytes
         out.image.sample_type = type;
         out.associated_alpha = true;
 
-        // Row by row through one buffer as wide as the data window, which may lie anywhere.
+        // Reads row by row through one buffer as wide as the data window, which may be anywhere.
         const auto stored_width = static_cast<std::size_t>(length(stored.min.x, stored.max.x));
         std::vector<float> row(stored_width * channels);
         Imf::FrameBuffer buffer;
@@ -157,7 +157,7 @@ std::vector<std::uint8_t> encode_exr(const Image& image, SampleType type) {
     std::vector<Imath::half> halves;
     if (type == SampleType::kHalf) {
         halves.reserve(image.data.size());
-        // Half knows no number above 65504, only infinity, which nothing reads.
+        // A half holds no number above 65504 except infinity, which nothing reads.
         for (const float value : image.data) halves.emplace_back(std::clamp(value, -65504.0f, 65504.0f));
     }
 

@@ -40,7 +40,7 @@ using Transform = std::unique_ptr<void, Closer<void, cmsDeleteTransform>>;
 using Curve = std::unique_ptr<cmsToneCurve, Closer<cmsToneCurve, cmsFreeToneCurve>>;
 using Text = std::unique_ptr<cmsMLU, Closer<cmsMLU, cmsMLUfree>>;
 
-// For what fails of our own doing only where memory is short.
+// For our own calls, which fail only if memory is short.
 template <typename Pointer>
 Pointer made(Pointer object) {
     if (!object) throw std::bad_alloc();
@@ -83,7 +83,7 @@ Profile profile_of(ColorSpace space) {
     return made(Profile(cmsCreateRGBProfile(&white, &primaries, curves)));
 }
 
-// What a profile does to colours.
+// The effect of a profile on colours.
 constexpr int kSteps = 16;
 constexpr std::array<std::array<double, 3>, 7> kColors = {
     {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 1}, {0.75, 0.5, 0.25}, {0.25, 0.75, 0.5}, {0.5, 0.25, 0.75}}};
@@ -92,12 +92,12 @@ struct Behaviour {
     std::array<cmsCIEXYZ, kColors.size()> colors;
 };
 
-// Nothing for a profile without a matrix, or one that Little CMS cannot use.
+// Returns nothing for a profile without a matrix, or one that Little CMS cannot use.
 std::optional<Behaviour> behaviour_of(const Profile& profile) {
     // Little CMS would prefer tables, which are made for one rendering intent each.
     for (const cmsTagSignature table : {cmsSigAToB0Tag, cmsSigAToB1Tag, cmsSigAToB2Tag, cmsSigDToB0Tag,
                                         cmsSigDToB1Tag, cmsSigDToB2Tag, cmsSigDToB3Tag})
-        cmsWriteTag(profile.get(), table, nullptr);  // takes it out of the copy in memory
+        cmsWriteTag(profile.get(), table, nullptr);  // removes it from the copy in memory
     if (cmsGetColorSpace(profile.get()) != cmsSigRgbData || cmsGetPCS(profile.get()) != cmsSigXYZData ||
         !cmsIsMatrixShaper(profile.get()))
         return std::nullopt;
@@ -118,7 +118,7 @@ std::optional<Behaviour> behaviour_of(const Profile& profile) {
     return out;
 }
 
-// Numbers that are none are never alike.
+// NaNs are never alike.
 bool alike(const Behaviour& a, const Behaviour& b) {
     for (std::size_t c = 0; c < 3; ++c)
         for (std::size_t i = 0; i < kSteps; ++i)
@@ -162,7 +162,7 @@ std::vector<std::uint8_t> icc_from_color_space(ColorSpace space) {
         throw std::bad_alloc();
     std::vector<std::uint8_t> bytes(size);
     if (!cmsSaveProfileToMem(profile.get(), bytes.data(), &size)) throw std::bad_alloc();
-    // Little CMS notes the time. The same image gives the same file: noon, 1 January 2000, instead.
+    // Little CMS writes the time. The same image must give the same file, so it is noon, 1 January 2000.
     constexpr std::size_t kDateOffset = 24;
     constexpr std::array<std::uint8_t, 12> kDate = {2000 >> 8, 2000 & 0xFF, 0, 1, 0, 1, 0, 12, 0, 0, 0, 0};
     std::ranges::copy(kDate, bytes.begin() + kDateOffset);

@@ -1,4 +1,4 @@
-// ICC profiles, as far as they name one of our colour spaces.
+// ICC profiles of our colour spaces.
 #pragma once
 
 #include <cstdint>
@@ -10,12 +10,13 @@
 
 namespace imgmesh {
 
-/// The colour space in which an RGB matrix profile (any ICC version) does the same to colours, up to what
-/// profiles differ by; nothing for other profiles and for bytes that are none. Of a profile that has tables
-/// as well, the matrix counts. Safe for any bytes.
+/// Returns the colour space of an RGB matrix profile (any ICC version), within the tolerance by which
+/// profiles differ. Returns nothing for other profiles and for bytes that are no profile. If a profile also
+/// has tables, the matrix counts. Safe for any bytes.
 std::optional<ColorSpace> color_space_from_icc(std::span<const std::uint8_t> profile);
 
-/// A version 4 matrix profile of `space`, the same bytes each time; color_space_from_icc gives `space` back.
+/// Returns a version 4 matrix profile of `space`, always the same bytes; color_space_from_icc() recognises
+/// it.
 std::vector<std::uint8_t> icc_from_color_space(ColorSpace space);
 
 }  // namespace imgmesh

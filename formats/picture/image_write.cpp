@@ -1,5 +1,5 @@
-// write_image: the colour space and samples that the format can hold, its bytes in memory, then one atomic
-// write.
+// write_image(): converts to the colour space and samples that the format can hold, encodes in memory, then
+// writes atomically.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -82,7 +82,7 @@ bool is_integer(SampleType type) {
     return type == kUint8 || type == kUint16;
 }
 
-// What is asked for; else the image's own type, or the format's next finer one, or its finest.
+// Returns the requested type; else the image's own, or the format's next finer one, or its finest.
 SampleType choose_type(const std::string& path, const Format& format, const Image& image,
                        std::optional<SampleType> asked) {
     if (asked && !holds(format, *asked))
@@ -96,8 +96,8 @@ SampleType choose_type(const std::string& path, const Format& format, const Imag
 }
 
 ColorSpace choose_space(const Format& format, SampleType type, const Image& image) {
-    if (!is_integer(type)) return ColorSpace::kLinear;  // what readers take floats for
-    // Linear light from a float image would lose its shadows in integers.
+    if (!is_integer(type)) return ColorSpace::kLinear;  // readers assume that floats are linear
+    // Linear values from a float image would lose their shadows in integers.
     const bool light = image.color_space == ColorSpace::kLinear && !is_integer(image.sample_type);
     // An RGB profile does not fit a grey image.
     const bool profile = format.icc && image.channel("R") >= 0;
@@ -137,7 +137,7 @@ void multiply_alpha_in(Image& image) {
     }
 }
 
-// Without its alpha, which the format cannot hold and which must hide nothing.
+// Returns the image without its alpha, which the format cannot hold and which must hide nothing.
 Image without_alpha(const std::string& path, const Format& format, Image image) {
     const int alpha = image.channel("A");
     if (format.alpha || alpha < 0) return image;
@@ -226,7 +226,7 @@ void write_image(const std::string& path, const Image& image, const WriteImageOp
     if (!format) throw unknown_format(path);
     choose_type(path, *format, image, options.sample_type);
     check_shape(path, *format, image);
-    AtomicFile file(path, options.overwrite);  // before the work: where it cannot be written, all is in vain
+    AtomicFile file(path, options.overwrite);  // first: if it fails, the work would be useless
     file.write(encode_image(path, image, options.sample_type));
     file.commit();
 }

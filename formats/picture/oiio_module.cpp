@@ -1,4 +1,4 @@
-// The module behind oiio_module.h: nothing of imgmesh is linked to it, so that there is one copy of
+// The module behind oiio_module.h. Nothing of imgmesh is linked to it, so there is one copy of
 // everything.
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imagebufalgo.h>
@@ -71,7 +71,7 @@ void check_spec(const std::string& path, const OIIO::ImageSpec& spec, const Imag
     check(path, spec.width, spec.height, spec.nchannels, limits);
     // One tile is held at a time.
     if (spec.tile_width > 0) check(path, spec.tile_width, spec.tile_height, spec.nchannels, limits);
-    // CMYK and YCbCr arrive as RGB; CIELAB and its kin arrive as they are.
+    // CMYK and YCbCr arrive as RGB; CIELAB and similar spaces arrive unchanged.
     const std::string photometric = spec.get_string_attribute("tiff:ColorSpace");
     if (!photometric.empty() && photometric != "CMYK" && photometric != "YCbCr")
         throw Error(ErrorKind::kUnsupported,
@@ -94,13 +94,13 @@ std::vector<std::string> channel_names(const OIIO::ImageSpec& spec) {
     return names;
 }
 
-// What the file says of its colours, by the names of OpenImageIO.
+// What the file says about its colours, under OpenImageIO's names.
 void state_color(const OIIO::ImageSpec& spec, PictureFormat format, OiioPicture& out) {
     if (const OIIO::ParamValue* icc = spec.find_attribute("ICCProfile")) {
         const auto* data = static_cast<const std::uint8_t*>(icc->data());
         out.icc.assign(data, data + icc->datasize());
     }
-    // Netpbm's specification names Rec.709, and all software means sRGB; no file says either.
+    // Netpbm's specification names Rec.709, but all software writes sRGB; no file says which.
     if (format == PictureFormat::kPnm) return;
     out.color_name = spec.get_string_attribute("oiio:ColorSpace");
     if (out.color_name.starts_with("Gamma")) out.gamma = spec.get_float_attribute("oiio:Gamma", 0.0f);
@@ -135,9 +135,9 @@ void use_one_thread() {
     (void)kDone;
 }
 
-// Bytes in memory, and nothing before or behind them: OpenImageIO's own reader (2.4) reads before the first
-// where a file sends it to a negative place. What such a place holds is then missing, as if it were behind
-// the end.
+// Bytes in memory, with nothing before or after them. OpenImageIO's own reader (2.4) reads before the first
+// byte if a file sends it to a negative place. Here such a place counts as missing, as if it were after the
+// end.
 class BoundedReader : public OIIO::Filesystem::IOMemReader {
   public:
     using IOMemReader::IOMemReader;
@@ -181,10 +181,11 @@ OiioPicture decode(const std::string& path, std::span<const std::uint8_t> bytes,
         out.channel_names = channel_names(spec);
         out.data.resize(static_cast<std::size_t>(spec.width) * static_cast<std::size_t>(spec.height) *
                         static_cast<std::size_t>(spec.nchannels));
-        // libjpeg and others say of a truncated file no more than a warning: an error that is told counts.
+        // libjpeg and others only warn about a truncated file: a reported error counts.
         if (!read_samples(*input, out.sample_type, out.data) || input->has_error())
             throw broken(input->geterror());
-        // Asked for alpha as stored, TIFF's reader says when it stands alone; the others never multiply.
+        // TIFF's reader reports unassociated alpha only when asked for alpha as stored; the others never
+        // multiply.
         out.associated_alpha =
             claim.format == PictureFormat::kTiff && spec.get_int_attribute("oiio:UnassociatedAlpha") == 0;
         out.orientation = spec.get_int_attribute("Orientation", 1);
@@ -195,7 +196,7 @@ OiioPicture decode(const std::string& path, std::span<const std::uint8_t> bytes,
 
 std::vector<std::uint8_t> encode(const std::string& path, const OiioTask& task) {
     const auto failed = [&](const std::string& reason) {
-        // All happens in memory: what the library refuses is what the format cannot hold.
+        // All happens in memory, so the library refuses only what the format cannot hold.
         return Error(ErrorKind::kBadArgument, cat(path, ": cannot be written: ", one_line(reason)));
     };
     const OIIO::TypeDesc stored = task.type == SampleType::kUint8    ? OIIO::TypeUInt8
@@ -205,7 +206,7 @@ std::vector<std::uint8_t> encode(const std::string& path, const OiioTask& task) 
     spec.channelnames = task.channel_names;
     spec.alpha_channel = task.alpha_channel;
     spec.attribute("oiio:UnassociatedAlpha", 1);
-    spec.attribute("DateTime", "");  // TIFF's writer would note the time: not the same bytes twice
+    spec.attribute("DateTime", "");  // TIFF's writer would write the time, so bytes would differ
     if (std::string_view(task.writer) == "jpeg") {
         spec.attribute("Compression", "jpeg:95");
         spec.attribute("jpeg:subsampling", "4:4:4");

@@ -24,7 +24,7 @@ Error broken(const std::string& path, const std::string& what) {
     return Error(ErrorKind::kBadFile, cat(path, ": ", what));
 }
 
-// Numbers past the end are 0, which no check below takes for a size.
+// Numbers past the end are 0, which no check below accepts as a size.
 ByteReader big_endian(Bytes b) {
     return {b, ByteOrder::kBig};
 }
@@ -32,14 +32,15 @@ ByteReader little_endian(Bytes b) {
     return {b, ByteOrder::kLittle};
 }
 
-// Position of `text` in the first megabyte, from `from` on: headers of JPEG 2000 and HEIF stand at the front.
+// Returns the position of `text` in the first megabyte, from `from` on: headers of JPEG 2000 and HEIF are at
+// the start.
 std::optional<std::size_t> find(Bytes b, std::size_t from, std::string_view text) {
     constexpr std::size_t kWindow = std::size_t{1} << 20;
     const std::size_t at = text_of(b.first(std::min(b.size(), kWindow))).find(text, from);
     return at == std::string_view::npos ? std::nullopt : std::optional(at);
 }
 
-// libpng reports a broken file on stderr besides its error, and takes one without an end for whole; this walk
+// libpng reports a broken file on stderr as well as by its error, and accepts one without an end. This check
 // finds both first.
 void check_png(const std::string& path, Bytes b) {
     ByteReader in = big_endian(b);
@@ -87,8 +88,8 @@ void claim_bmp(Bytes b, PictureClaim& claim) {
     claim.height = core ? in.number_at(20, 2) : side(22);
 }
 
-// Runs are of a palette's indices. OpenImageIO 2.4 looks them up in a palette that other depths do not have,
-// and crashes; and takes compressions that it does not know for none.
+// Runs consist of a palette's indices. OpenImageIO 2.4 looks them up in a palette that other depths do not
+// have, and crashes; and it treats unknown compressions as none.
 void check_bmp_compression(const std::string& path, Bytes b) {
     const ByteReader in = little_endian(b);
     const std::uint32_t header = in.number_at(14, 4), bits = in.number_at(28, 2);
@@ -144,7 +145,7 @@ constexpr Signature kSignatures[] = {{PictureFormat::kPng, 0, "\x89PNG\r\n\x1a\n
                                      {PictureFormat::kHeif, 4, "ftypmif1"sv},
                                      {PictureFormat::kHeif, 4, "ftypavif"sv}};
 
-// Camera raw files wear TIFF's signature, and their first TIFF image is a thumbnail.
+// Camera raw files have TIFF's signature, and their first TIFF image is a thumbnail.
 constexpr std::string_view kRawExtensions[] = {".3fr", ".arw", ".cr2", ".dcr", ".dng", ".erf",
                                                ".iiq", ".kdc", ".mef", ".mos", ".nef", ".nrw",
                                                ".pef", ".rw2", ".sr2", ".srw"};

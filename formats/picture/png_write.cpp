@@ -54,8 +54,9 @@ std::uint8_t paeth(int left, int up, int corner) {
     return static_cast<std::uint8_t>(to_left <= to_up && to_left <= to_corner ? left : nearer);
 }
 
-// One row through filter `kind` (section 9.2) behind the filter's number: `size` bytes, `step` bytes a pixel,
-// `up` the row above or zeros. `row` and `up` have `step` zeros before their first byte.
+// Applies filter `kind` (section 9.2) to one row and writes the filter's number before it: `size` bytes,
+// `step` bytes a pixel, `up` the row above or zeros. `row` and `up` have `step` zeros before their first
+// byte.
 void filter_row(int kind, const std::uint8_t* row, const std::uint8_t* up, std::size_t size, std::size_t step,
                 std::uint8_t* out) {
     const std::uint8_t *left = row - step, *corner = up - step;
@@ -80,7 +81,8 @@ void filter_row(int kind, const std::uint8_t* row, const std::uint8_t* up, std::
     }
 }
 
-// Sum of the bytes as distances from zero: the specification's measure (section 12.7) of how well they pack.
+// Returns the sum of the bytes as distances from zero: the specification's measure (section 12.7) of how well
+// they compress.
 std::uint64_t weight(const std::uint8_t* bytes, std::size_t size) {
     std::uint64_t sum = 0;
     for (std::size_t i = 0; i < size; ++i)
@@ -88,8 +90,8 @@ std::uint64_t weight(const std::uint8_t* bytes, std::size_t size) {
     return sum;
 }
 
-// All rows, each through the filter whose bytes weigh least, the first of equals. `row_of(y, out)` fills in
-// row y.
+// Filters all rows, each with the filter of the smallest such sum, the first of equal ones. `row_of(y, out)`
+// fills in row y.
 template <typename RowOf>
 Bytes filtered(int height, std::size_t size, std::size_t step, const RowOf& row_of) {
     Bytes out(static_cast<std::size_t>(height) * (size + 1));
