@@ -51,8 +51,8 @@ ByteRange append(std::vector<std::uint8_t>& buffer, const std::vector<T>& values
     return range;
 }
 
-// Stores the mesh of `level` in `buffer` and rewrites `map` for the mesh that a reader will get. `coords`:
-// of its texture; empty for none.
+// Stores the mesh of `level` in `buffer` and rewrites `map` for the mesh that a reader will get. `coords` are
+// those of its texture; empty if there is none.
 AssetLevel store_level(const Level& level, const StoredLayout& layout, std::span<const Vec2f> coords,
                        DracoMode mode, std::vector<std::uint8_t>& buffer, PixelMap& map) {
     StoredMesh mesh = stored_from_base(level.mesh, layout);
@@ -96,7 +96,7 @@ FileVariant variant_of(const std::string& path) {
     throw Error(ErrorKind::kBadArgument, cat(path, ": a container's name ends with .glb or .gltf"));
 }
 
-// The layers are most of the file: they are written from where they are.
+// The layers are most of the file, so they are written without a copy.
 void write_glb(const std::string& path, Asset& asset, const std::vector<std::uint8_t>& buffer,
                const std::vector<std::uint8_t>& layers, bool overwrite) {
     AtomicFile file(path, overwrite);
@@ -111,12 +111,13 @@ void write_glb(const std::string& path, Asset& asset, const std::vector<std::uin
     file.commit();
 }
 
-// The rename of the .gltf switches over: until then the files of the old container stay as they are, and only
-// then they go. A crash in between leaves files that nothing refers to; a signal waits until all is done.
+// The rename of the .gltf switches to the new container. Until then the files of the old one stay, and only
+// then are they removed. A crash in between leaves files that nothing refers to; a signal waits until all is
+// done.
 void write_gltf(const std::string& path, Asset& asset, const std::vector<std::uint8_t>& buffer,
                 const std::vector<std::uint8_t>& layers, const ContainerOptions& options) {
     const std::vector<std::string> old_files = sidecars_of(path);
-    // Ends after the files below do: one placed in vain must go before a signal.
+    // Declared first, so it ends after the files below: a useless one must be removed before a signal.
     std::optional<SignalBlocker> switch_over;
     AtomicFile gltf(path, options.overwrite);
     SidecarFile bin(path, ".bin", buffer);
@@ -135,7 +136,7 @@ void write_gltf(const std::string& path, Asset& asset, const std::vector<std::ui
     if (exr) exr->keep();
     for (const std::string& file : old_files) {
         const std::string name = std::filesystem::path(file).filename().string();
-        std::error_code error;  // a file that stays behind is in nobody's way
+        std::error_code error;  // a file left behind does no harm
         const bool kept = std::any_of(
             options.keep.begin(), options.keep.end(),
             [&](const std::string& other) { return std::filesystem::equivalent(file, other, error); });

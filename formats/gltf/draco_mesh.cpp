@@ -20,7 +20,7 @@ namespace {
 
 constexpr std::size_t kHeaderBytes = 11;  // "DRACO", major, minor, type, method, flags
 
-// Adds one attribute with a value per vertex, taken as it lies in memory.
+// Adds one attribute with a value per vertex, from its bytes in memory.
 template <typename T, std::size_t N>
 int add_attribute(draco::Mesh& mesh, draco::GeometryAttribute::Type type, draco::DataType data_type,
                   bool normalized, std::uint32_t unique_id, const std::vector<std::array<T, N>>& values) {
@@ -114,8 +114,8 @@ int attribute_count(const DracoAttributeIds& ids) {
            static_cast<int>(ids.channels.size());
 }
 
-// A Draco decoder that looks at the attributes' shapes before it takes memory for their values: a few bytes
-// can declare thousands of attributes of 2 kB a vertex.
+// A Draco decoder that checks the attributes' shapes before it takes memory for their values: a few bytes can
+// declare thousands of attributes of 2 kB a vertex.
 template <typename Decoder>
 class GuardedDecoder : public Decoder {
   public:
@@ -163,7 +163,7 @@ std::unique_ptr<draco::Mesh> decode_with(std::span<const std::uint8_t> bytes, in
     return mesh;
 }
 
-// The values of one attribute, a point each.
+// The values of one attribute, one for each point.
 template <typename T, std::size_t N>
 void copy_values(const draco::Mesh& mesh, std::uint32_t unique_id, draco::GeometryAttribute::Type type,
                  std::vector<std::array<T, N>>& out) {
@@ -179,7 +179,7 @@ void copy_values(const draco::Mesh& mesh, std::uint32_t unique_id, draco::Geomet
     }
 }
 
-// A mesh whose header has been looked at.
+// Decodes a mesh whose header has been checked.
 StoredMesh decode(std::span<const std::uint8_t> bytes, const DracoAttributeIds& ids, bool edgebreaker,
                   Findings& findings) {
     const int attributes = attribute_count(ids);
@@ -241,7 +241,7 @@ DracoMesh encode_draco_mesh(const StoredMesh& mesh, DracoMode mode) {
                       color, id, values);
     };
     if (ids.color) add(draco::DT_UINT16, *ids.color, mesh.color);
-    // Floats that no quantisation is asked for are stored as they are.
+    // Floats without quantisation are stored unchanged.
     if (ids.hdr) add(draco::DT_FLOAT32, *ids.hdr, mesh.hdr);
     for (std::size_t c = 0; c < mesh.channels.size(); ++c) {
         std::vector<std::array<float, 1>> values;

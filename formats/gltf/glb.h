@@ -15,17 +15,17 @@ struct GlbView {
     std::span<const std::uint8_t> binary;  ///< empty without a binary chunk
 };
 
-/// Whether the bytes start as a GLB does; else they are taken for JSON.
+/// Returns whether the bytes start like a GLB; otherwise they count as JSON.
 bool is_glb(std::span<const std::uint8_t> bytes);
 
-/// What stands in the file before the bytes of the binary chunk, which are a multiple of four. Throws
-/// Error(kUnsupported) above 4 GiB, which the format cannot say.
+/// Returns the bytes before the binary chunk's content, whose length is a multiple of four. Throws
+/// Error(kUnsupported) above 4 GiB, which the format cannot express.
 std::vector<std::uint8_t> glb_head(std::string_view json, std::uint64_t binary_bytes);
 
-/// The whole file. Throws as glb_head() does.
+/// Returns the whole file. Throws as glb_head() does.
 std::vector<std::uint8_t> pack_glb(std::string_view json, std::span<const std::uint8_t> binary);
 
-/// Views into `bytes`. Unknown chunks are skipped. Throws FindingError.
+/// Returns views into `bytes`. Unknown chunks are skipped. Throws FindingError.
 GlbView unpack_glb(std::span<const std::uint8_t> bytes, Findings& findings);
 
 }  // namespace imgmesh

@@ -1,4 +1,4 @@
-// The JSON side of a container: what a glTF document says about the levels, and where their bytes are.
+// The JSON of a container: what a glTF document says about the levels, and where their bytes are.
 #pragma once
 
 #include <array>
@@ -37,11 +37,11 @@ struct AssetLevel {
     std::vector<ByteRange> channels = {};  ///< float32
     ByteRange texcoords = {};              ///< 2 float32
     bool has_texcoords = false;
-    bool is_sound = true;  ///< false only for a validator: all but the node's index is unknown
+    bool is_sound = true;  ///< false only for a validator: only the node's index is known
     bool operator==(const AssetLevel&) const = default;
 };
 
-/// Where a level stands in the document.
+/// The place of a level in the document.
 struct LevelPlace {
     std::uint64_t node = 0, mesh = 0;
     /// A JSON pointer to the primitive, or to the member of its Draco extension.
@@ -55,28 +55,28 @@ struct Asset {
     std::vector<BuildParameter> parameters;  ///< comes back sorted by name
     std::vector<AssetLevel> levels;          ///< 0 is the finest
     std::uint64_t buffer_length = 0;
-    std::string buffer_name;  ///< the file beside; empty for a .glb's binary chunk
-    ByteRange layers;         ///< the EXR in the buffer, where `layers_name` is empty
-    std::string layers_name;  ///< or its file beside
+    std::string buffer_name;  ///< the sidecar file; empty for a .glb's binary chunk
+    ByteRange layers;         ///< the EXR in the buffer, if `layers_name` is empty
+    std::string layers_name;  ///< or its sidecar file
 
     ByteRange texture;         ///< the image on the meshes, in the buffer
     std::string texture_type;  ///< its mimeType; empty for no texture
 
     std::vector<LevelPlace> places;  ///< of the levels, as read
-    // What a validator may go on with; always true for a reader. A writer leaves IMGMESH_pixel_map out where
+    // What a validator may check further; always true for a reader. A writer omits IMGMESH_pixel_map if
     // has_layers is false.
     bool has_size = true;    ///< of the image
-    bool has_levels = true;  ///< it is known how many there are
-    bool has_layers = true;  ///< it is known where the EXR is
+    bool has_levels = true;  ///< their number is known
+    bool has_layers = true;  ///< the place of the EXR is known
     bool has_buffer = true;  ///< likewise
 };
 
-/// What the meshes of such an image have beside positions, and the names of its channels' attributes in
-/// their order.
+/// Returns the attributes of such an image's meshes beside positions, and the names of its channels'
+/// attributes in their order.
 StoredLayout layout_of(const SourceInfo& source);
 std::vector<std::string> channel_attributes(const SourceInfo& source);
 
-/// The name of level k's node and EXR part.
+/// Returns the name of level k's node and EXR part.
 std::string level_name(std::size_t k);
 
 /// The glTF document. Throws Error(kUnsupported) for a buffer above 2 GiB, which many readers cannot address.

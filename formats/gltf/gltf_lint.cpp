@@ -19,7 +19,7 @@ using nlohmann::json;
 
 const json kNothing;
 
-// members[index] of an array, or a null where there is none.
+// Returns members[index] of an array, or null if there is none.
 const json& element(const json& members, std::uint64_t index) {
     return members.is_array() && index < members.size() ? members[index] : kNothing;
 }
@@ -64,7 +64,7 @@ void lint_extensions(const json& document, const Asset& asset, Findings& finding
                      at_pointer("/extensionsRequired"));
 }
 
-// Differences that no viewer shows are none.
+// Differences too small for any viewer do not count.
 bool is_near(const json& numbers, std::initializer_list<double> expected) {
     if (!numbers.is_array() || numbers.size() != expected.size()) return false;
     return std::equal(expected.begin(), expected.end(), numbers.begin(), [](double want, const json& found) {
@@ -192,7 +192,7 @@ void lint_views(const json& document, Findings& findings) {
     }
 }
 
-// Every "bufferView" counts as a reference wherever it stands; those to accessors stand in primitives.
+// Every "bufferView" counts as a reference wherever it is; references to accessors are in primitives.
 void collect_views(const json& value, std::set<std::uint64_t>& used) {
     if (!value.is_structured()) return;
     for (const auto& [name, item] : value.items()) {
@@ -246,7 +246,7 @@ void lint_gltf(const json& document, const Asset& asset, Findings& findings) {
     lint_extensions(document, asset, findings);
     lint_members(document, asset, findings);
     lint_views(document, findings);
-    // A reference that is wrong was told already; what it should have referred to is not.
+    // A wrong reference has been reported already; its intended target has not.
     if (findings.errors() == 0) lint_unused(document, findings);
     lint_foreign(document, asset, findings);
     if (!asset.has_levels) return;

@@ -53,7 +53,7 @@ void check_required(const json& document, Findings& findings) {
 }
 
 tinygltf::Model load_model(const json& document) {
-    // The document's own version is check_version's business, and a validator goes on without one.
+    // check_version() checks the document's own version, and a validator continues without one.
     json reduced = {{"asset", {{"version", "2.0"}}}};
     for (const char* name : {"accessors", "bufferViews", "meshes", "nodes"}) {
         reduced[name] = member(document, name, "gltf.structure");
@@ -81,7 +81,7 @@ const T& at(const std::vector<T>& items, std::uint64_t index, const char* what) 
     return items[index];
 }
 
-// An index that tinygltf gives as int, -1 for none.
+// Converts an index that tinygltf gives as int, -1 for none.
 template <typename T>
 const T& at(const std::vector<T>& items, int index, const char* what) {
     if (index < 0) refuse("gltf.structure", cat("no ", what));
@@ -154,7 +154,7 @@ bool has_attribute(const tinygltf::Model& model, int mesh, const char* name) {
     return !primitives.empty() && primitives[0].attributes.contains(name);
 }
 
-// The attributes that pixels are made of, each with the place for its Draco id and for its bytes.
+// The attributes with the features of pixels, each with the place for its Draco id and for its bytes.
 struct FeatureAttribute {
     Element element;
     std::uint32_t* id;
@@ -180,7 +180,7 @@ std::vector<FeatureAttribute> feature_attributes(const StoredLayout& layout,
     return out;
 }
 
-// Fills in where the mesh of a level is.
+// Fills in the places of a level's mesh.
 void read_primitive(const json& document, const tinygltf::Model& model, int mesh_index, const Asset& asset,
                     AssetLevel& level) {
     const std::uint64_t buffer_length = asset.buffer_length;
@@ -188,7 +188,7 @@ void read_primitive(const json& document, const tinygltf::Model& model, int mesh
     if (mesh.primitives.size() != 1 || mesh.primitives[0].mode != TINYGLTF_MODE_TRIANGLES)
         refuse("gltf.primitive", cat("mesh ", mesh_index, " is not one primitive of triangles"));
     const tinygltf::Primitive& primitive = mesh.primitives[0];
-    // tinygltf drops what it does not take for a primitive.
+    // tinygltf drops what it does not recognise as a primitive.
     const json& sources = document["meshes"][static_cast<std::size_t>(mesh_index)]["primitives"];
     if (sources.size() != 1)
         refuse("gltf.primitive", cat("mesh ", mesh_index, " has something else than a primitive"));

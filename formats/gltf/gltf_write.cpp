@@ -35,7 +35,7 @@ int add_view(tinygltf::Model& model, const ByteRange& range, int target) {
     return static_cast<int>(model.bufferViews.size()) - 1;
 }
 
-// `range` is null where the values are in a Draco bitstream.
+// `range` is null if the values are in a Draco bitstream.
 int add_accessor(tinygltf::Model& model, int component, int type, std::uint64_t count, const ByteRange* range,
                  int target) {
     tinygltf::Accessor accessor;
@@ -51,7 +51,7 @@ tinygltf::Material unlit_material() {
     tinygltf::Material material;
     material.name = "unlit";
     material.doubleSided = true;
-    // What viewers without the extension fall back to: no mirror.
+    // The fallback of viewers without the extension: no mirror.
     material.pbrMetallicRoughness.metallicFactor = 0;
     material.extensions[kUnlit] = Value(Value::Object());
     return material;

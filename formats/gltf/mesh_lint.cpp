@@ -55,7 +55,7 @@ void lint_vertices(const StoredMesh& mesh, const AssetLevel& level, const Source
 
 void lint_faces(const StoredMesh& mesh, const SourceInfo& source, Findings& findings) {
     std::vector<Face> faces = mesh.faces;
-    std::vector<std::pair<Id, Id>> edges;  // as they run
+    std::vector<std::pair<Id, Id>> edges;  // with their direction
     double area2 = 0;
     for (Face& face : faces) {
         std::rotate(face.begin(), std::min_element(face.begin(), face.end()), face.end());

@@ -34,7 +34,7 @@ struct Pieces {
     std::vector<Piece> pieces;
     std::vector<std::array<float, 3>> position;
     std::vector<std::array<std::uint16_t, 4>> color;
-    std::vector<Id> index;  // from the piece's first vertex on
+    std::vector<Id> index;  // counted from the piece's first vertex
 };
 
 Pieces cut(const StoredMesh& mesh, std::span<const Id> region_of_face) {

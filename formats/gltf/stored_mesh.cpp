@@ -50,11 +50,11 @@ struct Corner {
     bool operator==(const Corner& other) const { return (*this <=> other) == 0; }
 };
 
-// The corners of a face from the smallest on: the same however the face was rotated.
+// The corners of a face starting from the smallest: the same for every rotation of the face.
 struct Key {
     std::array<Corner, 3> corner;
     Id face;
-    std::uint8_t first;  // which corner of the face comes first
+    std::uint8_t first;  // the corner of the face that comes first
 };
 
 constexpr std::array<std::uint16_t, 4> kNoColor{};
@@ -81,7 +81,7 @@ std::uint16_t code_of(float light) {
     return static_cast<std::uint16_t>(std::lround(std::clamp(light, 0.0f, 1.0f) * 65535.0f));
 }
 
-// The attributes of one more vertex.
+// Adds the attributes of one more vertex.
 void add_features(const float* feature, const StoredLayout& layout, StoredMesh& stored) {
     if (layout.hdr) {
         const Vec3f light = quantized_hdr(Vec3f(feature));
