@@ -13,6 +13,10 @@ std::size_t index(int k) {
     return as_index(k);
 }
 
+int size(const OneRing& ring) {
+    return static_cast<int>(ring.vertices());
+}
+
 std::span<const Vec2d> ring_of(const FlatRing& flat, int size) {
     return {flat.at.data(), index(size)};
 }
@@ -48,14 +52,15 @@ double angle_at(const float* pivot, const float* a, const float* b, int dimensio
 }
 
 // The points of a star's ring.
-std::array<const float*, kMaxFlatRing> ring_points(const Star& star, const float* points, int dimensions) {
+std::array<const float*, kMaxFlatRing> ring_points(const OneRing& star, const float* points, int dimensions) {
+    assert(star.vertices() <= kMaxFlatRing);
     std::array<const float*, kMaxFlatRing> out{};
-    for (int k = 0; k < star.size; ++k)
-        out[index(k)] = points + std::size_t{star.ring[index(k)]} * index(dimensions);
+    for (std::size_t k = 0; k < star.vertices(); ++k)
+        out[k] = points + std::size_t{star.vertex[k]} * index(dimensions);
     return out;
 }
 
-const float* center_point(const Star& star, const float* points, int dimensions) {
+const float* center_point(const OneRing& star, const float* points, int dimensions) {
     return points + std::size_t{star.center} * index(dimensions);
 }
 
@@ -63,11 +68,11 @@ const float* center_point(const Star& star, const float* points, int dimensions)
 
 bool CollapseFlattening::is_shared(int star, int face) const {
     const int at = other_[index(star)];
-    const Star& s = *stars_[index(star)];
-    return face == at || face == (at > 0 || s.open ? at - 1 : s.size - 1);
+    const OneRing& s = *stars_[index(star)];
+    return face == at || face == (at > 0 || !s.closed ? at - 1 : size(s) - 1);
 }
 
-bool CollapseFlattening::lay_out(const std::array<const Star*, 2>& stars, const float* points,
+bool CollapseFlattening::lay_out(const std::array<const OneRing*, 2>& stars, const float* points,
                                  const float* merged, int dimensions, bool shared) {
     stars_ = stars;
     std::array<bool, 2> at_end{};
@@ -86,7 +91,7 @@ bool CollapseFlattening::lay_out(const std::array<const Star*, 2>& stars, const 
         return lay_out_move(points, merged, dimensions) &&
                lay_out_star(1 - pivot, points, merged, dimensions);
     };
-    if (stars[0]->open != stars[1]->open) return lay_out_around(stars[0]->open ? 0 : 1);
+    if (stars[0]->closed != stars[1]->closed) return lay_out_around(stars[0]->closed ? 1 : 0);
     if (!in_shared_region(points, merged, dimensions)) {
         const int nearer = plane_distance(merged, center_point(*stars[0], points, dimensions)) <=
                                    plane_distance(merged, center_point(*stars[1], points, dimensions))
@@ -101,104 +106,104 @@ bool CollapseFlattening::lay_out(const std::array<const Star*, 2>& stars, const 
 
 // Whether m lies inside the shared faces, or between the ends of a border edge, in the plane.
 bool CollapseFlattening::in_shared_region(const float* points, const float* merged, int dimensions) const {
-    const Star& i = *stars_[0];
+    const OneRing& i = *stars_[0];
     const auto place = [&](Id v) { return plane(points + std::size_t{v} * index(dimensions)); };
     const Vec2d m = plane(merged), pi = place(i.center), pj = place(stars_[1]->center);
-    if (i.open) return (pi - m).dot(pj - m) < 0;
+    if (!i.closed) return (pi - m).dot(pj - m) < 0;
     const int at = other_[0];
-    const Vec2d ring[] = {pj, place(i.ring[index((at + 1) % i.size)]), pi,
-                          place(i.ring[index((at + i.size - 1) % i.size)])};
+    const Vec2d ring[] = {pj, place(i.vertex[index((at + 1) % size(i))]), pi,
+                          place(i.vertex[index((at + size(i) - 1) % size(i))])};
     for (std::size_t k = 0; k < 4; ++k)
         if (!(cross(ring[k] - m, ring[(k + 1) % 4] - m) > 0)) return false;
     return true;
 }
 
 bool CollapseFlattening::lay_out_shared(const float* points, const float* merged, int dimensions) {
-    const Star& i = *stars_[0];
+    const OneRing& i = *stars_[0];
     const auto point = [&](Id v) { return points + std::size_t{v} * index(dimensions); };
     const float *pi = point(i.center), *pj = point(stars_[1]->center);
     const int at = other_[0];
     std::array<const float*, 4> ring{};
-    if (!i.open) {  // j, a, i, b
-        ring = {pj, point(i.ring[index((at + 1) % i.size)]), pi,
-                point(i.ring[index((at + i.size - 1) % i.size)])};
+    if (i.closed) {  // j, a, i, b
+        ring = {pj, point(i.vertex[index((at + 1) % size(i))]), pi,
+                point(i.vertex[index((at + size(i) - 1) % size(i))])};
     } else if (at == 0) {  // face (i, j, a): the border runs from j to i
-        ring = {pj, point(i.ring[1]), pi};
+        ring = {pj, point(i.vertex[1]), pi};
     } else {  // face (i, b, j): from i to j
-        ring = {pi, point(i.ring[index(at - 1)]), pj};
+        ring = {pi, point(i.vertex[index(at - 1)]), pj};
     }
-    const int n = i.open ? 3 : 4;
-    if (!flatten_ring(merged, {ring.data(), index(n)}, dimensions, i.open, shared_ring_)) return false;
+    const int n = i.closed ? 4 : 3;
+    if (!flatten_ring(merged, {ring.data(), index(n)}, dimensions, !i.closed, shared_ring_)) return false;
     const std::array<Vec2d, kMaxFlatRing>& p = shared_ring_.at;
     FlatFan before;  // the old faces, as fans of the ring's first vertex
     const std::array<Vec2d, 3> rest{p[1], p[2], p[3]};
     return before.set(p[0], std::span(rest).first(index(n - 1)), false) &&
-           shared_fan_.set(Vec2d::Zero(), ring_of(shared_ring_, n), !i.open);
+           shared_fan_.set(Vec2d::Zero(), ring_of(shared_ring_, n), i.closed);
 }
 
 bool CollapseFlattening::lay_out_move(const float* points, const float* merged, int dimensions) {
-    const Star& star = *stars_[index(pivot_)];
+    const OneRing& star = *stars_[index(pivot_)];
     const auto ring = ring_points(star, points, dimensions);
-    if (!flatten_ring(merged, {ring.data(), index(star.size)}, dimensions, star.open, move_ring_))
+    if (!flatten_ring(merged, {ring.data(), star.vertices()}, dimensions, !star.closed, move_ring_))
         return false;
     // The end lies between two ring vertices, as seen from m in the plane; on a border, along it.
     const float* end = center_point(star, points, dimensions);
     const Vec2d toward = plane(end) - plane(merged);
-    const std::span<const Vec2d> flat = ring_of(move_ring_, star.size);
+    const std::span<const Vec2d> flat = ring_of(move_ring_, size(star));
     double distance = 0;
     for (int c = 0; c < dimensions; ++c)
         distance += (double(end[c]) - double(merged[c])) * (double(end[c]) - double(merged[c]));
     const double radius = std::pow(std::sqrt(distance) / move_ring_.mean, move_ring_.exponent);
-    if (star.open) {
+    if (!star.closed) {
         move_end_ = {toward.dot(plane(ring[0]) - plane(merged)) > 0 ? radius : -radius, 0};
     } else {
         int k = 0;
         const auto leads_to = [&](int r) {
             const Vec2d first = plane(ring[index(r)]) - plane(merged),
-                        second = plane(ring[index((r + 1) % star.size)]) - plane(merged);
+                        second = plane(ring[index((r + 1) % size(star))]) - plane(merged);
             return cross(first, toward) >= 0 && cross(toward, second) > 0 && cross(first, second) > 0;
         };
-        while (k < star.size && !leads_to(k)) ++k;
-        if (k == star.size) return false;
-        const float *first = ring[index(k)], *second = ring[index((k + 1) % star.size)];
+        while (k < size(star) && !leads_to(k)) ++k;
+        if (k == size(star)) return false;
+        const float *first = ring[index(k)], *second = ring[index((k + 1) % size(star))];
         const double before = angle_at(merged, first, end, dimensions),
                      after = angle_at(merged, end, second, dimensions);
         // The sector's share on this side of the end.
-        const Vec2d &from = flat[index(k)], &to = flat[index((k + 1) % star.size)];
+        const Vec2d &from = flat[index(k)], &to = flat[index((k + 1) % size(star))];
         const double start = std::atan2(from.y(), from.x());
         const double width = std::atan2(cross(from, to), from.dot(to));
         const double direction = start + width * (before + after > 0 ? before / (before + after) : 0.5);
         move_end_ = {radius * std::cos(direction), radius * std::sin(direction)};
     }
     FlatFan before;
-    return before.set(move_end_, flat, !star.open) && move_fan_.set(Vec2d::Zero(), flat, !star.open);
+    return before.set(move_end_, flat, star.closed) && move_fan_.set(Vec2d::Zero(), flat, star.closed);
 }
 
 bool CollapseFlattening::lay_out_star(int s, const float* points, const float* merged, int dimensions) {
-    const Star& star = *stars_[index(s)];
+    const OneRing& star = *stars_[index(s)];
     auto ring = ring_points(star, points, dimensions);
     ring[index(other_[index(s)])] = merged;
     FlatRing& flat = star_ring_[index(s)];
-    if (star.size < 3 || !flatten_ring(center_point(star, points, dimensions),
-                                       {ring.data(), index(star.size)}, dimensions, star.open, flat))
+    if (size(star) < 3 || !flatten_ring(center_point(star, points, dimensions),
+                                        {ring.data(), star.vertices()}, dimensions, !star.closed, flat))
         return false;
     FlatFan before;
-    if (!before.set(Vec2d::Zero(), ring_of(flat, star.size), !star.open)) return false;
+    if (!before.set(Vec2d::Zero(), ring_of(flat, size(star)), star.closed)) return false;
     // On a border m is the first or the last of the ring, and its fan begins after it or ends before it.
-    const int at = other_[index(s)], first = star.open && at > 0 ? 0 : at + 1;
-    assert(!star.open || at == 0 || at == star.size - 1);
+    const int at = other_[index(s)], first = !star.closed && at > 0 ? 0 : at + 1;
+    assert(star.closed || at == 0 || at == size(star) - 1);
     std::array<Vec2d, kMaxFlatRing> rest;
-    for (int k = 0; k + 1 < star.size; ++k) rest[index(k)] = flat.at[index((first + k) % star.size)];
-    return star_fan_[index(s)].set(flat.at[index(at)], {rest.data(), index(star.size - 1)}, false);
+    for (int k = 0; k + 1 < size(star); ++k) rest[index(k)] = flat.at[index((first + k) % size(star))];
+    return star_fan_[index(s)].set(flat.at[index(at)], {rest.data(), index(size(star) - 1)}, false);
 }
 
 // Step 2 for one point.
 FanPoint CollapseFlattening::without_end(int s, const FanPoint& point) const {
-    const Star& star = *stars_[index(s)];
-    const Vec2d p = position(Vec2d::Zero(), ring_of(star_ring_[index(s)], star.size), point);
+    const OneRing& star = *stars_[index(s)];
+    const Vec2d p = position(Vec2d::Zero(), ring_of(star_ring_[index(s)], size(star)), point);
     FanPoint found = star_fan_[index(s)].locate(p);
-    const int at = other_[index(s)], first = star.open && at > 0 ? 0 : at + 1;
-    found.triangle = (found.triangle + first) % star.size;
+    const int at = other_[index(s)], first = !star.closed && at > 0 ? 0 : at + 1;
+    found.triangle = (found.triangle + first) % size(star);
     return found;
 }
 
@@ -206,34 +211,34 @@ FanPoint CollapseFlattening::without_end(int s, const FanPoint& point) const {
 StarPoint CollapseFlattening::in_other_star(const StarPoint& point) const {
     const int s = point.star, o = 1 - s;
     const auto& w = point.at.weight;
-    const Star& other = *stars_[index(o)];
+    const OneRing& other = *stars_[index(o)];
     const int at = other_[index(o)];
     if (point.at.triangle == other_[index(s)])
-        return {o, {at > 0 || other.open ? at - 1 : other.size - 1, {w[1], w[2], w[0]}}};
+        return {o, {at > 0 || !other.closed ? at - 1 : size(other) - 1, {w[1], w[2], w[0]}}};
     return {o, {at, {w[2], w[0], w[1]}}};
 }
 
 // Step 1 for one point: to a face of either star, with m in the place of the other end.
 StarPoint CollapseFlattening::across_shared(const StarPoint& given) const {
     const StarPoint point = given.star == 0 ? given : in_other_star(given);
-    const Star& i = *stars_[0];
+    const OneRing& i = *stars_[0];
     const int at = other_[0];
     const auto& p = shared_ring_.at;
     const auto& w = point.at.weight;  // of i, and of j and a, or b and j
     const bool after = point.at.triangle == at;
     Vec2d place;
-    if (!i.open)
+    if (i.closed)
         place = after ? w[0] * p[2] + w[1] * p[0] + w[2] * p[1] : w[0] * p[2] + w[1] * p[3] + w[2] * p[0];
     else
         place = at == 0 ? w[0] * p[2] + w[1] * p[0] + w[2] * p[1] : w[0] * p[0] + w[1] * p[1] + w[2] * p[2];
     const FanPoint found = shared_fan_.locate(place);
     const auto& [m, first, second] = found.weight;
     // The ring is j, a, i, b, or half of it that begins at j or at i.
-    const int triangle = i.open && at > 0 ? found.triangle + 2 : found.triangle;
+    const int triangle = !i.closed && at > 0 ? found.triangle + 2 : found.triangle;
     const auto before = [&](int s) {
-        const Star& star = *stars_[index(s)];
+        const OneRing& star = *stars_[index(s)];
         const int k = other_[index(s)];
-        return k > 0 || star.open ? k - 1 : star.size - 1;
+        return k > 0 || !star.closed ? k - 1 : size(star) - 1;
     };
     switch (triangle) {
         case 0:  // m, j, a
@@ -248,7 +253,7 @@ StarPoint CollapseFlattening::across_shared(const StarPoint& given) const {
 }
 
 FanPoint CollapseFlattening::moved(const FanPoint& point) const {
-    return move_fan_.locate(position(move_end_, ring_of(move_ring_, stars_[index(pivot_)]->size), point));
+    return move_fan_.locate(position(move_end_, ring_of(move_ring_, size(*stars_[index(pivot_)])), point));
 }
 
 StarPoint CollapseFlattening::carry(StarPoint point) const {

@@ -4,8 +4,8 @@
 
 #include <array>
 
+#include "libcore/mesh/one_ring.h"
 #include "libcore/param/conformal.h"
-#include "libcore/param/tracked_mesh.h"
 
 namespace imgmesh {
 
@@ -37,7 +37,7 @@ class CollapseFlattening {
     /// points  of all vertices, `dimensions` floats each: position [pixels], then weighted features
     /// merged  the new vertex, likewise
     /// shared  whether any point of the shared region will be asked for
-    bool lay_out(const std::array<const Star*, 2>& stars, const float* points, const float* merged,
+    bool lay_out(const std::array<const OneRing*, 2>& stars, const float* points, const float* merged,
                  int dimensions, bool shared);
 
     /// Whether the star stays as it is, but for its faces that go.
@@ -64,7 +64,7 @@ class CollapseFlattening {
     StarPoint across_shared(const StarPoint& point) const;
     FanPoint moved(const FanPoint& point) const;
 
-    std::array<const Star*, 2> stars_{};
+    std::array<const OneRing*, 2> stars_{};
     std::array<int, 2> other_{};  // where each star's ring has the other end
     Mode mode_ = Mode::kBetween;
     int pivot_ = 0;

@@ -4,12 +4,12 @@
 #include <array>
 #include <span>
 
-#include "libcore/base/types.h"
+#include "libcore/mesh/ring_mesh.h"
 
 namespace imgmesh {
 
-/// The largest number of vertices in a ring (libcore/mesh/ring_mesh.h).
-inline constexpr std::size_t kMaxFlatRing = 12;
+/// The largest number of vertices in the ring of a collapse.
+inline constexpr std::size_t kMaxFlatRing = kMaxValence;
 
 /// The places of a ring's vertices with its pivot at the origin, counter-clockwise (x right, y *up*).
 struct FlatRing {

@@ -6,12 +6,13 @@
 #include <vector>
 
 #include "libcore/mesh/base_mesh.h"
+#include "libcore/mesh/edit_mesh.h"
 #include "libcore/mesh/pixel_map.h"
-#include "libcore/param/tracked_mesh.h"
 
 namespace imgmesh {
 
 class CollapseFlattening;
+struct FanPoint;
 
 /// The dense mesh that tracking starts from.
 struct TrackStart {
@@ -67,15 +68,16 @@ class PixelTracker {
         std::array<double, 3> weight;  // of the face's corners
     };
     void put(Id pixel, Id face, const std::array<double, 3>& weight);
-    void put_at(Id vertex, Id pixel);
-    std::array<double, 3> star_weights(const Star& star, int face, Id pixel) const;
-    bool any_shared(const std::array<Star, 2>& stars) const;
-    void carry(const CollapseFlattening& flat, const std::array<Star, 2>& stars);
-    void find_in_plane(const Star& star);
+    void put_at(const OneRing& ring, Id pixel);
+    static Moved in_ring(Id pixel, const OneRing& ring, const FanPoint& at);
+    std::array<double, 3> ring_weights(const OneRing& ring, std::size_t face, Id pixel) const;
+    bool any_shared(const std::array<OneRing, 2>& rings) const;
+    void carry(const CollapseFlattening& flat, const std::array<OneRing, 2>& rings);
+    void find_in_plane(const OneRing& ring);
 
     int width_, height_, dimensions_;
     TrackParams params_;
-    TrackedMesh mesh_;
+    EditMesh mesh_;
     std::vector<float> points_;  // of each vertex: position, features times the root of their weight
     std::vector<Id> pixel_;      // of each vertex that is still one
     std::vector<Id> first_;      // of each face's list
