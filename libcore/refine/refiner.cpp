@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "libcore/base/for_each_id.h"
 #include "libcore/image/color.h"
 #include "libcore/mesh/vertex_coloring.h"
-#include "libcore/refine/for_each_id.h"
 
 namespace imgmesh {
 
@@ -22,14 +22,18 @@ void Refiner::add_shape(Cost& cost, const Vec2f& a, const Vec2f& b, const Vec2f&
 }
 
 Refiner::Refiner(const BaseMesh& mesh, const ImagePlanes& picture, const RefineParams& params)
-    : picture_(picture), params_(params), mesh_(mesh), error_(mesh.faces.size(), 0.0) {
+    : picture_(picture),
+      params_(params),
+      mesh_(refine_faces(mesh)),
+      vertex_(mesh),
+      error_(mesh.faces.size(), 0.0) {
     fit_colors();
     shape_unit_ = params.shape_weight * total_error() / static_cast<double>(mesh.faces.size());
 }
 
 double Refiner::total_error() const {
     double sum = 0;
-    for (Id f = 0; f < mesh_.faces.size(); ++f)
+    for (Id f = 0; f < mesh_.faces().size(); ++f)
         if (mesh_.live_face(f)) sum += error_[f];
     return sum;
 }
@@ -52,13 +56,13 @@ double Refiner::face_error(const Face& face) const {
     return squared_error(picture_, corner(face[0]), corner(face[1]), corner(face[2]));
 }
 
-Refiner::Cost Refiner::cost_of(const Star& star) const {
+Refiner::Cost Refiner::cost_of(const OneRing& ring) const {
     Cost cost;
-    for (int k = 0; k < star.size; ++k) {
-        const Id f = star.face[static_cast<std::size_t>(k)];
-        const auto [a, b, c] = mesh_.faces[f];
+    for (std::size_t k = 0; k < ring.faces; ++k) {
+        const Id f = ring.face[k];
+        const auto [a, b, c] = mesh_.face(f);
         cost.error += error_[f];
-        add_shape(cost, mesh_.position[a], mesh_.position[b], mesh_.position[c]);
+        add_shape(cost, vertex_.position[a], vertex_.position[b], vertex_.position[c]);
     }
     return cost;
 }
@@ -66,76 +70,78 @@ Refiner::Cost Refiner::cost_of(const Star& star) const {
 // Least squares over all pixels by projected Gauss-Seidel, as in param/fit_colors.cpp, on changes of the
 // colours; the faces' errors follow from the same sums.
 void Refiner::fit_colors() {
-    std::vector<FaceSums> sums(mesh_.faces.size());
-    for_each_id(mesh_.faces.size(), [&](Id f) {
+    std::vector<FaceSums> sums(mesh_.faces().size());
+    for_each_id(mesh_.faces().size(), [&](Id f) {
         if (!mesh_.live_face(f)) return;
-        const auto [a, b, c] = mesh_.faces[f];
+        const auto [a, b, c] = mesh_.face(f);
         sums[f] = face_sums(picture_, corner(a), corner(b), corner(c));
     });
     forget();
-    const std::vector<Vec3f> before = mesh_.color;
-    std::vector<Vec3d> change(mesh_.position.size(), Vec3d::Zero());
+    const std::vector<Vec3f> before = vertex_.color;
+    std::vector<Vec3d> change(mesh_.vertices(), Vec3d::Zero());
     constexpr int kPasses = 6;
     // A vertex that no pixel touches stays as it is.
     constexpr double kPull = 1e-3;
+    // The corners around each vertex, 3 face + place, in the order of its ring: every pass needs them.
+    std::vector<Id> corners, first{0};
+    OneRing ring;
+    for (Id v = 0; v < mesh_.vertices(); ++v) {
+        const std::size_t faces = mesh_.ring(v, ring) ? ring.faces : 0;
+        for (std::size_t k = 0; k < faces; ++k) corners.push_back(3 * ring.face[k] + ring.corner[k]);
+        first.push_back(static_cast<Id>(corners.size()));
+    }
     const auto improve = [&](Id v) {
-        Star star;
-        if (!mesh_.star(v, star)) return;
+        if (first[v] == first[v + 1]) return;
         double diagonal = kPull;
         Vec3d rhs = kPull * change[v];
-        for (int k = 0; k < star.size; ++k) {
-            const Id f = star.face[static_cast<std::size_t>(k)];
-            const std::size_t i = star.corner[static_cast<std::size_t>(k)];
+        for (Id k = first[v]; k < first[v + 1]; ++k) {
+            const Id f = corners[k] / 3;
+            const std::size_t i = corners[k] % 3;
             diagonal += sums[f].ww[i][i];
             rhs -= sums[f].we[i];
             for (const std::size_t j : {(i + 1) % 3, (i + 2) % 3})
-                rhs -= sums[f].ww[i][j] * change[mesh_.faces[f][j]];
+                rhs -= sums[f].ww[i][j] * change[mesh_.face(f)[j]];
         }
         const Vec3f best = before[v] + (rhs / diagonal).cast<float>(), next = allowed(best);
-        if ((next - best).squaredNorm() >= (mesh_.color[v] - best).squaredNorm()) return;
-        mesh_.color[v] = next;
+        if ((next - best).squaredNorm() >= (vertex_.color[v] - best).squaredNorm()) return;
+        vertex_.color[v] = next;
         change[v] = (next - before[v]).cast<double>();
     };
-    const std::vector<std::vector<Id>> classes = vertex_coloring(mesh_.faces, mesh_.position.size());
+    const std::vector<std::vector<Id>> classes = vertex_coloring(mesh_.faces(), mesh_.vertices());
     for (int pass = 0; pass < kPasses; ++pass)
         for (const std::vector<Id>& members : classes)
             for_each_id(members.size(), [&](Id k) { improve(members[k]); });
-    for_each_id(mesh_.faces.size(), [&](Id f) {
+    for_each_id(mesh_.faces().size(), [&](Id f) {
         if (!mesh_.live_face(f)) return;
         double e = sums[f].ee;
         for (std::size_t i = 0; i < 3; ++i) {
-            const Vec3d& di = change[mesh_.faces[f][i]];
+            const Vec3d& di = change[mesh_.face(f)[i]];
             e += 2 * di.dot(sums[f].we[i]);
-            for (std::size_t j = 0; j < 3; ++j) e += sums[f].ww[i][j] * di.dot(change[mesh_.faces[f][j]]);
+            for (std::size_t j = 0; j < 3; ++j) e += sums[f].ww[i][j] * di.dot(change[mesh_.face(f)[j]]);
         }
         error_[f] = std::max(0.0, e);
     });
 }
 
-bool Refiner::place(const Star& star, const Vec2f& position, const Vec3f& color, double least_q,
+bool Refiner::place(const OneRing& ring, const Vec2f& position, const Vec3f& color, double least_q,
                     Placement& out) const {
     out.position = position;
     out.cost = {};
-    std::array<CornerSums, Star::kMost> sums;
+    std::array<CornerSums, OneRing::kMaxFaces> sums;
     double ww = 1e-3;
     Vec3d we = Vec3d::Zero();
-    for (std::size_t k = 0; k < static_cast<std::size_t>(star.size); ++k) {
-        const Face& face = mesh_.faces[star.face[k]];
-        const std::size_t i = star.corner[k];
-        add_shape(out.cost, position, mesh_.position[face[(i + 1) % 3]], mesh_.position[face[(i + 2) % 3]]);
-    }
+    for (std::size_t k = 0; k < ring.faces; ++k)
+        add_shape(out.cost, position, vertex_.position[ring.vertex[k]], vertex_.position[ring.vertex[k + 1]]);
     if (!out.cost.legal || out.cost.least_q < std::min(least_q, params_.min_quality)) return false;
-    for (std::size_t k = 0; k < static_cast<std::size_t>(star.size); ++k) {
-        const Face& face = mesh_.faces[star.face[k]];
-        const std::size_t i = star.corner[k];
+    for (std::size_t k = 0; k < ring.faces; ++k) {
         sums[k] =
-            corner_sums(picture_, {position, color}, corner(face[(i + 1) % 3]), corner(face[(i + 2) % 3]));
+            corner_sums(picture_, {position, color}, corner(ring.vertex[k]), corner(ring.vertex[k + 1]));
         ww += sums[k].ww;
         we += sums[k].we;
     }
     out.color = allowed(color - (we / ww).cast<float>());
     const Vec3d change = (out.color - color).cast<double>();
-    for (std::size_t k = 0; k < static_cast<std::size_t>(star.size); ++k) {
+    for (std::size_t k = 0; k < ring.faces; ++k) {
         out.face_error[k] =
             std::max(0.0, sums[k].ee + 2 * change.dot(sums[k].we) + sums[k].ww * change.squaredNorm());
         out.cost.error += out.face_error[k];
@@ -143,25 +149,22 @@ bool Refiner::place(const Star& star, const Vec2f& position, const Vec3f& color,
     return true;
 }
 
-void Refiner::set(const Star& star, Id v, const Placement& placement) {
-    mesh_.position[v] = placement.position;
-    mesh_.color[v] = placement.color;
-    for (std::size_t k = 0; k < static_cast<std::size_t>(star.size); ++k)
-        error_[star.face[k]] = placement.face_error[k];
+void Refiner::set(const OneRing& ring, Id v, const Placement& placement) {
+    vertex_.position[v] = placement.position;
+    vertex_.color[v] = placement.color;
+    for (std::size_t k = 0; k < ring.faces; ++k) error_[ring.face[k]] = placement.face_error[k];
 }
 
 // With e the drawing's error and w the vertex's weight, moving the vertex by d and its colour by s changes a
 // pixel's colour by w (s - G d), G the gradient of the pixel's face. Least squares over s leaves
 //   (sum ww G'G - M'M / ww) d = sum G'we - M'we / ww,   M = sum ww G.
-Vec2f Refiner::newton_step(const Star& star, Id v) const {
+Vec2f Refiner::newton_step(const OneRing& ring, Id v) const {
     double hxx = 0, hxy = 0, hyy = 0, ww = 1e-3;
     Vec2d rhs = Vec2d::Zero(), center = Vec2d::Zero();
     Vec3d mx = Vec3d::Zero(), my = Vec3d::Zero(), we = Vec3d::Zero();
     const Corner own = corner(v);
-    for (std::size_t k = 0; k < static_cast<std::size_t>(star.size); ++k) {
-        const Face& face = mesh_.faces[star.face[k]];
-        const std::size_t i = star.corner[k];
-        const Corner b = corner(face[(i + 1) % 3]), c = corner(face[(i + 2) % 3]);
+    for (std::size_t k = 0; k < ring.faces; ++k) {
+        const Corner b = corner(ring.vertex[k]), c = corner(ring.vertex[k + 1]);
         const CornerSums sums = corner_sums(picture_, own, b, c);
         const Vec2d pb = (b.position - own.position).cast<double>(),
                     pc = (c.position - own.position).cast<double>();
@@ -178,20 +181,20 @@ Vec2f Refiner::newton_step(const Star& star, Id v) const {
         ww += sums.ww;
         center += pb + pc;
     }
-    center /= 2 * star.size;
+    center /= static_cast<double>(2 * ring.faces);
     hxx -= mx.squaredNorm() / ww;
     hxy -= mx.dot(my) / ww;
     hyy -= my.squaredNorm() / ww;
     rhs -= Vec2d(mx.dot(we), my.dot(we)) / ww;
     // A pull to the ring's centre: what shape weighs, and a little where the colours say nothing.
     const double pull =
-        1e-3 * (hxx + hyy) + 1e-6 + (star.closed ? shape_unit_ / (1 + center.squaredNorm()) : 0);
+        1e-3 * (hxx + hyy) + 1e-6 + (ring.closed ? shape_unit_ / (1 + center.squaredNorm()) : 0);
     hxx += pull;
     hyy += pull;
-    if (star.closed) rhs += shape_unit_ / (1 + center.squaredNorm()) * center;
-    const std::uint8_t fixed = mesh_.fixed[v];
-    if (fixed == RefineMesh::kFixedX) return {0, static_cast<float>(rhs.y() / hyy)};
-    if (fixed == RefineMesh::kFixedY) return {static_cast<float>(rhs.x() / hxx), 0};
+    if (ring.closed) rhs += shape_unit_ / (1 + center.squaredNorm()) * center;
+    const std::uint8_t fixed = vertex_.fixed[v];
+    if (fixed == RefineVertices::kFixedX) return {0, static_cast<float>(rhs.y() / hyy)};
+    if (fixed == RefineVertices::kFixedY) return {static_cast<float>(rhs.x() / hxx), 0};
     const double det = hxx * hyy - hxy * hxy;
     if (!(det > 0)) return {0, 0};
     return {static_cast<float>((hyy * rhs.x() - hxy * rhs.y()) / det),
@@ -199,29 +202,27 @@ Vec2f Refiner::newton_step(const Star& star, Id v) const {
 }
 
 bool Refiner::move_vertex(Id v) {
-    Star star;
-    if (mesh_.fixed[v] == RefineMesh::kFixed || !mesh_.star(v, star)) return false;
-    const Cost before = cost_of(star);
-    Vec2f step = newton_step(star, v);
+    OneRing ring;
+    if (vertex_.fixed[v] == RefineVertices::kFixed || !mesh_.ring(v, ring)) return false;
+    const Cost before = cost_of(ring);
+    Vec2f step = newton_step(ring, v);
     double longest = 0;
-    for (std::size_t k = 0; k < static_cast<std::size_t>(star.size); ++k) {
-        const Face& face = mesh_.faces[star.face[k]];
-        longest = std::max(
-            longest,
-            double((mesh_.position[face[(star.corner[k] + 1u) % 3]] - mesh_.position[v]).squaredNorm()));
-    }
+    for (std::size_t k = 0; k < ring.faces; ++k)
+        longest =
+            std::max(longest, double((vertex_.position[ring.vertex[k]] - vertex_.position[v]).squaredNorm()));
     if (!std::isfinite(step.x()) || !std::isfinite(step.y())) return false;
     const float limit = static_cast<float>(0.5 * std::sqrt(longest));
     if (step.norm() > limit) step *= limit / step.norm();
     Placement placement;
     constexpr int kHalvings = 3;
-    Vec2f last = mesh_.position[v];
+    Vec2f last = vertex_.position[v];
     for (int half = 0; half <= kHalvings; ++half, step *= 0.5f) {
-        const Vec2f p(snapped(mesh_.position[v].x() + step.x()), snapped(mesh_.position[v].y() + step.y()));
-        if (p == mesh_.position[v] || p == last) break;
+        const Vec2f p(snapped(vertex_.position[v].x() + step.x()),
+                      snapped(vertex_.position[v].y() + step.y()));
+        if (p == vertex_.position[v] || p == last) break;
         last = p;
-        if (place(star, p, mesh_.color[v], before.least_q, placement) && better(placement.cost, before)) {
-            set(star, v, placement);
+        if (place(ring, p, vertex_.color[v], before.least_q, placement) && better(placement.cost, before)) {
+            set(ring, v, placement);
             return true;
         }
     }
@@ -230,35 +231,31 @@ bool Refiner::move_vertex(Id v) {
 
 std::int64_t Refiner::move_vertices() {
     forget();
-    std::vector<std::uint8_t> moved(mesh_.position.size(), false);
-    for (const std::vector<Id>& members : vertex_coloring(mesh_.faces, mesh_.position.size()))
+    std::vector<std::uint8_t> moved(mesh_.vertices(), false);
+    for (const std::vector<Id>& members : vertex_coloring(mesh_.faces(), mesh_.vertices()))
         for_each_id(members.size(), [&](Id k) { moved[members[k]] = move_vertex(members[k]); });
     return std::count(moved.begin(), moved.end(), true);
 }
 
-bool Refiner::flip_is_better(Id f, int i, double& first, double& second) const {
-    const auto n = static_cast<std::size_t>(i);
-    const Id g = mesh_.across[f][n];
-    const Id p = mesh_.faces[f][n], a = mesh_.faces[f][(n + 1) % 3], b = mesh_.faces[f][(n + 2) % 3];
-    const std::size_t j = mesh_.across[g][0] == f ? 0 : mesh_.across[g][1] == f ? 1 : 2;
-    const Id q = mesh_.faces[g][j];
+bool Refiner::flip_is_better(Id f, std::size_t i, Id g, double& first, double& second) const {
+    const Id p = mesh_.face(f)[i], a = mesh_.face(f)[(i + 1) % 3], b = mesh_.face(f)[(i + 2) % 3];
+    const Id q = mesh_.apex(g, f);
     Cost before, after;
-    add_shape(after, mesh_.position[p], mesh_.position[a], mesh_.position[q]);
-    add_shape(after, mesh_.position[q], mesh_.position[b], mesh_.position[p]);
+    add_shape(after, vertex_.position[p], vertex_.position[a], vertex_.position[q]);
+    add_shape(after, vertex_.position[q], vertex_.position[b], vertex_.position[p]);
     if (!after.legal) return false;
     before.error = error_[f] + error_[g];
-    add_shape(before, mesh_.position[p], mesh_.position[a], mesh_.position[b]);
-    add_shape(before, mesh_.position[q], mesh_.position[b], mesh_.position[a]);
+    add_shape(before, vertex_.position[p], vertex_.position[a], vertex_.position[b]);
+    add_shape(before, vertex_.position[q], vertex_.position[b], vertex_.position[a]);
     first = face_error({p, a, q});
     second = face_error({q, b, p});
     after.error = first + second;
     return better(after, before);
 }
 
-bool Refiner::flip_if_better(Id f, int i) {
+bool Refiner::flip_if_better(Id f, std::size_t i, Id g) {
     double first = 0, second = 0;
-    if (!flip_is_better(f, i, first, second)) return false;
-    const Id g = mesh_.across[f][static_cast<std::size_t>(i)];
+    if (!flip_is_better(f, i, g, first, second) || !mesh_.may_flip(f, i)) return false;
     mesh_.flip(f, i);
     error_[f] = first;
     error_[g] = second;
@@ -268,27 +265,27 @@ bool Refiner::flip_if_better(Id f, int i) {
 }
 
 std::int64_t Refiner::flip_edges() {
-    const auto other = [&](Id f, int i) {
-        const Id g = mesh_.live_face(f) ? mesh_.across[f][static_cast<std::size_t>(i)] : kNone;
-        return g != kNone && f < g ? g : kNone;
-    };
     // What each flip would do is found on all threads, and holds for pairs of faces that no flip before has
     // changed: the outcome is that of one edge after the other.
-    std::vector<std::array<bool, 3>> worthwhile(mesh_.faces.size());
-    for_each_id(mesh_.faces.size(), [&](Id f) {
+    const std::size_t faces = mesh_.faces().size();
+    std::vector<Face> across(faces, {kNone, kNone, kNone});
+    std::vector<std::array<bool, 3>> worthwhile(faces);
+    for_each_id(faces, [&](Id f) {
+        if (!mesh_.live_face(f)) return;
         double first = 0, second = 0;
-        for (int i = 0; i < 3; ++i)
-            worthwhile[f][static_cast<std::size_t>(i)] =
-                other(f, i) != kNone && flip_is_better(f, i, first, second);
+        for (std::size_t i = 0; i < 3; ++i) {
+            const Id g = across[f][i] = mesh_.across(f, i);
+            worthwhile[f][i] = g != kNone && f < g && flip_is_better(f, i, g, first, second);
+        }
     });
-    std::vector<bool> flipped(mesh_.faces.size(), false);
+    std::vector<bool> flipped(faces, false);
     std::int64_t flips = 0;
-    for (Id f = 0; f < mesh_.faces.size(); ++f)
-        for (int i = 0; i < 3; ++i) {
-            const Id g = other(f, i);
-            if (g == kNone || !(worthwhile[f][static_cast<std::size_t>(i)] || flipped[f] || flipped[g]))
-                continue;
-            if (!flip_if_better(f, i)) continue;
+    for (Id f = 0; f < faces; ++f)
+        for (std::size_t i = 0; i < 3; ++i) {
+            Id g = across[f][i];
+            const bool is_new = flipped[f] || (g != kNone && flipped[g]);
+            if (is_new) g = mesh_.across(f, i);
+            if (g == kNone || f > g || !(worthwhile[f][i] || is_new) || !flip_if_better(f, i, g)) continue;
             flipped[f] = flipped[g] = true;
             ++flips;
         }

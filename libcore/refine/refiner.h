@@ -5,7 +5,7 @@
 
 #include "libcore/refine/pixel_sums.h"
 #include "libcore/refine/refine.h"
-#include "libcore/refine/refine_mesh.h"
+#include "libcore/refine/refine_vertices.h"
 
 namespace imgmesh {
 
@@ -15,7 +15,7 @@ class Refiner {
     Refiner(const BaseMesh& mesh, const ImagePlanes& picture, const RefineParams& params);
 
     double total_error() const;
-    BaseMesh result() const { return mesh_.compact(); }
+    BaseMesh result() const { return compact(mesh_, vertex_); }
 
     void fit_colors();
     std::int64_t move_vertices();
@@ -40,7 +40,7 @@ class Refiner {
     void forget();
 
   private:
-    // What a star or a pair of faces costs: squared error, and the worst and the summed shape.
+    // What a ring or a pair of faces costs: squared error, and the worst and the summed shape.
     struct Cost {
         double error = 0;    // summed squared error
         double shape = 0;    // sum of 1/q - 1
@@ -52,22 +52,23 @@ class Refiner {
         Vec2f position;
         Vec3f color;
         Cost cost;
-        std::array<double, Star::kMost> face_error;
+        std::array<double, OneRing::kMaxFaces> face_error;
     };
 
-    Corner corner(Id v) const { return {mesh_.position[v], mesh_.color[v]}; }
+    Corner corner(Id v) const { return {vertex_.position[v], vertex_.color[v]}; }
     Vec3f allowed(const Vec3f& color) const;
     bool better(const Cost& now, const Cost& before) const;
     void add_shape(Cost& cost, const Vec2f& a, const Vec2f& b, const Vec2f& c) const;
-    Cost cost_of(const Star& star) const;
-    // The star with v at `position`, without and with its best colour. False where that is not legal.
-    bool place(const Star& star, const Vec2f& position, const Vec3f& color, double least_q,
+    Cost cost_of(const OneRing& ring) const;
+    // The ring with v at `position`, without and with its best colour. False where that is not legal.
+    bool place(const OneRing& ring, const Vec2f& position, const Vec3f& color, double least_q,
                Placement& out) const;
-    Vec2f newton_step(const Star& star, Id v) const;
+    Vec2f newton_step(const OneRing& ring, Id v) const;
     bool move_vertex(Id v);
-    bool flip_is_better(Id f, int i, double& first, double& second) const;  // errors of f and across
-    bool flip_if_better(Id f, int i);
-    void set(const Star& star, Id v, const Placement& placement);
+    // Of the edge opposite corner i of f, across which g lies; `first` and `second` are their errors then.
+    bool flip_is_better(Id f, std::size_t i, Id g, double& first, double& second) const;
+    bool flip_if_better(Id f, std::size_t i, Id g);
+    void set(const OneRing& ring, Id v, const Placement& placement);
 
     struct Insertion {
         Id face;
@@ -81,7 +82,7 @@ class Refiner {
     void relocate(std::size_t most, const std::vector<Removal>& removals,
                   const std::vector<Insertion>& insertions, bool border, std::vector<bool>& touched,
                   std::vector<Id>& fresh);
-    void changed(const Star& star);  // what was known of its vertices holds no more
+    void changed(const OneRing& ring);  // what was known of its vertices holds no more
     void changed(Id f);
     std::vector<Insertion> insertions() const;
     Removal best_removal(Id v) const;
@@ -93,7 +94,8 @@ class Refiner {
 
     const ImagePlanes& picture_;
     RefineParams params_;
-    RefineMesh mesh_;
+    EditMesh mesh_;
+    RefineVertices vertex_;
     std::vector<double> error_;  // of each face
     // The best removal of each vertex, and whether nothing that it depends on has changed since.
     std::vector<Removal> removal_;

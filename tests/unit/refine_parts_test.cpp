@@ -1,16 +1,15 @@
-// Parts of the refinement: spans, sums over pixels, and the editable mesh.
+// Parts of the refinement: spans, sums over pixels, and what vertices may do.
 #include <doctest/doctest.h>
 
 #include <cmath>
 #include <random>
 
-#include "libcore/mesh/adjacency.h"
 #include "libcore/mesh/face_field.h"
 #include "libcore/mesh/vertex_coloring.h"
 #include "libcore/metrics/metrics.h"
 #include "libcore/refine/face_spans.h"
 #include "libcore/refine/pixel_sums.h"
-#include "libcore/refine/refine_mesh.h"
+#include "libcore/refine/refine_vertices.h"
 #include "tests/support/meshes.h"
 #include "tests/support/sample_pictures.h"
 
@@ -29,41 +28,6 @@ BaseMesh colored_grid(int width, int height, int columns, int rows, std::uint32_
     std::mt19937 random(seed);
     for (float& f : mesh.feature) f = static_cast<float>(random() % 100);
     return mesh;
-}
-
-// Neighbours as the mesh keeps them against those found from the faces alone.
-void check_links(const RefineMesh& mesh) {
-    std::vector<Face> live;
-    std::vector<Id> number(mesh.faces.size(), kNone);
-    for (Id f = 0; f < mesh.faces.size(); ++f)
-        if (mesh.live_face(f)) {
-            number[f] = static_cast<Id>(live.size());
-            Face across = mesh.across[f];
-            live.push_back(across);
-        }
-    for (Face& across : live)
-        for (Id& f : across)
-            if (f != kNone) f = number[f];
-    CHECK(live == face_neighbors(mesh.compact()));
-    Star star;
-    for (Id v = 0; v < mesh.position.size(); ++v) {
-        if (!mesh.live_vertex(v) || !mesh.star(v, star)) continue;
-        for (std::size_t k = 0; k < static_cast<std::size_t>(star.size); ++k) {
-            CHECK(mesh.faces[star.face[k]][star.corner[k]] == v);
-            if (k > 0)  // counter-clockwise: the last corner of one is the next corner of the following
-                CHECK(mesh.faces[star.face[k - 1]][(star.corner[k - 1] + 2u) % 3] ==
-                      mesh.faces[star.face[k]][(star.corner[k] + 1u) % 3]);
-        }
-    }
-}
-
-void check_sound(const RefineMesh& mesh, double area) {
-    const MeshQuality q = mesh_quality(mesh.compact());
-    CHECK(q.vertices == static_cast<std::int64_t>(mesh.vertex_count()));
-    CHECK(q.euler == 1);
-    CHECK(q.nonmanifold_edges + q.nonmanifold_vertices == 0);
-    CHECK(q.area == area);
-    check_links(mesh);
 }
 
 }  // namespace
@@ -173,94 +137,17 @@ TEST_CASE("sums over the pixels of a face") {
     }
 }
 
-// Whatever is done in whatever order: the mesh stays a triangulation of the same rectangle.
-TEST_CASE("refine mesh: flips, splits and collapses keep the rectangle and the neighbours") {
-    for (std::uint32_t seed = 1; seed <= 6; ++seed) {
-        INFO("seed " << seed);
-        const BaseMesh start = colored_grid(60, 40, 9, 7, seed);
-        const double area = 59.0 * 39.0;
-        RefineMesh mesh(start);
-        check_sound(mesh, area);
-        std::mt19937 random(seed);
-        const auto positive = [&](Id a, Id b, Id c) {
-            return signed_area2(mesh.position[a], mesh.position[b], mesh.position[c]) > 0;
-        };
-        int flips = 0, collapses = 0, splits = 0;
-        for (int step = 0; step < 400; ++step) {
-            const Id f = static_cast<Id>(random() % mesh.faces.size());
-            const std::size_t i = random() % 3;
-            if (!mesh.live_face(f)) continue;
-            const Face face = mesh.faces[f];
-            const Id p = face[i], a = face[(i + 1) % 3], b = face[(i + 2) % 3];
-            switch (random() % 4) {
-                case 0: {
-                    const Id g = mesh.across[f][i];
-                    if (g == kNone) break;
-                    Id q = kNone;
-                    for (const Id v : mesh.faces[g])
-                        if (v != a && v != b) q = v;
-                    if (!positive(p, a, q) || !positive(q, b, p)) break;
-                    mesh.flip(f, static_cast<int>(i));
-                    CHECK(mesh.faces[f] == Face{p, a, q});
-                    CHECK(mesh.faces[g] == Face{q, b, p});
-                    ++flips;
-                    break;
-                }
-                case 1: {
-                    const Vec2f c = (mesh.position[p] + mesh.position[a] + mesh.position[b]) / 3;
-                    const Vec2f at(snapped(c.x()), snapped(c.y()));
-                    const auto fits = [&](Id u, Id v) {
-                        return signed_area2(at, mesh.position[u], mesh.position[v]) > 0;
-                    };
-                    if (!fits(p, a) || !fits(a, b) || !fits(b, p)) break;
-                    CHECK(mesh.fixed[mesh.split_face(f, at, Vec3f::Zero())] == RefineMesh::kFree);
-                    ++splits;
-                    break;
-                }
-                case 2: {
-                    const Vec2f at = (mesh.position[a] + mesh.position[b]) / 2;
-                    if (at != Vec2f(snapped(at.x()), snapped(at.y()))) break;
-                    const bool border = mesh.across[f][i] == kNone;
-                    const Id v = mesh.split_edge(f, static_cast<int>(i), at, Vec3f::Zero());
-                    CHECK((mesh.fixed[v] != RefineMesh::kFree) == border);
-                    ++splits;
-                    break;
-                }
-                default: {
-                    Star star;
-                    if (!mesh.star(p, star) || !star.closed) break;
-                    bool fine = true;
-                    for (std::size_t k = 0; k < static_cast<std::size_t>(star.size); ++k) {
-                        const Face& around = mesh.faces[star.face[k]];
-                        const Id s = around[(star.corner[k] + 1u) % 3], t = around[(star.corner[k] + 2u) % 3];
-                        if (s != a && t != a) fine = fine && positive(a, s, t);
-                    }
-                    if (!fine) break;
-                    mesh.collapse(star, p, a);
-                    CHECK_FALSE(mesh.live_vertex(p));
-                    ++collapses;
-                }
-            }
-            if (step % 40 == 0) check_sound(mesh, area);
-        }
-        check_sound(mesh, area);
-        CHECK(flips > 10);
-        CHECK(collapses > 10);
-        CHECK(splits > 10);
-    }
-}
-
-TEST_CASE("refine mesh: corners are fixed, vertices of the sides slide, others are free") {
-    const RefineMesh mesh(colored_grid(60, 40, 5, 4, 7));
-    for (Id v = 0; v < mesh.position.size(); ++v) {
-        const bool x = mesh.position[v].x() == 0 || mesh.position[v].x() == 59;
-        const bool y = mesh.position[v].y() == 0 || mesh.position[v].y() == 39;
-        CHECK(mesh.fixed[v] == ((x ? RefineMesh::kFixedX : 0) | (y ? RefineMesh::kFixedY : 0)));
+TEST_CASE("refine vertices: corners are fixed, vertices of the sides slide, others are free") {
+    const RefineVertices vertices(colored_grid(60, 40, 5, 4, 7));
+    for (Id v = 0; v < vertices.position.size(); ++v) {
+        const bool x = vertices.position[v].x() == 0 || vertices.position[v].x() == 59;
+        const bool y = vertices.position[v].y() == 0 || vertices.position[v].y() == 39;
+        CHECK(vertices.fixed[v] == ((x ? RefineVertices::kFixedX : 0) | (y ? RefineVertices::kFixedY : 0)));
     }
 }
 
 // An L: the vertices of its inner corner and of the two sides there are not on a side of the bounding box.
-TEST_CASE("refine mesh: a boundary inside the bounding box is fixed") {
+TEST_CASE("refine vertices: a boundary inside the bounding box is fixed") {
     BaseMesh mesh = jittered_grid(0, 0, 40, 40, 4, 4, 3);
     for (int j = 0; j < 5; ++j)
         for (int i = 0; i < 5; ++i)
@@ -270,14 +157,51 @@ TEST_CASE("refine mesh: a boundary inside the bounding box is fixed") {
         const Vec2f c = mesh.position[face[0]] + mesh.position[face[1]] + mesh.position[face[2]];
         return c.x() > 60 && c.y() > 60;
     });
-    const RefineMesh l(mesh);
+    const RefineVertices l(mesh);
     const auto fixed_at = [&](int i, int j) { return l.fixed[static_cast<std::size_t>(j * 5 + i)]; };
-    CHECK(fixed_at(2, 2) == RefineMesh::kFixed);  // the inner corner
-    CHECK(fixed_at(3, 2) == RefineMesh::kFixed);  // straight on, yet inside the box
-    CHECK(fixed_at(2, 3) == RefineMesh::kFixed);
-    CHECK(fixed_at(4, 2) == RefineMesh::kFixed);  // an end of the L
-    CHECK(fixed_at(1, 4) == RefineMesh::kFixedY);
-    CHECK(fixed_at(0, 1) == RefineMesh::kFixedX);
-    CHECK(fixed_at(1, 1) == RefineMesh::kFree);
-    CHECK_FALSE(l.live_vertex(4 * 5 + 4));
+    CHECK(fixed_at(2, 2) == RefineVertices::kFixed);  // the inner corner
+    CHECK(fixed_at(3, 2) == RefineVertices::kFixed);  // straight on, yet inside the box
+    CHECK(fixed_at(2, 3) == RefineVertices::kFixed);
+    CHECK(fixed_at(4, 2) == RefineVertices::kFixed);  // an end of the L
+    CHECK(fixed_at(1, 4) == RefineVertices::kFixedY);
+    CHECK(fixed_at(0, 1) == RefineVertices::kFixedX);
+    CHECK(fixed_at(1, 1) == RefineVertices::kFree);
+}
+
+// What comes out is what is alive, numbered anew.
+TEST_CASE("refine vertices: places are taken again, and compact() leaves out what has gone") {
+    const BaseMesh start = colored_grid(30, 20, 3, 2, 5);
+    RefineVertices vertices(start);
+    EditMesh mesh = refine_faces(start);
+    const BaseMesh same = compact(mesh, vertices);
+    CHECK(same.position == start.position);
+    CHECK(same.feature == start.feature);
+    CHECK(same.faces == start.faces);
+    OneRing ring;
+    for (Id v = 0; v < start.vertex_count(); ++v) {  // rings inside begin with the last face
+        REQUIRE(mesh.ring(v, ring));
+        if (ring.closed)
+            CHECK(ring.face[0] == *std::max_element(ring.face.begin(), ring.face.begin() + ring.faces));
+    }
+    REQUIRE(mesh.ring(5, ring));
+    mesh.collapse(ring, ring.vertex[0]);
+    BaseMesh out = compact(mesh, vertices);
+    CHECK(out.vertex_count() == 11);
+    CHECK(out.position[5] == start.position[6]);
+    const MeshQuality q = mesh_quality(out);
+    CHECK(q.euler == 1);
+    CHECK(q.nonmanifold_edges + q.nonmanifold_vertices == 0);
+
+    const Id face = static_cast<Id>(
+        std::find_if(mesh.faces().begin(), mesh.faces().end(), [](const Face& f) { return f[0] != kNone; }) -
+        mesh.faces().begin());
+    CHECK(mesh.split_face(face) == 5);
+    vertices.set(5, {1, 2}, {3, 4, 5}, RefineVertices::kFixedX);
+    vertices.set(mesh.split_face(face), {6, 7}, {8, 9, 10}, RefineVertices::kFree);
+    out = compact(mesh, vertices);
+    CHECK(out.vertex_count() == 13);
+    CHECK(out.position[5] == Vec2f(1, 2));
+    CHECK(out.position[12] == Vec2f(6, 7));
+    CHECK(Vec3f(out.feature_of(12)) == Vec3f(8, 9, 10));
+    CHECK(vertices.fixed[5] == RefineVertices::kFixedX);
 }
