@@ -38,9 +38,9 @@ using Names = std::vector<std::string>;
 TEST_CASE("feature space: R, G and B together are the colour, wherever they stand, else Y is") {
     CHECK(split_names({"R", "G", "B"}).color == Names{"R", "G", "B"});
     CHECK(split_names({"Z", "B", "Y", "R", "G"}).color == Names{"R", "G", "B"});
-    CHECK(split_names({"Z", "B", "Y", "R", "G"}).plain == Names{"Z", "Y"});
+    CHECK(split_names({"Z", "B", "Y", "R", "G"}).auxiliary == Names{"Z", "Y"});
     CHECK(split_names({"R", "Y", "B"}).color == Names{"Y"});
-    CHECK(split_names({"R", "Y", "B"}).plain == Names{"R", "B"});
+    CHECK(split_names({"R", "Y", "B"}).auxiliary == Names{"R", "B"});
     CHECK(split_names({"R", "B"}).color.empty());
     CHECK(split_names({"R", "B"}).features() == 2);
     CHECK(split_names({"Y", "B"}).features() == 4);
