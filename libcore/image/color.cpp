@@ -11,9 +11,13 @@
 #include "libcore/base/error.h"
 #include "libcore/base/parallel.h"
 #include "libcore/base/parallel_vector.h"
+#include "libcore/image/cie.h"
 
 namespace imgmesh {
 namespace {
+
+// Rows of one block: enough work to be worth handing over, few enough for every thread to get some.
+constexpr int kGrainRows = 16;
 
 constexpr std::pair<ColorSpace, std::string_view> kNames[] = {
     {ColorSpace::kSrgb, "sRGB"},         {ColorSpace::kLinear, "linear"},
@@ -61,7 +65,7 @@ using Matrix = Eigen::Matrix3d;
 Matrix xyz_matrix(double rx, double ry, double gx, double gy, double bx, double by) {
     Matrix m;
     m << rx / ry, gx / gy, bx / by, 1, 1, 1, (1 - rx - ry) / ry, (1 - gx - gy) / gy, (1 - bx - by) / by;
-    const Vec3d white(0.3127 / 0.3290, 1.0, (1 - 0.3127 - 0.3290) / 0.3290);
+    const Vec3d white(kWhiteX / kWhiteY, 1.0, (1 - kWhiteX - kWhiteY) / kWhiteY);
     const Vec3d scale = m.inverse() * white;
     return m * scale.asDiagonal();
 }
@@ -82,11 +86,6 @@ const Matrices& matrices() {
 double cube(double x) {
     return x * x * x;
 }
-
-constexpr double kLinearSlope = 24389.0 / 27.0;   // L* per Y in the linear branch
-constexpr double kLinearLimit = 216.0 / 24389.0;  // Y where the branches meet
-constexpr double kWhiteU = 4 * 0.3127 / (-2 * 0.3127 + 12 * 0.3290 + 3);
-constexpr double kWhiteV = 9 * 0.3290 / (-2 * 0.3127 + 12 * 0.3290 + 3);
 
 }  // namespace
 
@@ -151,7 +150,8 @@ Vec3f linear_from_luv(const Vec3f& luv) {
         v += luv[2] / (13 * lightness);
     }
     // Far outside any gamut v' can reach 0 or less, where X and Z are undefined; stay just above.
-    v = std::max(v, 1e-3);
+    constexpr double kLeastV = 1e-3;
+    v = std::max(v, kLeastV);
     const Vec3d xyz(y * 9 * u / (4 * v), y, y * (12 - 3 * u - 20 * v) / (4 * v));
     return (matrices().xyz_to_srgb * xyz).cast<float>();
 }
@@ -216,7 +216,7 @@ FeatureImage luv_image(const Image& image, Range range) {
     const DecodeTable decode(image.color_space);
     const bool tabulated = image.sample_type == SampleType::kUint8 && has_srgb_primaries(image.color_space);
     FeatureImage out{image.width, image.height, 3, parallel_vector<float>(image.pixel_count() * 3)};
-    parallel_blocks(0, image.height, 16, [&](int first, int last) {
+    parallel_blocks(0, image.height, kGrainRows, [&](int first, int last) {
         for (int y = first; y < last; ++y) {
             const float* in = image.row(y).data();
             float* dst = out.row(y).data();

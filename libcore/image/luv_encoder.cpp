@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "libcore/image/cie.h"
+
 namespace imgmesh {
 namespace {
 
@@ -14,22 +16,21 @@ constexpr int kCurveSteps = 4096;
 constexpr int kBlock = 64;  // colours in flight: a dozen planes of them fit the first-level cache
 using Plane = Eigen::Array<float, Eigen::Dynamic, 1, 0, kBlock, 1>;
 
-// CIE 1976 L*u*v*: where the branches of L* meet, L* per Y below that, the white D65 (as in color.cpp).
-constexpr float kLinearLightness = 8.0f;
-constexpr float kLinearSlope = 24389.0f / 27.0f;
-constexpr float kWhiteU = static_cast<float>(4 * 0.3127 / (-2 * 0.3127 + 12 * 0.3290 + 3));
-constexpr float kWhiteV = static_cast<float>(9 * 0.3290 / (-2 * 0.3127 + 12 * 0.3290 + 3));
+// CIE 1976 L*u*v* in single precision.
+constexpr float kLinearLightness = float(kLinearSlope * kLinearLimit);
+static_assert(kLinearLightness == 8);
+constexpr float kLightnessPerY = float(kLinearSlope), kU = float(kWhiteU), kV = float(kWhiteV);
 
 // With U = 13 L u', V = 13 L v' the inverse of L*u*v* needs one division: X = 9 U k, Z = (156 L - 3 U - 20 V)
 // k, k = Y / 4 V. The two branches of Y are added: the cube is constant below L* = 8, the line above.
 void xyz_from_luv(const Plane& l, const Plane& u, const Plane& v, Plane (&xyz)[3]) {
     constexpr float kTiny = 1e-30f;  // replaces L <= 0, where chroma is dropped
     const Plane lightness = l.max(kTiny), chroma = (l * (1 / kTiny)).max(0.0f).min(1.0f);
-    const Plane su = 13 * kWhiteU * lightness + chroma * u;
+    const Plane su = 13 * kU * lightness + chroma * u;
     // v' >= 0.001, as in linear_from_luv().
-    const Plane sv = (13 * kWhiteV * lightness + chroma * v).max(0.013f * lightness);
+    const Plane sv = (13 * kV * lightness + chroma * v).max(0.013f * lightness);
     xyz[1] = ((l.max(kLinearLightness) + 16.0f) * (1.0f / 116)).cube() +
-             (l.min(kLinearLightness) - kLinearLightness) * (1 / kLinearSlope);
+             (l.min(kLinearLightness) - kLinearLightness) * (1 / kLightnessPerY);
     const Plane k = 0.25f * xyz[1] / sv;
     xyz[0] = 9.0f * su * k;
     xyz[2] = (156.0f * lightness - 3.0f * su - 20.0f * sv) * k;

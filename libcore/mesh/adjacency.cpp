@@ -31,4 +31,19 @@ std::vector<Face> face_neighbors(const BaseMesh& mesh) {
     return neighbors;
 }
 
+VertexCorners vertex_corners(std::span<const Face> faces, std::size_t vertices) {
+    VertexCorners out;
+    out.first.assign(vertices + 1, 0);
+    for (const Face& face : faces)
+        for (const Id v : face)
+            if (face[0] != kNone) ++out.first[v + 1];
+    for (std::size_t v = 0; v < vertices; ++v) out.first[v + 1] += out.first[v];
+    out.corner.resize(out.first[vertices]);
+    std::vector<std::size_t> next(out.first.begin(), out.first.end() - 1);
+    for (std::size_t f = 0; f < faces.size(); ++f)
+        for (std::size_t k = 0; k < 3; ++k)
+            if (faces[f][0] != kNone) out.corner[next[faces[f][k]]++] = f * 3 + k;
+    return out;
+}
+
 }  // namespace imgmesh

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "libcore/image/cie.h"
 #include "libcore/image/color.h"
 
 namespace imgmesh {
@@ -35,8 +36,7 @@ double hue_angle(double a, double b) {
 
 // The function f of L*a*b* (CIE 15): the cube root, and its tangent near black.
 double lab_curve(double t) {
-    constexpr double kLimit = 216.0 / 24389.0, kSlope = 24389.0 / 27.0;
-    return t > kLimit ? std::cbrt(t) : (kSlope * t + 16) / 116;
+    return t > kLinearLimit ? std::cbrt(t) : (kLinearSlope * t + 16) / 116;
 }
 
 }  // namespace

@@ -6,17 +6,13 @@
 #include "libcore/base/error.h"
 #include "libcore/base/parallel.h"
 #include "libcore/base/parallel_vector.h"
+#include "libcore/mesh/grid_area.h"
 #include "libcore/metrics/metrics.h"
 
 namespace imgmesh {
 namespace {
 
 constexpr int kGrainRows = 32;
-
-double area2(const Vec2d& a, const Vec2d& b, const Vec2d& c) {
-    const Vec2d ab = b - a, ac = c - a;
-    return ab.y() * ac.x() - ab.x() * ac.y();  // as signed_area2()
-}
 
 // Returns where the map places a pixel; NaN for one without a face.
 Vec2d mapped_position(const BaseMesh& mesh, const PixelCoord& coord) {
@@ -45,8 +41,9 @@ struct MappedRows {
 // finite are false, so its triangles and steps do not count. q.max_jump is squared here.
 void measure_row(const MappedRows& rows, int width, int height, int y, MapQuality& q) {
     const auto at = [&](int x, int row) -> const Vec2d& { return rows.at(x, row); };
+    // Counter-clockwise, as the faces of meshes are.
     const auto triangle = [&](const Vec2d& a, const Vec2d& b, const Vec2d& c) {
-        const double area = area2(a, b, c);
+        const double area = grid_area2(a, c, b);
         q.flipped_triangles += area <= 0;
         if (area < q.min_area2) q.min_area2 = area;
     };

@@ -1,46 +1,27 @@
 // Topology: all counts follow from the list of half-edges, sorted by their two ends.
 #include <algorithm>
-#include <numeric>
 #include <tuple>
 
+#include "libcore/base/disjoint_sets.h"
 #include "libcore/metrics/metrics.h"
 #include "libcore/metrics/triangle_shape.h"
 
 namespace imgmesh {
 namespace {
 
-// Disjoint sets of 0 .. n-1.
-class Sets {
-  public:
-    explicit Sets(std::size_t n) : parent_(n) { std::iota(parent_.begin(), parent_.end(), std::size_t{0}); }
-    std::size_t find(std::size_t i) {
-        while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-        return i;
-    }
-    void join(std::size_t i, std::size_t j) { parent_[find(i)] = find(j); }
-    std::int64_t count() const {
-        std::int64_t roots = 0;
-        for (std::size_t i = 0; i < parent_.size(); ++i) roots += parent_[i] == i;
-        return roots;
-    }
-
-  private:
-    std::vector<std::size_t> parent_;
-};
-
 // One side of a face. Corners are numbered 3 face + place.
 struct HalfEdge {
     Id low, high;
-    std::size_t low_corner, high_corner;
+    Id low_corner, high_corner;
     bool rising;  // whether it runs from low to high
 };
 
 std::vector<HalfEdge> sorted_half_edges(const BaseMesh& mesh) {
     std::vector<HalfEdge> edges;
     edges.reserve(mesh.faces.size() * 3);
-    for (std::size_t f = 0; f < mesh.faces.size(); ++f)
-        for (std::size_t k = 0; k < 3; ++k) {
-            const std::size_t next = (k + 1) % 3;
+    for (Id f = 0; f < mesh.faces.size(); ++f)
+        for (Id k = 0; k < 3; ++k) {
+            const Id next = (k + 1) % 3;
             const Id a = mesh.faces[f][k], b = mesh.faces[f][next];
             edges.push_back(a < b ? HalfEdge{a, b, 3 * f + k, 3 * f + next, true}
                                   : HalfEdge{b, a, 3 * f + next, 3 * f + k, false});
@@ -53,8 +34,8 @@ std::vector<HalfEdge> sorted_half_edges(const BaseMesh& mesh) {
 
 void measure_topology(const BaseMesh& mesh, MeshQuality& q) {
     const std::vector<HalfEdge> edges = sorted_half_edges(mesh);
-    Sets fans(mesh.faces.size() * 3);  // sets of corners that are connected across shared edges
-    Sets components(mesh.faces.size());
+    DisjointSets fans(mesh.faces.size() * 3);  // sets of corners that are connected across shared edges
+    DisjointSets components(mesh.faces.size());
     for (std::size_t first = 0, last; first < edges.size(); first = last) {
         last = first + 1;
         while (last < edges.size() && edges[last].low == edges[first].low &&
@@ -73,7 +54,7 @@ void measure_topology(const BaseMesh& mesh, MeshQuality& q) {
 
     std::vector<std::uint32_t> fans_at(mesh.vertex_count());
     std::vector<bool> used(mesh.vertex_count());
-    for (std::size_t corner = 0; corner < mesh.faces.size() * 3; ++corner) {
+    for (Id corner = 0; corner < mesh.faces.size() * 3; ++corner) {
         const Id v = mesh.faces[corner / 3][corner % 3];
         used[v] = true;
         fans_at[v] += fans.find(corner) == corner;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "libcore/base/grid_neighbors.h"
 #include "libcore/metrics/metrics.h"
 #include "libcore/metrics/triangle_shape.h"
 
@@ -59,12 +60,8 @@ MapDistributions map_distributions(const BaseMesh& mesh, const PixelMap& map) {
         to.push_back(static_cast<float>((a - b).norm()));
     };
     for (int y = 0; y < map.height; ++y)
-        for (int x = 0; x < map.width; ++x) {
-            const Vec2d& here = image[map.index(x, y)];
-            add_distance(displacements, here, Vec2d(x, y));
-            if (map.contains(x + 1, y)) add_distance(jumps, here, image[map.index(x + 1, y)]);
-            if (map.contains(x, y + 1)) add_distance(jumps, here, image[map.index(x, y + 1)]);
-        }
+        for (int x = 0; x < map.width; ++x) add_distance(displacements, image[map.index(x, y)], Vec2d(x, y));
+    for_neighbor_pixels(map, [&](std::size_t i, std::size_t j) { add_distance(jumps, image[i], image[j]); });
 
     std::vector<std::int64_t> pixels(mesh.faces.size());
     for (const PixelCoord& coord : map)

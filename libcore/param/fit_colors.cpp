@@ -6,6 +6,7 @@
 
 #include "libcore/base/parallel.h"
 #include "libcore/image/channel_count.h"
+#include "libcore/mesh/adjacency.h"
 #include "libcore/mesh/vertex_coloring.h"
 
 namespace imgmesh {
@@ -102,25 +103,6 @@ std::vector<FaceSums<C>> sum_over_pixels(const BaseMesh& mesh, const FeatureImag
     return sums;
 }
 
-// For every vertex v the face corners that it is, as face * 3 + corner, from index first[v] to first[v +
-// 1].
-struct CornersOfVertices {
-    std::vector<std::size_t> first, corner;
-};
-
-CornersOfVertices corners_of_vertices(const BaseMesh& mesh) {
-    CornersOfVertices out;
-    out.first.assign(mesh.vertex_count() + 1, 0);
-    for (const Face& face : mesh.faces)
-        for (const Id v : face) ++out.first[v + 1];
-    for (std::size_t v = 0; v < mesh.vertex_count(); ++v) out.first[v + 1] += out.first[v];
-    out.corner.resize(mesh.faces.size() * 3);
-    std::vector<std::size_t> next(out.first.begin(), out.first.end() - 1);
-    for (std::size_t f = 0; f < mesh.faces.size(); ++f)
-        for (std::size_t a = 0; a < 3; ++a) out.corner[next[mesh.faces[f][a]]++] = f * 3 + a;
-    return out;
-}
-
 // The normal equations of one vertex: diagonal x + sum of weight other = rhs.
 template <int C>
 struct VertexSystem {
@@ -140,16 +122,16 @@ struct ClassSystem {
     std::vector<VertexSystem<C>> vertices;
     std::vector<Link> links;
 
-    ClassSystem(const BaseMesh& mesh, const std::vector<FaceSums<C>>& sums, const CornersOfVertices& corners,
+    ClassSystem(const BaseMesh& mesh, const std::vector<FaceSums<C>>& sums, const VertexCorners& corners,
                 const std::vector<Id>& members) {
         const int features = feature_count<C>(mesh.channels);
         vertices.reserve(members.size() + 1);
         for (const Id v : members) {
             VertexSystem<C>& system = vertices.emplace_back(VertexSystem<C>{v, 0, {}, links.size()});
-            for (std::size_t k = corners.first[v]; k < corners.first[v + 1]; ++k) {
-                const FaceSums<C>& sum = sums[corners.corner[k] / 3];
-                const Face& face = mesh.faces[corners.corner[k] / 3];
-                const std::size_t a = corners.corner[k] % 3;
+            for (const std::size_t corner : corners.of(v)) {
+                const FaceSums<C>& sum = sums[corner / 3];
+                const Face& face = mesh.faces[corner / 3];
+                const std::size_t a = corner % 3;
                 system.diagonal += sum.gram(a, a);
                 for (int c = 0; c < features; ++c) system.rhs[c] += sum.rhs(a, c);
                 for (const std::size_t b : {(a + 1) % 3, (a + 2) % 3})
@@ -170,7 +152,7 @@ void fit(BaseMesh& mesh, const FeatureImage& feature, const std::vector<FitTerm>
     std::vector<std::optional<ClassSystem<C>>> systems(classes.size());
     {
         const std::vector<FaceSums<C>> sums = sum_over_pixels<C>(mesh, feature, terms);
-        const CornersOfVertices corners = corners_of_vertices(mesh);
+        const VertexCorners corners = vertex_corners(mesh.faces, mesh.vertex_count());
         parallel_blocks(0, as_int(classes.size()), 1, [&](int n, int) {
             const std::size_t k = as_index(n);
             systems[k].emplace(mesh, sums, corners, classes[k]);

@@ -8,22 +8,32 @@
 
 #include "libcore/base/parallel.h"
 #include "libcore/base/parallel_vector.h"
+#include "libcore/mesh/grid_area.h"
 #include "libcore/mesh/weight_grid.h"
 
 namespace imgmesh {
 namespace {
 
-// Twice the area of p, q, r, positive in the grid's own orientation. Differences of stored positions are
-// exact.
-double area2(const Vec2d& p, const Vec2d& q, const Vec2d& r) {
-    return (q.x() - p.x()) * (r.y() - p.y()) - (q.y() - p.y()) * (r.x() - p.x());
-}
+// Rows of one block: enough work to be worth handing over, few enough for every thread to get some.
+constexpr int kGrainRows = 16;
 
-// The least of the four triangles of a cell. Triangles with a corner outside a mask are NaN and do not
-// count.
+// Few cells need repair: one in a thousand in photographs with few vertices, none at 1 %. Where whole regions
+// fold, the faces are too large, and trying each cell would take minutes: beyond one cell in 64, and 64 more,
+// the map is given up.
+constexpr std::size_t kFewCells = 64, kCellsPerRepair = 64;
+// Passes over the bad cells, at most.
+constexpr int kPasses = 40;
+// Distances of the candidates, doubled from a fraction of the rounding error up to most of a pixel, in each
+// of so many directions.
+constexpr double kNearest = 0.01, kFarthest = 1.0;
+constexpr int kDirections = 8;
+
+// The least of the four triangles of a cell; differences of stored positions are exact. Triangles with a
+// corner outside a mask are NaN and do not count.
 double cell_area2(const Vec2d& tl, const Vec2d& tr, const Vec2d& bl, const Vec2d& br) {
     double least = std::numeric_limits<double>::infinity();
-    for (const double area : {area2(tl, tr, br), area2(tl, br, bl), area2(tl, tr, bl), area2(tr, br, bl)})
+    for (const double area :
+         {grid_area2(tl, tr, br), grid_area2(tl, br, bl), grid_area2(tl, tr, bl), grid_area2(tr, br, bl)})
         if (area < least) least = area;
     return least;
 }
@@ -40,21 +50,18 @@ class Storing {
           map_(pixels.width, pixels.height, parallel_vector<PixelCoord>(pixels.face.size()), precision) {}
 
     std::optional<PixelMap> run() {
-        parallel_blocks(0, map_.height, 16, [&](int first, int last) {
+        parallel_blocks(0, map_.height, kGrainRows, [&](int first, int last) {
             for (int y = first; y < last; ++y)
                 for (int x = 0; x < map_.width; ++x)
                     if (const Id face = pixels_.face[pixels_.index(x, y)]; face != kNone)
                         map_.at(x, y) = rounded(face, pixels_.image_of(x, y).cast<double>());
         });
-        // Few cells need repair: one in a thousand in photographs with few vertices, none at 1 %. Where whole
-        // regions fold, the faces are too large, and trying each cell would take minutes.
-        const std::size_t mendable = 64 + map_.size() / 64;
-        constexpr int kPasses = 40;
+        const std::size_t repairable = kFewCells + map_.size() / kCellsPerRepair;
         int idle = 0;  // passes without a move; odd and even ones try different places
         for (int pass = 0; pass < kPasses && idle < 2; ++pass) {
             const std::vector<std::pair<int, int>> cells = bad_cells();
             if (cells.empty()) return std::move(map_);
-            if (cells.size() > mendable) return std::nullopt;
+            if (cells.size() > repairable) return std::nullopt;
             bool moved = false;
             for (const auto& [x, y] : cells) moved |= repair(x, y, pass);
             idle = moved ? 0 : idle + 1;
@@ -89,7 +96,7 @@ class Storing {
     std::vector<std::pair<int, int>> bad_cells() const {
         const int rows = std::max(0, map_.height - 1);
         std::vector<std::vector<std::pair<int, int>>> found(as_index(rows));
-        parallel_blocks(0, rows, 16, [&](int first, int last) {
+        parallel_blocks(0, rows, kGrainRows, [&](int first, int last) {
             for (int y = first; y < last; ++y) {
                 Vec2d tl = position(0, y), bl = position(0, y + 1);
                 for (int x = 0; x + 1 < map_.width; ++x) {
@@ -126,10 +133,10 @@ class Storing {
             PixelCoord best = coord;
             double best_area = area_around(x, y);
             const Vec2d center = pass % 2 ? position(coord) : pixels_.image_of(x, y).cast<double>();
-            // Candidates reach from a fraction of the rounding error up to most of a pixel.
-            for (double radius = 0.01; radius < 1.0; radius *= 2)
-                for (int direction = 0; direction < 8 && best_area < 2 * kLeastStoredArea; ++direction) {
-                    const double angle = direction * std::numbers::pi / 4;
+            for (double radius = kNearest; radius < kFarthest; radius *= 2)
+                for (int direction = 0; direction < kDirections && best_area < 2 * kLeastStoredArea;
+                     ++direction) {
+                    const double angle = direction * (2 * std::numbers::pi / kDirections);
                     Vec2d q = center + radius * Vec2d(std::cos(angle), std::sin(angle));
                     if (pixels_.pinned_x(x, y)) q.x() = x;
                     if (pixels_.pinned_y(x, y)) q.y() = y;

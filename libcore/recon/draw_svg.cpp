@@ -1,6 +1,7 @@
 #include <utility>
 
 #include "libcore/base/error.h"
+#include "libcore/image/luv_encoder.h"
 #include "libcore/recon/draw.h"
 #include "libcore/recon/level_colors.h"
 #include "libcore/recon/svg_text.h"
@@ -16,7 +17,7 @@ void append_faces(std::string& out, const BaseMesh& mesh, const std::vector<Vec2
     for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
         const auto [a, b, c] = mesh.faces[f];
         color.clear();
-        append_hex(color, colors[f]);
+        append_hex(color, Vec3f(encoded_from_luv(ColorSpace::kSrgb, colors[f]) * 255).cast<double>());
         out += "<path fill=\"" + color + "\" stroke=\"" + color + "\" d=\"";
         append_point(out, 'M', points[a]);
         append_point(out, 'L', points[b]);

@@ -45,14 +45,9 @@ Gradient fit_gradient(const std::array<Vec2d, 3>& p, const std::array<Vec3d, 3>&
             mean + most * change};
 }
 
-void append_rgb(std::string& out, const Vec3d& rgb) {
-    constexpr char kDigits[] = "0123456789abcdef";
-    out += '#';
-    for (int c = 0; c < 3; ++c) {
-        const auto byte = static_cast<unsigned>(std::lround(std::clamp(rgb[c], 0.0, 1.0) * 255));
-        out += kDigits[byte >> 4];
-        out += kDigits[byte & 15];
-    }
+// 8-bit codes of encoded sRGB, clipped: the ends of a gradient may lie outside the display's gamut.
+Vec3d codes(const Vec3d& rgb) {
+    return rgb.cwiseMax(0.0).cwiseMin(1.0) * 255;
 }
 
 void append_attribute(std::string& out, const char* name, double value) {
@@ -68,9 +63,9 @@ void append_gradient(std::string& out, std::size_t id, const Gradient& g) {
     append_attribute(out, " x2=\"", g.to.x());
     append_attribute(out, " y2=\"", g.to.y());
     out += "><stop stop-color=\"";
-    append_rgb(out, g.from_rgb);
+    append_hex(out, codes(g.from_rgb));
     out += "\"/><stop offset=\"1\" stop-color=\"";
-    append_rgb(out, g.to_rgb);
+    append_hex(out, codes(g.to_rgb));
     out += "\"/></linearGradient>\n";
 }
 

@@ -5,10 +5,14 @@
 #include <numbers>
 #include <utility>
 
+#include "libcore/base/grid_neighbors.h"
+
 namespace imgmesh {
 namespace {
 
 constexpr int kHues = 8;
+// Every second hue is also darker, so that neighbouring hues differ for colour-blind people.
+constexpr float kLightness[2] = {70, 50};
 constexpr float kChroma = 70;        // of the tint [L*u*v* units]: strong, and within sRGB for mid lightness
 constexpr float kMeanShare = 0.45f;  // of the patch's mean colour in the result; the rest is tint
 
@@ -20,12 +24,7 @@ std::vector<std::pair<Id, Id>> touching_patches(const PixelMap& map) {
         pairs.emplace_back(a, b);
         pairs.emplace_back(b, a);
     };
-    for (int y = 0; y < map.height; ++y)
-        for (int x = 0; x < map.width; ++x) {
-            const Id face = map.at(x, y).face;
-            if (x + 1 < map.width) touch(face, map.at(x + 1, y).face);
-            if (y + 1 < map.height) touch(face, map.at(x, y + 1).face);
-        }
+    for_neighbor_pixels(map, [&](std::size_t i, std::size_t j) { touch(map[i].face, map[j].face); });
     std::sort(pairs.begin(), pairs.end());
     pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
     return pairs;
@@ -68,9 +67,7 @@ std::vector<Vec3f> patch_colors(const BaseMesh& mesh, const PixelMap& map) {
         const auto feature = [&](Id v) { return Eigen::Map<const Vec3f>(mesh.feature_of(v)); };
         const Vec3f mean = weight[0] * feature(a) + weight[1] * feature(b) + weight[2] * feature(c);
         const float angle = 2 * std::numbers::pi_v<float> * static_cast<float>(hue[f]) / kHues;
-        // Every second hue is also lighter, so that neighbouring hues differ for colour-blind people.
-        const Vec3f tint(hue[f] % 2 == 0 ? 70.0f : 50.0f, kChroma * std::cos(angle),
-                         kChroma * std::sin(angle));
+        const Vec3f tint(kLightness[hue[f] % 2], kChroma * std::cos(angle), kChroma * std::sin(angle));
         colors[f] = kMeanShare * mean + (1 - kMeanShare) * tint;
     }
     return colors;

@@ -3,8 +3,6 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "libcore/image/luv_encoder.h"
-
 namespace imgmesh {
 
 void append_number(std::string& out, double value) {
@@ -38,12 +36,11 @@ std::vector<Vec2d> outward(const BaseMesh& mesh, const SourceInfo& source) {
     return points;
 }
 
-void append_hex(std::string& out, const Vec3f& luv) {
+void append_hex(std::string& out, const Vec3d& codes) {
     constexpr char kDigits[] = "0123456789abcdef";
-    const Vec3f rgb = encoded_from_luv(ColorSpace::kSrgb, luv);
     out += '#';
     for (int c = 0; c < 3; ++c) {
-        const auto byte = static_cast<unsigned>(std::lround(rgb[c] * 255));
+        const auto byte = static_cast<unsigned>(std::lround(codes[c]));
         out += kDigits[byte >> 4];
         out += kDigits[byte & 15];
     }

@@ -13,8 +13,8 @@ namespace imgmesh {
 void append_number(std::string& out, double value);
 /// Returns a path command (a letter) and its point.
 void append_point(std::string& out, char command, const Vec2d& p);
-/// Returns a colour in L*u*v* as "#rrggbb" in sRGB.
-void append_hex(std::string& out, const Vec3f& luv);
+/// Appends red, green and blue as "#rrggbb", each rounded to a whole number from 0 to 255.
+void append_hex(std::string& out, const Vec3d& codes);
 
 /// Returns the vertices of `mesh`. Those on the image's sides move out by half a pixel, to the outer edge of
 /// the outermost pixels.

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "libcore/base/grid_neighbors.h"
+
 namespace imgmesh {
 
 LabelImage labels_after(const Cells& cells, const Hierarchy& hierarchy, std::size_t merges) {
@@ -17,16 +19,15 @@ std::vector<RegionFacts> region_facts(const LabelImage& labels, const FeatureIma
     std::vector<RegionFacts> facts(labels.count);
     std::vector<Vec3d> sums(labels.count, Vec3d::Zero());
     std::vector<std::pair<Id, Id>> pairs;
-    const auto touch = [&](Id a, Id b) {
+    for_neighbor_pixels(labels, [&](std::size_t i, std::size_t j) {
+        const Id a = labels[i], b = labels[j];
         if (a == b || a == kNone || b == kNone) return;
         pairs.emplace_back(a, b);
         pairs.emplace_back(b, a);
-    };
+    });
     for (int y = 0; y < labels.height; ++y)
         for (int x = 0; x < labels.width; ++x) {
             const Id region = labels.at(x, y);
-            if (x + 1 < labels.width) touch(region, labels.at(x + 1, y));
-            if (y + 1 < labels.height) touch(region, labels.at(x, y + 1));
             if (region == kNone) continue;
             RegionFacts& f = facts[region];
             if (f.pixels == 0) f.box = {x, y, x, y};

@@ -67,7 +67,7 @@ Squares square_sums(const FeatureImage& image, const Cells& cells, int radius) {
 float contrast(const Sums& a, const Sums& b) {
     Vec3d mean_a, mean_b, variance_a, variance_b;
     for (int c = 0; c < 3; ++c) {
-        const auto k = static_cast<std::size_t>(c);
+        const std::size_t k = as_index(c);
         mean_a[c] = double(a[1 + k]) / double(a[0]);
         mean_b[c] = double(b[1 + k]) / double(b[0]);
         variance_a[c] = std::max(0.0, double(a[4 + k]) / double(a[0]) - mean_a[c] * mean_a[c]);

@@ -13,16 +13,17 @@ struct Crossing {
 // Pairs of neighbours in different cells, in the order of their pixels.
 std::vector<Crossing> crossings(const Cells& cells, const PairContrasts& contrasts) {
     std::vector<Crossing> all;
-    const std::size_t width = as_index(cells.width);
     const auto cross = [&](std::size_t i, std::size_t j, const std::vector<float>& contrast) {
         const Id a = cells[i], b = cells[j];
         if (a == b || a == kNone || b == kNone) return;
         all.push_back({std::min(a, b), std::max(a, b), contrast.empty() ? 0.0f : contrast[i]});
     };
-    for (std::size_t i = 0; i < cells.size(); ++i) {
-        if (i % width + 1 < width) cross(i, i + 1, contrasts.right);
-        if (i + width < cells.size()) cross(i, i + width, contrasts.down);
-    }
+    for (int y = 0; y < cells.height; ++y)
+        for (int x = 0; x < cells.width; ++x) {
+            const std::size_t i = cells.index(x, y);
+            if (x + 1 < cells.width) cross(i, cells.index(x + 1, y), contrasts.right);
+            if (y + 1 < cells.height) cross(i, cells.index(x, y + 1), contrasts.down);
+        }
     return all;
 }
 

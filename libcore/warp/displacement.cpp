@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "libcore/base/parallel.h"
+#include "libcore/mesh/grid_area.h"
 
 namespace imgmesh {
 namespace {
@@ -62,10 +63,6 @@ std::vector<std::size_t> outside_beside(const DisplacementField& field,
     std::sort(found.begin(), found.end());
     found.erase(std::unique(found.begin(), found.end()), found.end());
     return found;
-}
-
-double doubled_area(const Vec2d& a, const Vec2d& b, const Vec2d& c) {
-    return (b.x() - a.x()) * (c.y() - a.y()) - (b.y() - a.y()) * (c.x() - a.x());
 }
 
 }  // namespace
@@ -138,7 +135,7 @@ std::int64_t folded_cells(const DisplacementField& field) {
         for (int x = 0; x + 1 < field.width; ++x) {
             if (!inside(x, y) || !inside(x + 1, y) || !inside(x, y + 1) || !inside(x + 1, y + 1)) continue;
             const Vec2d a = at(x, y), b = at(x + 1, y), c = at(x, y + 1), d = at(x + 1, y + 1);
-            folded += !(doubled_area(a, b, d) > 0 && doubled_area(a, d, c) > 0);
+            folded += !(grid_area2(a, b, d) > 0 && grid_area2(a, d, c) > 0);
         }
     return folded;
 }

@@ -23,6 +23,11 @@ OutputSize checked_size(const DisplacementField& field, OutputSize size) {
     return size;
 }
 
+// Pixels of the drawing per pixel of the image.
+Vec2f scale_of(const GridSize& out, const GridSize& in) {
+    return {float(out.width) / float(in.width), float(out.height) / float(in.height)};
+}
+
 // Draws into rows of pixels with kChannels channels (0: as many as the image has).
 template <int kChannels>
 class ImageSink {
@@ -34,8 +39,7 @@ class ImageSink {
           alpha_(alpha),
           out_(out),
           coverage_(coverage),
-          scale_(static_cast<float>(out.width) / static_cast<float>(field.width),
-                 static_cast<float>(out.height) / static_cast<float>(field.height)) {}
+          scale_(scale_of(out, field)) {}
 
     void copy(int column, int row, int x, int y) {
         const std::size_t from = field_.index(x, y), to = out_.index(column, row);
@@ -107,15 +111,11 @@ class ImageSink {
 class MapSink {
   public:
     MapSink(const DisplacementField& field, const std::vector<float>& alpha, InverseMap& out)
-        : field_(field),
-          alpha_(alpha),
-          out_(out),
-          scale_(static_cast<float>(out.width) / static_cast<float>(field.width),
-                 static_cast<float>(out.height) / static_cast<float>(field.height)) {}
+        : field_(field), alpha_(alpha), out_(out), scale_(scale_of(out, field)) {}
 
     void copy(int column, int row, int x, int y) {
         const std::size_t from = field_.index(x, y), to = out_.index(column, row);
-        out_.source[to] = Vec2f(static_cast<float>(x), static_cast<float>(y));
+        out_.source[to] = Eigen::Vector2i(x, y).cast<float>();
         out_.coverage[to] = alpha_.empty() ? 1.0f : alpha_[from];
     }
 
@@ -130,7 +130,7 @@ class MapSink {
             for (int t = 0; t < 4; ++t)
                 total += share * taps.weight[t] * (alpha_.empty() ? 1.0f : alpha_[taps.index[t]]);
         });
-        out_.source[to] = Vec2f(static_cast<float>(p.x) + p.fx, static_cast<float>(p.y) + p.fy);
+        out_.source[to] = Eigen::Vector2i(p.x, p.y).cast<float>() + Vec2f(p.fx, p.fy);
         const float sides = is_plain(p) && !on_rim(field_, p) ? 1.0f : side_coverage(field_, scale_, p);
         out_.coverage[to] = (alpha_.empty() ? 1.0f : std::min(total, 1.0f)) * sides;
     }

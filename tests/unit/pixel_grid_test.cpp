@@ -4,6 +4,9 @@
 
 #include <numeric>
 
+#include "libcore/base/disjoint_sets.h"
+#include "libcore/base/grid_neighbors.h"
+
 using namespace imgmesh;
 
 // Row by row from the top: the third pixel of the second row of a grid four wide is number 4 + 2.
@@ -56,4 +59,31 @@ TEST_CASE("channel grid: samples of a pixel stand side by side") {
     CHECK(grid.pixel(1, 1)[1] == 9);
     CHECK(grid.pixel(std::size_t{4}) == grid.pixel(1, 1));
     CHECK(grid.row(1).data() == grid.pixel(0, 1));
+}
+
+// Two pixels a side have a pair in each row and each column; a column of three has two pairs, all downwards.
+TEST_CASE("grid: pixels that share a side") {
+    const auto pairs = [](const GridSize& size) {
+        std::vector<std::pair<std::size_t, std::size_t>> all;
+        for_neighbor_pixels(size, [&](std::size_t i, std::size_t j) { all.emplace_back(i, j); });
+        return all;
+    };
+    using Pairs = std::vector<std::pair<std::size_t, std::size_t>>;
+    CHECK(pairs({2, 2}) == Pairs{{0, 1}, {0, 2}, {1, 3}, {2, 3}});
+    CHECK(pairs({1, 3}) == Pairs{{0, 1}, {1, 2}});
+    CHECK(pairs({1, 1}).empty());
+}
+
+TEST_CASE("disjoint sets are known by their least member") {
+    DisjointSets sets(6);
+    CHECK(sets.count() == 6);
+    sets.join(5, 3);
+    sets.join(4, 5);
+    sets.join(3, 4);
+    CHECK(sets.find(4) == 3);
+    CHECK(sets.find(5) == 3);
+    CHECK(sets.find(2) == 2);
+    sets.join(0, 4);
+    CHECK(sets.find(5) == 0);
+    CHECK(sets.count() == 3);
 }
