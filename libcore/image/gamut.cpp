@@ -10,30 +10,38 @@ namespace {
 
 constexpr float kLargestCode = 65535;  // of 16 bits
 
+// Less than half a 16-bit code outside counts as inside, so that a result is never projected again.
+constexpr float kOutside = 4e-6f;
+static_assert(kOutside < 0.5f / kLargestCode);
+
+// Lightness of the greys that colours move towards, less that of the colour: at a slightly different
+// lightness the gamut may reach much closer.
+constexpr float kShifts[] = {-8, -4, -2, 0, 2, 4, 8};
+// Halvings of the way to a grey: the gamut's rim is found to 1/4096 of it.
+constexpr int kHalvings = 12;
+
 }  // namespace
 
 Vec3f in_gamut(const Vec3f& luv, Gamut gamut) {
     constexpr float kInfinity = std::numeric_limits<float>::infinity();
     const float most = gamut == Gamut::kDisplay ? 1.0f : kInfinity,
                 lightest = gamut == Gamut::kDisplay ? 100.0f : kInfinity;
-    // Less than half a 16-bit code outside counts as inside, so that a result is never projected again.
     const auto inside = [most](const Vec3f& color) {
         const Vec3f linear = linear_from_luv(color);
-        const float kSlack = 4e-6f * (most > 1 ? std::max(1.0f, linear.maxCoeff()) : 1.0f);
+        const float slack = kOutside * (most > 1 ? std::max(1.0f, linear.maxCoeff()) : 1.0f);
         // Without lightness there is no chroma: linear_from_luv() turns any (0, u, v) into black.
-        return linear.minCoeff() >= -kSlack && linear.maxCoeff() <= most + kSlack &&
+        return linear.minCoeff() >= -slack && linear.maxCoeff() <= most + slack &&
                (color[0] > 0 || (color[1] == 0 && color[2] == 0));
     };
     if (inside(luv)) return luv;
     // The way to a grey of the same lightness always enters the gamut; bisection finds where.
     const Vec3f grey(std::clamp(luv[0], 0.0f, lightest), 0, 0);
     Vec3f best = luv_from_linear(linear_from_luv(luv).cwiseMax(0.0f).cwiseMin(most));
-    // Try darker and lighter greys too: at a slightly different lightness the gamut may reach much closer.
-    for (const float shift : {-8.0f, -4.0f, -2.0f, 0.0f, 2.0f, 4.0f, 8.0f}) {
+    for (const float shift : kShifts) {
         const Vec3f center(std::clamp(grey[0] + shift, 0.0f, lightest), 0, 0);
         const Vec3f rim(center[0], luv[1], luv[2]);
         float low = 0, high = 1;
-        for (int step = 0; step < 12; ++step) {
+        for (int step = 0; step < kHalvings; ++step) {
             const float middle = 0.5f * (low + high);
             (inside(center + middle * (rim - center)) ? low : high) = middle;
         }

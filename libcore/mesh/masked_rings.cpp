@@ -13,6 +13,9 @@ namespace {
 
 constexpr std::uint8_t kCorner = kFixedX | kFixedY;
 
+// Rows of one block: enough work to be worth handing over, few enough for every thread to get some.
+constexpr int kGrainRows = 16;
+
 class MaskedRings {
   public:
     explicit MaskedRings(const GridMesh& grid) : grid_(grid) {}
@@ -135,7 +138,7 @@ Vec2f vertex_place(const GridMesh& grid, Id vertex) {
 std::int64_t masked_face_count(const GridMesh& grid) {
     const Mask& mask = grid.mask;
     std::vector<std::int64_t> rows(as_index(mask.height), 0);
-    parallel_blocks(0, mask.height, 16, [&](int begin, int end) {
+    parallel_blocks(0, mask.height, kGrainRows, [&](int begin, int end) {
         for (int y = begin; y < end; ++y)
             for (int x = 0; x < mask.width; ++x) {
                 std::int64_t& faces = rows[as_index(y)];
@@ -153,7 +156,7 @@ std::int64_t masked_face_count(const GridMesh& grid) {
 
 RingMesh masked_rings(const GridMesh& grid) {
     RingMesh rings(grid.vertex_count());
-    parallel_blocks(0, grid.feature.height, 16, [&](int begin, int end) {
+    parallel_blocks(0, grid.feature.height, kGrainRows, [&](int begin, int end) {
         for (int y = begin; y < end; ++y)
             for (int x = 0; x < grid.feature.width; ++x) {
                 const PixelRings pixel = masked_pixel_rings(grid, x, y);

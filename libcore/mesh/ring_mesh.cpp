@@ -7,6 +7,12 @@
 #include "libcore/mesh/masked_rings.h"
 
 namespace imgmesh {
+namespace {
+
+// Rows of one block: enough work to be worth handing over, few enough for every thread to get some.
+constexpr int kGrainRows = 16;
+
+}  // namespace
 
 Ring grid_ring(const GridMesh& grid, int x, int y) {
     Ring ring;
@@ -35,7 +41,7 @@ Ring grid_ring(const GridMesh& grid, int x, int y) {
 RingMesh ring_mesh(const GridMesh& grid) {
     if (!grid.mask.empty()) return masked_rings(grid);
     RingMesh rings(grid.feature.pixel_count());
-    parallel_blocks(0, grid.feature.height, 16, [&](int begin, int end) {
+    parallel_blocks(0, grid.feature.height, kGrainRows, [&](int begin, int end) {
         for (int y = begin; y < end; ++y)
             for (int x = 0; x < grid.feature.width; ++x)
                 rings[grid.feature.index(x, y)] = grid_ring(grid, x, y);

@@ -15,10 +15,13 @@
 namespace imgmesh {
 namespace {
 
+// Rows of one block: enough work to be worth handing over, few enough for every thread to get some.
+constexpr int kGrainRows = 16;
+
 // Sets `map` to the places of pixels with weights that are not rounded yet: colours are fitted to it between
 // the rounds.
 void set_unrounded(const PixelEmbedding& pixels, const std::vector<FaceField>& fields, PixelMap& map) {
-    parallel_blocks(0, map.height, 16, [&](int first, int last) {
+    parallel_blocks(0, map.height, kGrainRows, [&](int first, int last) {
         for (int y = first; y < last; ++y)
             for (int x = 0; x < map.width; ++x) {
                 const Vec2f p = pixels.image_of(x, y);
@@ -107,6 +110,8 @@ PixelMap fit_map(BaseMesh& mesh, const FeatureImage& feature, const FitParams& p
 
 PixelMap fit_given_map(BaseMesh& mesh, const FeatureImage& feature, PixelMap map, const FitParams& params,
                        const Mask& mask) {
+    // Half weights place a pixel to within a step times the longest edge of its face; up to this distance
+    // they are used.
     constexpr float kCoarsest = 0.125f;  // [pixels]
     const bool fine = longest_edge(mesh) * kHalfWeightStep <= kCoarsest;
     map.precision = params.bary.value_or(fine ? WeightPrecision::kHalf : WeightPrecision::kFloat);

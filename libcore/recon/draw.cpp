@@ -82,14 +82,13 @@ class WireRow {
             heights_.push_back(Vec3d(area2 / sides[0], area2 / sides[1], area2 / sides[2]).cast<float>() *
                                float(scale));
         }
-        // Lines that would cover more than a third of the image are faded.
         const double covered = length * scale * width_ / std::max(area * scale * scale, 1.0);
-        opacity_ = static_cast<float>(std::min(0.9, 0.3 / covered));
+        opacity_ = static_cast<float>(std::min(kMostOpaque, kMostInk / covered));
     }
 
     void draw(const PixelMap& map, int y, float* planes) const {
-        constexpr float kLighter = 0.35f;  // share of white in the image below
-        const Vec3f white(100, 0, 0), line(15, -3, -15);
+        constexpr float kLighter = 0.35f;                 // share of white in the image below
+        const Vec3f white(100, 0, 0), line(15, -3, -15);  // L*u*v*; a line is a dark blue
         const std::span<const PixelCoord> row = map.row(y);
         for (std::size_t x = 0; x < row.size(); ++x) {
             if (row[x].face == kNone) continue;
@@ -104,6 +103,10 @@ class WireRow {
     }
 
   private:
+    // Lines let a little of the image through. Lines that would cover more than a third of the image are
+    // faded.
+    static constexpr double kMostOpaque = 0.9, kMostInk = 0.3;
+
     std::vector<Vec3f> heights_;  // of every face over its sides, opposite its corners [output pixels]
     float width_;                 // width of a line [output pixels]
     float opacity_;

@@ -13,6 +13,9 @@
 namespace imgmesh {
 namespace {
 
+// Rows of one block: enough work to be worth handing over, few enough for every thread to get some.
+constexpr int kGrainRows = 16;
+
 // The origin of a channel of the result: a channel of the colour drawing, or a feature of the mesh.
 struct Origin {
     std::string name;
@@ -54,7 +57,7 @@ Image draw_channels(const MeshImage& mesh_image, int level_index, const DrawPara
     out.color_space = names.color.empty() ? ColorSpace::kLinear : drawn.color_space;
     out.sample_type = source.sample_type;
     for (std::size_t c = 0; c < from.size(); ++c) out.channel_names[c] = from[c].name;
-    parallel_blocks(0, map.height, 16, [&](int first, int last) {
+    parallel_blocks(0, map.height, kGrainRows, [&](int first, int last) {
         for (int y = first; y < last; ++y)
             for (int x = 0; x < map.width; ++x) {
                 const PixelCoord& coord = map.at(x, y);

@@ -139,7 +139,9 @@ std::vector<double> side_places(const BaseMesh& mesh, int axis, int side, int si
 }  // namespace
 
 VertexMoves retarget_moves(const BaseMesh& mesh, int width, int height, const OutputSize& size) {
-    constexpr int kTurns = 30;
+    constexpr int kTurns = 30;  // of solving for the places and then for the scales
+    // No face is asked to shrink below this share of uniform scaling: one asked to vanish may turn over.
+    constexpr double kLeastScale = 0.05;
     // Faces below this share of their size under uniform scaling are as good as removed.
     constexpr double kLeastShare = 0.02;
     const std::vector<FaceEnergy> energy = energies(mesh);
@@ -151,10 +153,12 @@ VertexMoves retarget_moves(const BaseMesh& mesh, int width, int height, const Ou
         x.solve(scale, 0);
         y.solve(scale, 1);
         for (std::size_t f = 0; f < scale.size(); ++f)
-            scale[f] = std::max(0.5 * (x.gradient(f).x() + y.gradient(f).y()), 0.05 * std::min(sx, sy));
+            scale[f] =
+                std::max(0.5 * (x.gradient(f).x() + y.gradient(f).y()), kLeastScale * std::min(sx, sy));
     }
     // Shrinks the moves towards uniform scaling until every face keeps an area.
-    for (double share = 1;; share *= 0.8) {
+    constexpr double kBack = 0.8, kGiveUp = 1e-3;  // some thirty shares; after these uniform scaling itself
+    for (double share = 1;; share *= kBack) {
         VertexMoves moves;
         for (Id v = 0; v < mesh.vertex_count(); ++v) {
             const Vec2d p = mesh.position[v].cast<double>();
@@ -168,7 +172,7 @@ VertexMoves retarget_moves(const BaseMesh& mesh, int width, int height, const Ou
                        signed_area2(mesh.position[face[0]], mesh.position[face[1]], mesh.position[face[2]]);
         });
         if (keeps) return moves;
-        if (share < 1e-3) return VertexMoves(mesh.vertex_count(), Vec2f(0, 0));
+        if (share < kGiveUp) return VertexMoves(mesh.vertex_count(), Vec2f(0, 0));
     }
 }
 
