@@ -3,7 +3,7 @@
 blender -b --factory-startup --python-exit-code 1 --python render_container.py -- PHOTO.glb OUT.png [ZOOM [LEVEL]]
 
 The container must have been written with --draco none where Blender has no Draco library, as Debian's. OUT.png gets
-ZOOM x ZOOM pixels (default 1) for one of the picture. Without -b the scene stays open, to go on with.
+ZOOM x ZOOM pixels (default 1) for one of the image. Without -b the scene stays open, to go on with.
 """
 import math
 import pathlib
@@ -31,7 +31,7 @@ def picture_size(item):
 
 
 def look_from_the_front(width, height, zoom):
-    """An orthographic camera whose frame is the picture's: the longer side is one unit, centred at the origin."""
+    """An orthographic camera whose frame is the image's: the longer side is one unit, centred at the origin."""
     scene = bpy.context.scene
     camera = bpy.data.objects.new("camera", bpy.data.cameras.new("camera"))
     scene.collection.objects.link(camera)

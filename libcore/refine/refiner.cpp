@@ -21,8 +21,8 @@ void Refiner::add_shape(Cost& cost, const Vec2f& a, const Vec2f& b, const Vec2f&
     cost.shape += 1 / q - 1;
 }
 
-Refiner::Refiner(const BaseMesh& mesh, const ImagePlanes& picture, const RefineParams& params)
-    : picture_(picture),
+Refiner::Refiner(const BaseMesh& mesh, const ImagePlanes& image, const RefineParams& params)
+    : image_(image),
       params_(params),
       mesh_(refine_faces(mesh)),
       vertex_(mesh),
@@ -53,7 +53,7 @@ bool Refiner::better(const Cost& now, const Cost& before) const {
 }
 
 double Refiner::face_error(const Face& face) const {
-    return squared_error(picture_, corner(face[0]), corner(face[1]), corner(face[2]));
+    return squared_error(image_, corner(face[0]), corner(face[1]), corner(face[2]));
 }
 
 Refiner::Cost Refiner::cost_of(const OneRing& ring) const {
@@ -74,7 +74,7 @@ void Refiner::fit_colors() {
     for_each_id(mesh_.faces().size(), [&](Id f) {
         if (!mesh_.live_face(f)) return;
         const auto [a, b, c] = mesh_.face(f);
-        sums[f] = face_sums(picture_, corner(a), corner(b), corner(c));
+        sums[f] = face_sums(image_, corner(a), corner(b), corner(c));
     });
     forget();
     const std::vector<Vec3f> before = vertex_.color;
@@ -134,8 +134,7 @@ bool Refiner::place(const OneRing& ring, const Vec2f& position, const Vec3f& col
         add_shape(out.cost, position, vertex_.position[ring.vertex[k]], vertex_.position[ring.vertex[k + 1]]);
     if (!out.cost.legal || out.cost.least_q < std::min(least_q, params_.min_quality)) return false;
     for (std::size_t k = 0; k < ring.faces; ++k) {
-        sums[k] =
-            corner_sums(picture_, {position, color}, corner(ring.vertex[k]), corner(ring.vertex[k + 1]));
+        sums[k] = corner_sums(image_, {position, color}, corner(ring.vertex[k]), corner(ring.vertex[k + 1]));
         ww += sums[k].ww;
         we += sums[k].we;
     }
@@ -165,7 +164,7 @@ Vec2f Refiner::newton_step(const OneRing& ring, Id v) const {
     const Corner own = corner(v);
     for (std::size_t k = 0; k < ring.faces; ++k) {
         const Corner b = corner(ring.vertex[k]), c = corner(ring.vertex[k + 1]);
-        const CornerSums sums = corner_sums(picture_, own, b, c);
+        const CornerSums sums = corner_sums(image_, own, b, c);
         const Vec2d pb = (b.position - own.position).cast<double>(),
                     pc = (c.position - own.position).cast<double>();
         const Vec3d db = (b.color - own.color).cast<double>(), dc = (c.color - own.color).cast<double>();

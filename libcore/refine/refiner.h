@@ -12,7 +12,7 @@ namespace imgmesh {
 /// Source and steps: refine.cpp. Every step keeps `error` of each face up to date.
 class Refiner {
   public:
-    Refiner(const BaseMesh& mesh, const ImagePlanes& picture, const RefineParams& params);
+    Refiner(const BaseMesh& mesh, const ImagePlanes& image, const RefineParams& params);
 
     double total_error() const;
     BaseMesh result() const { return compact(mesh_, vertex_); }
@@ -92,7 +92,7 @@ class Refiner {
     Id insert(const Insertion& insertion);
     double face_error(const Face& face) const;
 
-    const ImagePlanes& picture_;
+    const ImagePlanes& image_;
     RefineParams params_;
     EditMesh mesh_;
     RefineVertices vertex_;

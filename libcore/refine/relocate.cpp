@@ -86,7 +86,7 @@ void Refiner::try_insertion(Id f, int edge, const Vec2f& position, Insertion& be
     Vec3d we = Vec3d::Zero();
     for (std::size_t k = 0; k < count; ++k) {
         const CornerSums sums =
-            corner_sums(picture_, {position, color}, corner(faces[k][1]), corner(faces[k][2]));
+            corner_sums(image_, {position, color}, corner(faces[k][1]), corner(faces[k][2]));
         after.error += sums.ee;
         ww += sums.ww;
         we += sums.we;
@@ -104,7 +104,7 @@ Refiner::Insertion Refiner::best_insertion(Id f) const {
     const auto [a, b, c] = mesh_.face(f);
     const Vec2f center = (vertex_.position[a] + vertex_.position[b] + vertex_.position[c]) / 3;
     try_insertion(f, -1, {snapped(center.x()), snapped(center.y())}, best);
-    const WorstPixel worst = worst_pixel(picture_, corner(a), corner(b), corner(c));
+    const WorstPixel worst = worst_pixel(image_, corner(a), corner(b), corner(c));
     if (worst.x >= 0) try_insertion(f, -1, {static_cast<float>(worst.x), static_cast<float>(worst.y)}, best);
     for (std::size_t n = 0; n < 3; ++n) {
         const Id g = mesh_.across(f, n), p = mesh_.face(f)[(n + 1) % 3], q = mesh_.face(f)[(n + 2) % 3];

@@ -39,7 +39,7 @@ def options(arguments):
     parser = argparse.ArgumentParser(prog="bench", description=__doc__.split("\n", maxsplit=1)[0])
     parser.add_argument("--bin", type=pathlib.Path, required=True, help="folder of the tools and of bench-tool")
     parser.add_argument("--sides", type=numbers(int, 16, 16384), default=[256, 512, 1024],
-                        help="sides of the square pictures [pixels] (default 256,512,1024)")
+                        help="sides of the square images [pixels] (default 256,512,1024)")
     parser.add_argument("--densities", type=numbers(float, 0.01, 100), default=[1.0],
                         help="vertices in percent of the pixels (default 1)")
     parser.add_argument("--threads", type=numbers(int, 1, 1024), default=[1, 2], help="default 1,2")
@@ -47,10 +47,10 @@ def options(arguments):
     parser.add_argument("--repeats", type=int, default=3, help="runs of everything; the least time counts (default 3)")
     parser.add_argument("--only", default="process,stage,peer",
                         help="kinds of rows: process, stage, peer (default all)")
-    parser.add_argument("--max-peer-side", type=int, default=2048, help="larger pictures without peers (default 2048)")
+    parser.add_argument("--max-peer-side", type=int, default=2048, help="larger images without peers (default 2048)")
     parser.add_argument("--against", type=pathlib.Path, help="folder of another build's tools")
     parser.add_argument("--pictures", type=pathlib.Path, nargs="+", default=PICTURES,
-                        help="what the mosaics are made of: RGB pictures of one size")
+                        help="what the mosaics are made of: RGB images of one size")
     parser.add_argument("--json", type=pathlib.Path, help="file for the figures")
     o = parser.parse_args(arguments)
     o.only = set(o.only.split(","))
