@@ -15,7 +15,6 @@ using namespace imgmesh::test;
 namespace {
 
 constexpr Metric kMetrics[] = {Metric::kFlattened, Metric::kHoppe, Metric::kGarland};
-constexpr Solver kSolvers[] = {Solver::kClosed, Solver::kSvd, Solver::kLu};
 constexpr Size kSizes[] = {{1, 1}, {2, 2}, {3, 3}, {1, 9}, {9, 1}, {5, 7}, {32, 24}};
 
 SimplifyResult collapse(const FeatureImage& feature, std::int64_t vertices, const SimplifyParams& params) {

@@ -105,8 +105,8 @@ TEST_CASE("mesh lods: meshes of any number of vertices, from as few runs as poss
     const auto params = [](std::int64_t) { return SimplifyParams{}; };
     const Progress none;
     LodMeshes lods(grid, params, none);
-    const auto count = [&](std::int64_t vertices, bool lods) {
-        const SimplifyResult level = lods.mesh(vertices, lods);
+    const auto count = [&](std::int64_t vertices, bool near) {
+        const SimplifyResult level = lods.mesh(vertices, near);
         CHECK(level.mesh.faces.size() > 0);
         return static_cast<std::int64_t>(level.mesh.vertex_count());
     };
@@ -162,7 +162,7 @@ TEST_CASE("build: a wanted RMS is kept, closely") {
 
 TEST_CASE("build: an RMS that no mesh has is refused, and so are negative ones") {
     const Image image = sample_picture(Kind::kNoise, 12, 9);
-    const auto code = [&](double rms) {
+    const auto code = [&](double rms) -> std::optional<ErrorKind> {
         BuildParams params;
         params.stop.rms = rms;
         try {

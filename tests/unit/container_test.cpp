@@ -277,7 +277,7 @@ TEST_CASE("container: vertices without a face are dropped by edgebreaker and not
 TEST_CASE("container: usage and files that are there already") {
     const TemporaryFolder folder;
     const MeshImage image = random_mesh_image(9, 9, 1, WeightPrecision::kHalf, false, 3);
-    const auto code = [&](const char* name, bool overwrite) {
+    const auto code = [&](const char* name, bool overwrite) -> std::optional<ErrorKind> {
         try {
             write_container(folder / name, image, {DracoMode::kEdgebreaker, overwrite});
         } catch (const Error& error) {
