@@ -307,9 +307,8 @@ TEST_CASE("hostile: a BMP's compression is one for its depth") {
         CHECK(image.pixel(0, 0)[0] == 10 / 255.f);  // rows are stored bottom up
         CHECK(image.pixel(3, 1)[2] == 60 / 255.f);
     }
-    for (const auto& [bits, compression] :
-         {std::pair(24, 1), std::pair(8, 2), std::pair(4, 1), std::pair(1, 1), std::pair(32, 2)})
-        CHECK(error_of([&] { read(bits, compression); }) == ErrorKind::kBadFile);
+    for (const auto& wrong : {std::pair(24, 1), {8, 2}, {4, 1}, {1, 1}, {32, 2}})
+        CHECK(error_of([&] { read(wrong.first, wrong.second); }) == ErrorKind::kBadFile);
     for (const int compression : {4, 5, 7, 255})
         CHECK(error_of([&] { read(24, compression); }) == ErrorKind::kUnsupported);
 }
