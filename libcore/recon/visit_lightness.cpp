@@ -8,8 +8,7 @@ namespace imgmesh {
 
 std::vector<float> visit_lightness(const MeshImage& mesh_image) {
     const std::vector<Id>& visits = mesh_image.visits;
-    if (visits.empty())
-        throw Error(ErrorKind::kUnsupported, "the mesh image has no visit map");
+    if (visits.empty()) throw Error(ErrorKind::kUnsupported, "the mesh image has no visit map");
     const PixelMap& map = mesh_image.levels.front().map;
     std::vector<Id> sorted;
     for (std::size_t i = 0; i < visits.size(); ++i)

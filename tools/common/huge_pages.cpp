@@ -39,6 +39,10 @@ void* allocate(std::size_t size, std::size_t alignment) {
 
 }  // namespace
 
+#if defined(__GNUC__) && !defined(__clang__)
+// g++ 12 inlines one half of such a pair and not the other, and then takes them for a mismatch.
+#pragma GCC diagnostic ignored "-Wmismatched-new-delete"
+#endif
 void* operator new(std::size_t size) {
     return allocate(size, 1);
 }
