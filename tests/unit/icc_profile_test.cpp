@@ -100,7 +100,11 @@ TEST_CASE("icc: of a profile with tables the matrix counts") {
     cmsHPROFILE profile = cmsCreate_sRGBProfile();
     cmsPipeline* const table = cmsPipelineAlloc(nullptr, 3, 3);
     constexpr cmsFloat64Number kTurned[] = {0, 0, 1, 1, 0, 0, 0, 1, 0};
-    REQUIRE(cmsPipelineInsertStage(table, cmsAT_BEGIN, cmsStageAllocMatrix(nullptr, 3, 3, kTurned, nullptr)));
+    // The format wants curves around a matrix.
+    for (cmsStage* stage :
+         {cmsStageAllocToneCurves(nullptr, 3, nullptr), cmsStageAllocMatrix(nullptr, 3, 3, kTurned, nullptr),
+          cmsStageAllocToneCurves(nullptr, 3, nullptr)})
+        REQUIRE(cmsPipelineInsertStage(table, cmsAT_END, stage));
     REQUIRE(cmsWriteTag(profile, cmsSigAToB0Tag, table));
     cmsPipelineFree(table);
     CHECK(color_space_from_icc(saved(profile)) == ColorSpace::kSrgb);
