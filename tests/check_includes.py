@@ -32,7 +32,7 @@ VALUES = re.compile(r"libcore/(base/|image/|mesh/(base_mesh|mesh_image|pixel_map
 # Libraries by the names of their headers.
 TBB = re.compile(r"(oneapi/)?tbb(/|\.h$)")
 FILE_LIBRARIES = re.compile(r"OpenEXR/|Imath/|Imf\w*\.h|OpenImageIO/|png\.h$|libdeflate\.h$|lcms2\.h$|draco/|tiny_gltf|tinygltf|nlohmann/|webp/|json/")
-COMMAND_LINE = re.compile(r"CLI/|CLI11")
+COMMAND_LINE = re.compile(r"CLI/|CLI11|toml\+\+")
 STREAMS = re.compile(r"(fstream|filesystem|cstdio|stdio\.h)$")
 # A header that a comment names.
 MENTION = re.compile(r"[\w/]*\w\.h\b")

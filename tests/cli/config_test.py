@@ -27,6 +27,14 @@ class Config(CliCase):
         self.build("in.png", "--config", "c.toml", "--draco", "sequential")
         self.assertEqual(self.report("imgmesh-info", "out.glb")["draco"], "sequential")
 
+    def test_lists_and_numbers_of_toml(self):
+        """As arrays or as on the command line; numbers in any form that TOML has."""
+        for text in ("level-faces = [80, 2_0]", "level-faces = '80,20'", "level-faces = [0x50, '20']"):
+            self.config(text + "\ngeometry-weight = 5e-1\nsmoothing = 0b1\n")
+            self.build("in.png", "--config", "c.toml")
+            built = self.report("imgmesh-info", "out.glb")["build"]
+            self.assertEqual((built["level-faces"], built["geometry-weight"], built["smoothing"]), ("80,20", 0.5, 1))
+
     def test_flags(self):
         self.config("quiet = true\noverwrite = false\n")
         self.assertEqual(self.run_ok("imgmesh-build", "in.png", "-o", "out.glb", "--config", "c.toml").stdout, "")
@@ -36,24 +44,30 @@ class Config(CliCase):
 
     def test_unknown_keys(self):
         self.refused("faces = 40\nfases = 3\n", "c.toml:2", "fases")
-        self.refused("z=\n", "c.toml:1", "'z'")  # so short that CLI11's own reader skips it
+        self.refused("z=1\n", "c.toml:1", "'z'")  # so short that CLI11's own reader skips it
         for key in ("help", "version", "config", "o", "IMAGE", "--faces", "-o"):
             self.refused(f"{key} = 1\n", "c.toml:1", key)
 
     def test_wrong_values(self):
         self.refused('faces = "many"\n', "--faces", "'many'", "expected")
-        self.refused("faces = 1e3\n", "--faces", "'1e3'")
+        self.refused("faces = 1e3\n", "--faces", "'1000.0'")  # no whole number to TOML either
         self.refused("faces = true\n", "--faces", "'true'")
         self.refused("density = nan\n", "c.toml:1", "density")
         self.refused("json = 1\n", "c.toml:1", "true or false")
+        self.refused("faces = 2026-01-01\n", "c.toml:1", "faces")
+        self.refused("faces = [1, 2]\n", "c.toml:1", "faces", "list")
+        self.refused("level-faces = [[8], 4]\n", "c.toml:1", "level-faces")
 
     def test_what_is_no_option_and_value(self):
-        for line in ("faces", "faces 40", "= 40", "faces =", "[build]", "[[x]]", "faces = [1, 2]", "faces = 40 50",
-                     'draco = "none', 'draco = "no\\ne"', "faces = 40, 50", "draco = none", "\0", "\x1b[2J = 1"):
+        for line in ("faces", "faces 40", "= 40", "faces =", "[build]", "[[x]]", "a.b = 1", "faces = 40 50",
+                     'draco = "none', "faces = 40, 50", "draco = none", "\0", "\x1b[2J = 1"):
             self.refused(f"# first\n{line}\n", "c.toml:2")
 
+    def test_too_long(self):
+        self.assert_error("imgmesh-build", ["in.png", "-o", "out.glb", "--config", "/dev/zero"], 2, "/dev/zero", "1048576")
+
     def test_given_twice(self):
-        self.refused('faces = 40\ndraco = "none"\nfaces = 50\n', "c.toml:3", "faces", "twice")
+        self.refused('faces = 40\ndraco = "none"\nfaces = 50\n', "c.toml:3", "'faces'")
 
     def test_unreadable(self):
         args = ["in.png", "-o", "out.glb", "--config"]

@@ -1,8 +1,13 @@
 #include "tools/common/config_file.h"
 
+#include <toml++/toml.h>
+
+#include <CLI/CLI.hpp>
+#include <array>
+#include <charconv>
+#include <cmath>
 #include <istream>
 #include <memory>
-#include <set>
 #include <string>
 #include <vector>
 
@@ -11,99 +16,87 @@
 namespace imgmesh {
 namespace {
 
+// No list of options is longer; a device would give text without end.
+constexpr std::size_t kMostBytes = std::size_t{1} << 20;
+
 // CLI11's own reader skips short lines, cuts strings at '#' and takes the first of two equal keys, all
-// without a word. This one reads less of TOML and refuses the rest.
-class StrictConfig : public CLI::ConfigBase {
+// without a word.
+class TomlConfig : public CLI::ConfigBase {
   public:
-    explicit StrictConfig(const CLI::App& app) : app_(app) {}
+    explicit TomlConfig(const CLI::App& app) : app_(app) {}
 
     std::vector<CLI::ConfigItem> from_config(std::istream& input) const override {
         std::vector<CLI::ConfigItem> options;
-        std::set<std::string> seen;
-        std::string line;
-        for (int number = 1; next_line(input, line); ++number) {
-            std::size_t at = skip_space(line, 0);
-            if (at == line.size() || line[at] == '#') continue;
-            const auto refuse = [&](const std::string& what) {
-                const auto file = app_.get_config_ptr()->as<std::string>();
-                throw Error(ErrorKind::kBadArgument, cat(file, ":", number, ": ", what));
+        for (const auto& [key, value] : parsed(input)) {
+            const std::string name(key.str());
+            const auto refuse = [&, at = key.source().begin.line](const std::string& what) {
+                throw Error(ErrorKind::kBadArgument, cat(file(), ":", at, ": ", what));
             };
+            const CLI::Option* option = app_.get_option_no_throw("--" + name);
+            if (option == nullptr || !option->get_configurable()) refuse(cat("unknown option '", name, "'"));
+            if (option->get_expected_min() == 0 && !value.is_boolean())
+                refuse(cat("option '", name, "': expected true or false"));
 
             CLI::ConfigItem item;
-            item.name = word(line, at);
-            at = skip_space(line, at);
-            if (item.name.empty() || at == line.size() || line[at] != '=') refuse("expected option = value");
-            const CLI::Option* option = app_.get_option_no_throw("--" + item.name);
-            if (option == nullptr || !option->get_configurable())
-                refuse(cat("unknown option '", item.name, "'"));
-            if (!seen.insert(item.name).second) refuse(cat("option '", item.name, "' is given twice"));
-
-            at = skip_space(line, at + 1);
-            std::string value;
-            if (!read_value(line, at, value)) refuse(cat("option '", item.name, "': expected a TOML value"));
-            const bool flag = option->get_expected_min() == 0;
-            if (flag && value != "true" && value != "false")
-                refuse(cat("option '", item.name, "': expected true or false"));
-            at = skip_space(line, at);
-            if (at < line.size() && line[at] != '#')
-                refuse(cat("option '", item.name, "': unexpected '", line.substr(at), "' after its value"));
-            item.inputs = {value};
-            options.push_back(item);
+            item.name = name;
+            if (const toml::array* list = value.as_array()) {
+                if (option->get_type_name() != "LIST")
+                    refuse(cat("option '", name, "': expected one value, not a list"));
+                std::string text;
+                for (const toml::node& element : *list)
+                    if (!append(text, element)) refuse(cat("option '", name, "': expected a list of values"));
+                item.inputs = {text};
+            } else {
+                std::string text;
+                if (!append(text, value))
+                    refuse(cat("option '", name, "': expected a string, a finite number, true or false"));
+                item.inputs = {text};
+            }
+            options.push_back(std::move(item));
         }
         return options;
     }
 
   private:
-    // std::getline with a bound: a device would give a line without end.
-    bool next_line(std::istream& input, std::string& line) const {
-        constexpr std::size_t kLongest = 1 << 16;
-        line.clear();
-        for (int c; (c = input.get()) != std::istream::traits_type::eof();) {
-            if (c == '\n') return true;
-            line += static_cast<char>(c);
-            if (line.size() > kLongest)
-                throw Error(ErrorKind::kBadArgument, cat(app_.get_config_ptr()->as<std::string>(),
-                                                         ": a line of more than ", kLongest, " bytes"));
+    std::string file() const { return app_.get_config_ptr()->as<std::string>(); }
+
+    toml::table parsed(std::istream& input) const {
+        std::string text(kMostBytes + 1, '\0');
+        input.read(text.data(), static_cast<std::streamsize>(text.size()));
+        text.resize(static_cast<std::size_t>(input.gcount()));
+        if (text.size() > kMostBytes)
+            throw Error(ErrorKind::kBadArgument, cat(file(), ": is longer than ", kMostBytes, " bytes"));
+        try {
+            return toml::parse(text, file());
+        } catch (const toml::parse_error& e) {
+            throw Error(ErrorKind::kBadArgument,
+                        cat(file(), ":", e.source().begin.line, ": ", e.description()));
         }
-        return !line.empty();
     }
 
-    static std::size_t skip_space(const std::string& line, std::size_t at) {
-        while (at < line.size() && (line[at] == ' ' || line[at] == '\t' || line[at] == '\r')) ++at;
-        return at;
-    }
-
-    // A bare key or value: letters, digits and + - . _
-    static std::string word(const std::string& line, std::size_t& at) {
-        const std::size_t begin = at;
-        const auto is_word = [](char c) {
-            return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '+' ||
-                   c == '-' || c == '.' || c == '_';
-        };
-        while (at < line.size() && is_word(line[at])) ++at;
-        return line.substr(begin, at - begin);
-    }
-
-    // 'literal', "basic" with the escapes \" and \\, or a bare number or boolean.
-    static bool read_value(const std::string& line, std::size_t& at, std::string& value) {
-        if (at == line.size()) return false;
-        const char quote = line[at];
-        if (quote != '"' && quote != '\'') {
-            value = word(line, at);
-            const bool boolean = value == "true" || value == "false";
-            return boolean || (!value.empty() && value.find_first_of("0123456789") != std::string::npos &&
-                               value.find_first_not_of("0123456789+-.eE") == std::string::npos);
-        }
-        for (++at; at < line.size() && line[at] != quote; ++at) {
-            if (quote == '"' && line[at] == '\\') {
-                ++at;
-                if (at == line.size() || (line[at] != '"' && line[at] != '\\')) return false;
-            }
-            value += line[at];
-        }
-        if (at == line.size()) return false;
-        ++at;
+    // Adds a value to a list as the command line would have it; false where it is none.
+    static bool append(std::string& list, const toml::node& node) {
+        std::string text;
+        if (const auto* string = node.as_string())
+            text = string->get();
+        else if (const auto* flag = node.as_boolean())
+            text = flag->get() ? "true" : "false";
+        else if (const auto* integer = node.as_integer())
+            text = std::to_string(integer->get());
+        else if (const auto* number = node.as_floating_point(); number && std::isfinite(number->get()))
+            text = decimal(number->get());
+        else
+            return false;
+        list += (list.empty() ? "" : ",") + text;
         return true;
+    }
+
+    // The shortest text that gives the same number, always one that no whole number has.
+    static std::string decimal(double value) {
+        std::array<char, 32> digits;
+        const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr;
+        std::string text(digits.data(), end);
+        return text.find_first_of(".e") == std::string::npos ? text + ".0" : text;
     }
 
     const CLI::App& app_;
@@ -111,10 +104,12 @@ class StrictConfig : public CLI::ConfigBase {
 
 }  // namespace
 
-void add_config_option(CLI::App& app) {
-    app.set_config("--config", "", "Read options from a TOML file, by their long names")->type_name("FILE");
-    app.config_formatter(std::make_shared<StrictConfig>(app));
+CLI::Option* add_config_option(CLI::App& app) {
+    CLI::Option* option =
+        app.set_config("--config", "", "Read options from a TOML file, by their long names");
+    app.config_formatter(std::make_shared<TomlConfig>(app));
     app.allow_config_extras(false);
+    return option->type_name("FILE");
 }
 
 }  // namespace imgmesh
