@@ -19,8 +19,10 @@ set(IMGMESH_PUBLIC_HEADERS
   libcore/mesh/pixel_map.h
 
   libcore/simplify/metric.h
+  libcore/refine/refine_params.h
   libcore/param/fit_map.h
   libcore/pipeline/build.h
+  libcore/pipeline/build_params.h
   libcore/pipeline/presets.h
 
   libcore/recon/draw.h

@@ -1,8 +1,8 @@
-"""What shells complete of a program, from its --help: completions of bash, zsh and fish."""
+"""What shells complete of a program, from its --help-all: completions of bash, zsh and fish."""
 import dataclasses
 import re
 
-# What an option's argument is in --help: files are completed, numbers and the like are not.
+# What an option's argument is in --help-all: files are completed, numbers and the like are not.
 FILES = {"FILE", "NAME"}
 
 
@@ -19,19 +19,20 @@ class Option:
 
 
 def options_of(sections):
-    """The options of {title: [(head, what it does)]}."""
+    """The options of {title: [(head, what it does)]}. What an option does ends with what is told of all in one way:
+    "TEXT: WORD, WORD (default WORD); needs --NAME; not with --NAME, --NAME"."""
     found = []
     for items in sections.values():
         for head, body in items:
             if not head.startswith("-"):
                 continue
             names, *words = head.split()
-            argument = words[0] if words and words[0] not in ("REQUIRED", "Excludes:", "Needs:") else ""
-            others = re.findall(r"--\S+", head.partition("Excludes:")[2].partition("Needs:")[0])
-            body = body.strip()
-            listed = re.search(r": ([\w.-]+(?:, [\w.-]+)+)$", body) if argument == "NAME" else None
-            found.append(Option(names.split(","), argument, listed[1].split(", ") if listed else [], others,
-                                body[: listed.start()] if listed else body))
+            argument = words[0] if words and words[0] != "REQUIRED" else ""
+            text, _, others = body.strip().partition("; not with ")
+            text = re.sub(r"( \(default [^()]*\))?(; needs --\S+)?$", "", text)
+            listed = re.search(r": ([\w.-]+(?:, [\w.-]+)+)$", text) if argument == "NAME" else None
+            found.append(Option(names.split(","), argument, listed[1].split(", ") if listed else [],
+                                re.findall(r"--[\w-]+", others), text[: listed.start()] if listed else text))
     return found
 
 

@@ -25,7 +25,7 @@ install(DIRECTORY schemas/ DESTINATION ${CMAKE_INSTALL_DATADIR}/imgmesh/schemas 
   PATTERN examples EXCLUDE)
 install(FILES README.md CHANGELOG.md LICENSE docs/format.md docs/library.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
 
-# Man pages and completions say what --help says.
+# Man pages and completions say what --help-all says.
 find_program(IMGMESH_PYTHON3 python3 PATHS /usr/bin NO_DEFAULT_PATH REQUIRED)
 set(_manuals ${CMAKE_CURRENT_BINARY_DIR}/manuals)
 set(_programs "")

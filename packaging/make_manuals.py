@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 """make_manuals.py OUT PROGRAM...: man pages (OUT/man1) and completions of shells (OUT/bash, OUT/zsh,
-OUT/fish) from --help."""
+OUT/fish) from --help-all."""
 import pathlib
 import re
 import subprocess
@@ -55,7 +55,7 @@ def main():
     for program in map(pathlib.Path, sys.argv[2:]):
         def output(option):
             return subprocess.run([program, option], capture_output=True, text=True, check=True).stdout
-        text = output("--help").replace("{false}", "")  # what CLI11 shows of a flag's other name
+        text = output("--help-all")
         (out / "man1" / f"{program.name}.1").write_text(man_page(program.name, output("--version").strip(), text))
         options = completions.options_of(sections(text)[2])
         for path, completion in completions.SHELLS.items():

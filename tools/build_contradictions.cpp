@@ -1,23 +1,13 @@
 #include "tools/build_contradictions.h"
 
-#include <initializer_list>
 #include <string>
 
 #include "libcore/base/error.h"
 #include "libcore/pipeline/params.h"
+#include "tools/common/options.h"
 
 namespace imgmesh {
 namespace {
-
-// "--refine 6" of the first of the options that was given; "" of none.
-std::string typed(const CLI::App& app, std::initializer_list<const char*> names) {
-    for (const char* name : names) {
-        const CLI::Option* option = app.get_option(name);
-        if (option->count() == 0) continue;
-        return option->get_expected_min() == 0 ? name : cat(name, ' ', option->results().front());
-    }
-    return "";
-}
 
 // Whose rounds are meant: those of --refine, or else of the preset.
 std::string typed_rounds(const CLI::App& app, std::int64_t rounds) {
@@ -38,7 +28,7 @@ void check_contradictions(const CLI::App& app, const BuildParams& p) {
     const std::string projection = typed(app, {"--projection-color-weight", "--map-smoothness"});
     const std::int64_t rounds = p.refine.value_or(0);
 
-    if (p.metric == Metric::kHoppe && app.get_option("--geometry-weight")->count() > 0)
+    if (p.metric == Metric::kHoppe && given(app, "--geometry-weight"))
         refuse("--geometry-weight", "--metric hoppe", "that metric has no geometry to weigh");
     if (p.projection_color_weight == 0.0 && p.map.value_or(MapKind::kTrivial) != MapKind::kTrivial)
         refuse(map, projection, "a weight of 0 is the trivial map");

@@ -1,9 +1,11 @@
 // Options of imgmesh-build that are right alone and contradict each other, told in the words that were typed.
 #pragma once
 
-#include <CLI/CLI.hpp>
+#include "libcore/pipeline/build_params.h"
 
-#include "libcore/pipeline/build.h"
+namespace CLI {
+class App;
+}
 
 namespace imgmesh {
 

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <iomanip>
+#include <nlohmann/json.hpp>
 #include <ostream>
 
 #include "libcore/image/color.h"

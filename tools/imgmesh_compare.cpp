@@ -2,16 +2,17 @@
 #include <algorithm>
 #include <filesystem>
 #include <limits>
+#include <nlohmann/json.hpp>
 #include <optional>
 
 #include "formats/container/container.h"
-#include "formats/files/atomic_file.h"
 #include "formats/files/extension.h"
 #include "formats/picture/image_io.h"
 #include "libcore/image/color.h"
 #include "libcore/image/feature_space.h"
 #include "libcore/metrics/error_image.h"
 #include "libcore/recon/draw_channels.h"
+#include "tools/common/container_input.h"
 #include "tools/common/names.h"
 #include "tools/common/options.h"
 #include "tools/common/output.h"
@@ -43,36 +44,22 @@ Choices<DrawMode> mode_choices() {
     return {{"map", DrawMode::kMap}, {"gouraud", DrawMode::kGouraud}};
 }
 
-void add_file(CLI::App& app, const std::string& name, std::string& path, const std::string& help) {
-    add_value(
-        app, name, "FILE",
-        [&path, name](const std::string& text) {
-            if (text.empty()) throw Error(ErrorKind::kBadArgument, cat(name, " '': expected a file name"));
-            path = text;
-        },
-        help);
-}
-
 void add_options(CLI::App& app, Options& o) {
     add_inputs(app, "INPUT", o.inputs,
                "One container (.glb, .gltf), or two files to compare: images or containers");
-    add_choice(app, "--mode", o.mode, mode_choices(), "How a container is drawn (default map)");
+    add_choice(app, "--mode", o.mode, mode_choices(), {"How a container is drawn", "map"});
     add_count(app, "--level", o.level, {0, std::numeric_limits<int>::max()},
-              "Level of a container's pyramid, 0 the finest (default 0)");
+              {"Level of a container's pyramid, 0 the finest", "0"});
     add_choice(app, "--color-space", o.color_space, color_space_choices(),
-               "Of the images' numbers, whatever their files say");
+               "Colour space of the images, whatever their files say");
     add_number(app, "--tolerance", o.tolerance, {0},
-               "Exit with 7 where the RMS in L*u*v* is above this (default none: exit with 0)");
+               {"Exit with code 7 if the RMS error in L*u*v* is larger", "none"});
     add_file(app, "--error-image", o.error_image,
-             "Image to write of the errors in L*u*v*: black none, then blue, red, orange, white");
+             "Image to write of the errors in L*u*v*, from black for none over blue, red and orange to "
+             "white");
     add_number(app, "--error-range", o.error_range, {0, kNoLimit, true},
-               cat("Error that the error image shows white (default ", kErrorRange, ")"));
+               {"Error that the error image shows as white", cat(kErrorRange)});
     add_file(app, "--plot", o.plot, "Histograms to write (.svg, .png)");
-}
-
-bool is_container(const std::string& path) {
-    const std::string extension = lower_extension(path);
-    return extension == ".glb" || extension == ".gltf";
 }
 
 // Throws Error(kBadArgument) for what can be seen to be wrong before any file is read.
@@ -127,9 +114,7 @@ Input load_container(const std::string& path, const Options& o) {
     const Container container = read_container(path);
     const MeshImage& m = container.mesh_image;
     const auto index = static_cast<std::size_t>(o.level.value_or(0));
-    if (index >= m.levels.size())
-        throw Error(ErrorKind::kBadArgument,
-                    cat("--level ", index, ": ", path, " has levels 0 to ", m.levels.size() - 1));
+    check_level("--level", o.level.value_or(0), path, m);
     const Level& level = m.levels[index];
     Input input;
     input.files = container.facts.files;
@@ -191,12 +176,6 @@ Image draw_plot(const Plot& plot, const std::string& path) {
         throw Error(e.kind(), cat(path, ": ", e.what(), "; .svg needs no font"));
     }
     return image;
-}
-
-void write_text(const std::string& path, const std::string& text, bool overwrite) {
-    AtomicFile file(path, overwrite);
-    file.write({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
-    file.commit();
 }
 
 Report run(const Options& o, Context& context) {

@@ -1,20 +1,23 @@
 // imgmesh-convert: a container as another file variant or with another compression, with fewer levels, or in
 // another format.
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <ostream>
 
 #include "formats/container/container.h"
 #include "formats/export/mesh_export.h"
-#include "formats/files/atomic_file.h"
 #include "formats/files/extension.h"
 #include "formats/picture/image_io.h"
 #include "libcore/image/feature_space.h"
 #include "libcore/recon/draw.h"
+#include "tools/common/container_input.h"
+#include "tools/common/in_file.h"
 #include "tools/common/limits.h"
 #include "tools/common/names.h"
 #include "tools/common/options.h"
 #include "tools/common/output.h"
+#include "tools/common/source_image.h"
 #include "tools/common/text.h"
 #include "tools/common/texture_options.h"
 #include "tools/common/tool_main.h"
@@ -23,6 +26,9 @@ namespace fs = std::filesystem;
 using namespace imgmesh;
 
 namespace {
+
+// More than a container can have; its own number is checked when it has been read.
+constexpr CountRange kLevelRange = {0, 1000};
 
 enum class Shading { kFlat, kGradient };
 
@@ -45,39 +51,37 @@ void add_options(CLI::App& app, Options& o) {
         app, o.output,
         "Container to write (.glb, .gltf), or a level of it as .svg, .ply, .obj, .json (a sprite's mesh, as "
         "TexturePacker writes it) or .png (24-bit face ids, red the low byte)");
-    add_choice(app, "--draco", o.draco, draco_choices(), "Mesh compression (default that of the input)");
-    add_list<int>(
-        app, "--levels", o.levels,
-        [](const std::string& item) {
-            return static_cast<int>(parse_count("--levels", item, {0, 1000}));
-        },
-        "Levels to keep, finest first, as 0,2 (default all); they are numbered anew");
-    app.add_flag("--no-layers", o.no_layers,
-                 "Write the meshes alone: a plain glTF asset that imgmesh cannot read");
-    add_texture_options(
-        app, o.texture,
-        "Put an image on the meshes, for engines and viewers: that of --image, or else the reconstruction "
-        "(default: the input's texture, if it has one)",
-        true);
-    add_value(
-        app, "--level", "N",
-        [&o](const std::string& text) {
-            o.level = static_cast<int>(parse_count("--level", text, {0, 1000}));
-        },
-        "Level to export, 0 the finest (default 0)");
-    add_choice(app, "--shading", o.shading,
-               Choices<Shading>{{"flat", Shading::kFlat}, {"gradient", Shading::kGradient}},
-               "Of an .svg's triangles (default flat)");
-    add_value(
-        app, "--image", "NAME", [&o](const std::string& text) { o.image = text; },
-        "The image that --texture puts on the meshes, or that a sprite's .json names (default the output's "
-        "name in .png)");
+    const std::string container = "Container", level = "Level";
+    in_group(add_choice(app, "--draco", o.draco, draco_choices(),
+                        {"Compression of the meshes", "that of the input"}),
+             container);
+    in_group(
+        add_value(app, "--levels", "LIST",
+                  [&o](const std::string& text) {
+                      o.levels.clear();
+                      for (const std::string& item : split_list(text))
+                          o.levels.push_back(static_cast<int>(parse_count("--levels", item, kLevelRange)));
+                  },
+                  {"Levels to keep, the finest first, as in 0,2; they are numbered anew", "all"}),
+        container);
+    in_group(add_flag(
+                 app, "--no-layers", [&o] { o.no_layers = true; },
+                 "Write the meshes alone: a plain glTF asset that imgmesh cannot read"),
+             container);
+    add_texture_options(app, o.texture,
+                        {"Put an image on the meshes, for engines and viewers: that of --image, or else the "
+                         "reconstruction",
+                         "the input's texture, if it has one"},
+                        true);
+    in_group(add_count(app, "--level", o.level, kLevelRange, {"Level to export, 0 the finest", "0"}), level);
+    in_group(add_choice(app, "--shading", o.shading,
+                        Choices<Shading>{{"flat", Shading::kFlat}, {"gradient", Shading::kGradient}},
+                        {"Shading of an .svg's triangles", "flat"}),
+             level);
+    add_value(app, "--image", "NAME", [&o](const std::string& text) { o.image = text; },
+              {"Image that --texture puts on the meshes, or that a sprite's .json names",
+               "the output's name in .png"});
     add_container_limits(app, o.limits);
-}
-
-bool is_container(const Options& o) {
-    const std::string extension = lower_extension(o.output);
-    return extension == ".glb" || extension == ".gltf";
 }
 
 // Throws Error(kBadArgument) for what can be seen to be wrong before the container is read.
@@ -87,7 +91,7 @@ void check_options(const Options& o) {
         if (given && !fits)
             throw Error(ErrorKind::kBadArgument, cat(option, ": -o ", o.output, " is no ", what));
     };
-    const bool container = is_container(o);
+    const bool container = is_container(o.output);
     bool known = container;
     for (const char* name : {".svg", ".ply", ".obj", ".json", ".png"}) known = known || extension == name;
     if (!known)
@@ -108,12 +112,6 @@ void check_options(const Options& o) {
         if (o.levels[i] <= o.levels[i - 1])
             throw Error(ErrorKind::kBadArgument, cat("--levels: ", o.levels[i], " after ", o.levels[i - 1],
                                                      ", expected the finest first and each once"));
-}
-
-void check_level(const std::string& option, int level, const std::string& input, const MeshImage& m) {
-    if (level >= static_cast<int>(m.levels.size()))
-        throw Error(ErrorKind::kBadArgument,
-                    cat(option, " ", level, ": ", input, " has levels 0 to ", m.levels.size() - 1));
 }
 
 void keep_levels(const Options& o, MeshImage& m, Texture& texture) {
@@ -143,22 +141,16 @@ Texture chosen_texture(const Options& o, const MeshImage& m, Texture kept) {
                         cat("--texture: ", o.input, " has no colour; --image names an image that has"));
         image = draw(m, 0, {});
     } else {
-        image = read_image(o.image);
-        if (image.width != source.width || image.height != source.height)
-            throw Error(ErrorKind::kBadFile,
-                        cat(o.image, ": has ", image.width, "x", image.height, " pixels, the image of ",
-                            o.input, " has ", source.width, "x", source.height));
+        image = read_source_image(o.image, source, o.input);
     }
     Mask mask;
     if (source.has_mask) {
         mask = {source.width, source.height, {}};
         for (const PixelCoord& c : m.levels[0].map) mask.values.push_back(c.face != kNone);
     }
-    try {
-        return {encode_texture(image, mask, o.texture.type), texture_coords(m)};
-    } catch (const Error& e) {
-        throw Error(e.kind(), cat(o.image.empty() ? o.input : o.image, ": ", e.what()));
-    }
+    return in_file(o.image.empty() ? o.input : o.image, [&] {
+        return Texture{encode_texture(image, mask, o.texture.type), texture_coords(m)};
+    });
 }
 
 // Face ids as colours; no face is transparent.
@@ -199,9 +191,7 @@ void export_level(const Options& o, const MeshImage& m, int index, Context& cont
             level.mesh, m.source,
             o.image.empty() ? fs::path(o.output).filename().replace_extension(".png").string() : o.image,
             context.generator);
-    AtomicFile file(o.output, context.overwrite);
-    file.write({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
-    file.commit();
+    write_text(o.output, text, context.overwrite);
 }
 
 Report run(const Options& o, Context& context) {
@@ -217,7 +207,7 @@ Report run(const Options& o, Context& context) {
     check_level("--level", level, o.input, m);
     context.progress(0.5, "write");
     ContainerOptions options;
-    if (is_container(o)) {
+    if (is_container(o.output)) {
         options.texture = chosen_texture(o, m, std::move(container.texture));
         keep_levels(o, m, options.texture);
         options.draco = o.draco.value_or(container.facts.draco);
@@ -231,11 +221,11 @@ Report run(const Options& o, Context& context) {
     const Level& first = m.levels[static_cast<std::size_t>(level)];
     return {{"input", o.input},
             {"output", o.output},
-            {"levels", is_container(o) ? m.levels.size() : 1},
-            {"level", is_container(o) ? 0 : level},
+            {"levels", is_container(o.output) ? m.levels.size() : 1},
+            {"level", is_container(o.output) ? 0 : level},
             {"vertices", first.mesh.vertex_count()},
             {"faces", first.mesh.faces.size()},
-            {"layers", is_container(o) && !o.no_layers},
+            {"layers", is_container(o.output) && !o.no_layers},
             {"texture", !options.texture.picture.empty()},
             {"bytes", fs::file_size(o.output)}};
 }

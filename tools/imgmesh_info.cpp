@@ -1,5 +1,6 @@
 // imgmesh-info: what is in a container, and whether it is sound. Does not link OpenImageIO.
 #include <map>
+#include <nlohmann/json.hpp>
 #include <ostream>
 
 #include "formats/container/container.h"
@@ -25,10 +26,13 @@ struct Options {
 
 void add_options(CLI::App& app, Options& o) {
     add_input(app, "CONTAINER", o.input, "Container to read (.glb, .gltf)");
-    CLI::Option* const validate = app.add_flag(
-        "--validate", o.validate, "Only tell whether the container is sound, with every finding");
-    app.add_flag("--warnings-as-errors", o.warnings_as_errors, "With --validate: warnings fail it too")
-        ->needs(validate);
+    CLI::Option* const validate = add_flag(
+        app, "--validate", [&o] { o.validate = true; },
+        "Only tell whether the container is sound, with every finding");
+    needs(add_flag(
+              app, "--warnings-as-errors", [&o] { o.warnings_as_errors = true; },
+              "Warnings make the container fail, too"),
+          validate);
     add_container_limits(app, o.limits);
 }
 

@@ -1,16 +1,17 @@
 // imgmesh-reconstruct: a container in, an image out.
 #include <cmath>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <ostream>
 
 #include "formats/container/container.h"
-#include "formats/files/atomic_file.h"
 #include "formats/files/extension.h"
 #include "formats/picture/image_io.h"
 #include "libcore/image/feature_space.h"
 #include "libcore/recon/draw.h"
 #include "libcore/recon/draw_channels.h"
+#include "tools/common/container_input.h"
 #include "tools/common/limits.h"
 #include "tools/common/names.h"
 #include "tools/common/options.h"
@@ -46,11 +47,12 @@ Choices<SampleType> depth_choices() {
 void add_options(CLI::App& app, Options& o) {
     add_input(app, "CONTAINER", o.input, "Container to read (.glb, .gltf)");
     add_output(app, o.output, "Image to write (.png, .exr, .tif, .jpg, ...; .svg of wire and flat)");
-    add_choice(app, "--mode", o.draw.mode, mode_choices(), "What to draw (default map, the reconstruction)");
-    add_count(app, "--level", o.level, {0}, "Level of the pyramid, 0 the finest (default 0)");
+    add_choice(app, "--mode", o.draw.mode, mode_choices(), "What to draw; map is the reconstruction");
+    add_count(app, "--level", o.level, {0}, "Level of the pyramid, 0 the finest");
     add_number(app, "--scale", o.draw.scale, {0, kNoLimit, true},
-               "Size against the source's, for gouraud, wire and flat (default 1)");
-    add_choice(app, "--depth", o.depth, depth_choices(), "Samples to write (default those of the source)");
+               "Size relative to the source's, for gouraud, wire and flat");
+    add_choice(app, "--depth", o.depth, depth_choices(),
+               {"Type of the samples to write", "that of the source"});
     add_container_limits(app, o.limits);
 }
 
@@ -109,9 +111,7 @@ Report run(const Options& o, Context& context) {
     check_distinct(container.facts.files, {o.output});
     const MeshImage& mesh_image = container.mesh_image;
     const SourceInfo& source = mesh_image.source;
-    if (o.level >= static_cast<int>(mesh_image.levels.size()))
-        throw Error(ErrorKind::kBadArgument, cat("--level ", o.level, ": ", o.input, " has levels 0 to ",
-                                                 mesh_image.levels.size() - 1));
+    check_level("--level", o.level, o.input, mesh_image);
     if (o.draw.mode == DrawMode::kVisits && mesh_image.visits.empty())
         throw Error(ErrorKind::kUnsupported,
                     cat(o.input, ": there is no visit map; imgmesh-build --visits stores one"));
@@ -119,10 +119,7 @@ Report run(const Options& o, Context& context) {
     int width = source.width, height = source.height;
     context.progress(0.4, "draw");
     if (svg) {
-        const std::string text = draw_svg(mesh_image, o.level, o.draw.mode);
-        AtomicFile file(o.output, context.overwrite);
-        file.write({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
-        file.commit();
+        write_text(o.output, draw_svg(mesh_image, o.level, o.draw.mode), context.overwrite);
     } else {
         check_size(source, o.draw.scale);
         const Image image =

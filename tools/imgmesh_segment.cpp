@@ -1,9 +1,9 @@
 // imgmesh-segment: a container in, labelled regions out.
+#include <nlohmann/json.hpp>
 #include <ostream>
 
 #include "formats/container/container.h"
 #include "formats/export/label_files.h"
-#include "formats/files/atomic_file.h"
 #include "formats/files/extension.h"
 #include "formats/gltf/region_gltf.h"
 #include "formats/picture/image_io.h"
@@ -13,9 +13,12 @@
 #include "libcore/segment/draw_regions.h"
 #include "libcore/segment/region_faces.h"
 #include "libcore/segment/segment.h"
-#include "tools/common/names.h"
+#include "tools/common/choices.h"
+#include "tools/common/container_input.h"
+#include "tools/common/help.h"
 #include "tools/common/options.h"
 #include "tools/common/output.h"
+#include "tools/common/source_image.h"
 #include "tools/common/text.h"
 #include "tools/common/tool_main.h"
 #include "tools/segment_report.h"
@@ -38,29 +41,43 @@ Choices<DistanceRule> distance_choices() {
 }
 
 void add_options(CLI::App& app, Options& o) {
-    const auto add_file = [&app](const std::string& name, std::string& target, const std::string& help) {
-        add_value(
-            app, name, "FILE", [&target](const std::string& text) { target = text; }, help);
-    };
+    const SegmentParams usual;
     add_input(app, "CONTAINER", o.input, "Container to read (.glb, .gltf)");
-    add_output(app, o.output, "Labels to write: .exr (UINT id) or .png (16 bit)");
-    add_number(app, "--threshold", o.threshold, {0, kNoLimit, true},
-               cat("Merge regions closer than this, L*u*v* (default ", o.params.threshold, ")"));
-    add_count(app, "--segments", o.params.segments, {1}, "Merge until this many regions are left");
-    add_count(app, "--superpixels", o.params.superpixels, {1},
-              "This many regions of similar size that follow edges");
-    add_number(app, "--compactness", o.compactness, {0},
-               cat("Of superpixels: higher is rounder (default ", o.params.compactness, ")"));
-    add_count(app, "--min-size", o.params.min_size, {1}, "No region of fewer pixels (default 1)");
-    add_choice(app, "--distance", o.distance, distance_choices(),
-               "Between regions: by contours, or the paper's mean colours (default contour)");
-    add_count(app, "--level", o.level, {0}, "Level of the pyramid, 0 the finest (default 0)");
-    add_file("--image", o.image, "The image itself, to measure and draw on instead of the reconstruction");
-    add_file("--outlines", o.outlines, "Draw the regions' borders over the image");
-    add_file("--flat", o.flat, "Draw each region in its mean colour");
-    add_file("--ucm", o.ucm, "Write the ultrametric contour map (.exr)");
-    add_file("--report", o.report, "Write each region's colour, pixels, box and neighbours (.json)");
-    add_file("--mesh", o.mesh, "Write the base mesh with one primitive a region (.glb)");
+    add_output(app, o.output, "Labels to write, as .exr (UINT id) or .png (16 bit)");
+    const std::string regions = "Regions", files = "Files";
+    in_group(add_number(app, "--threshold", o.threshold, {0, kNoLimit, true},
+                        {"Merge regions that are closer than this, in L*u*v*", cat(usual.threshold)}),
+             regions);
+    in_group(add_count(app, "--segments", o.params.segments, {1}, "Merge until this many regions are left"),
+             regions);
+    in_group(add_count(app, "--superpixels", o.params.superpixels, {1},
+                       "Make this many regions of similar size that follow edges"),
+             regions);
+    in_group(add_count(app, "--min-size", o.params.min_size, {1}, "Least number of pixels of a region"),
+             regions);
+    in_group(add_count(app, "--level", o.level, {0}, "Level of the pyramid, 0 the finest"), regions);
+    CLI::Option* const compactness =
+        add_number(app, "--compactness", o.compactness, {0},
+                   {"Compactness of superpixels; higher is rounder", cat(usual.compactness)});
+    advanced(app, in_group(compactness, regions));
+    CLI::Option* const distance =
+        add_choice(app, "--distance", o.distance, distance_choices(),
+                   {"Distance of regions, by their contours or by mean colours as in the paper",
+                    name_of(distance_choices(), usual.distance)});
+    advanced(app, in_group(distance, regions));
+    in_group(add_file(app, "--image", o.image,
+                      "Image itself, to measure and draw on instead of the reconstruction"),
+             files);
+    in_group(
+        add_file(app, "--outlines", o.outlines, "Image to write with the regions' borders drawn over it"),
+        files);
+    in_group(add_file(app, "--flat", o.flat, "Image to write with each region in its mean colour"), files);
+    in_group(add_file(app, "--report", o.report,
+                      "List to write of each region's colour, pixels, box and neighbours (.json)"),
+             files);
+    in_group(add_file(app, "--mesh", o.mesh, "Base mesh to write with one primitive for each region (.glb)"),
+             files);
+    advanced(app, in_group(add_file(app, "--ucm", o.ucm, "Ultrametric contour map to write (.exr)"), files));
 }
 
 std::vector<std::string> outputs_of(const Options& o) {
@@ -101,14 +118,9 @@ void check_options(const Options& o) {
     check_separate(outputs_of(o));
 }
 
-FeatureImage picture_of(const Options& o, const Level& level) {
+FeatureImage picture_of(const Options& o, const MeshImage& mesh_image, const Level& level) {
     if (o.image.empty()) return reconstruct_luv(level);
-    const Image image = read_image(o.image);
-    if (image.width != level.map.width || image.height != level.map.height)
-        throw Error(ErrorKind::kBadFile,
-                    cat("--image ", o.image, ": is ", image.width, "x", image.height, ", ", o.input,
-                        " was made of ", level.map.width, "x", level.map.height));
-    return luv_image(image, Range::kClipped);
+    return luv_image(read_source_image(o.image, mesh_image.source, o.input), Range::kClipped);
 }
 
 // segment(), where what the command line asks for in vain is told in its own words.
@@ -137,16 +149,14 @@ Report run(const Options& o, Context& context) {
     const MeshImage& mesh_image = container.mesh_image;
     if (split_names(mesh_image.source.channel_names).color.empty())
         throw Error(ErrorKind::kUnsupported, cat(o.input, ": the container has no colour"));
-    if (o.level >= static_cast<int>(mesh_image.levels.size()))
-        throw Error(ErrorKind::kBadArgument, cat("--level ", o.level, ": ", o.input, " has levels 0 to ",
-                                                 mesh_image.levels.size() - 1));
+    check_level("--level", o.level, o.input, mesh_image);
     const Level& level = mesh_image.levels[static_cast<std::size_t>(o.level)];
 
     SegmentParams params = o.params;
     params.threshold = o.threshold.value_or(params.threshold);
     params.compactness = o.compactness.value_or(params.compactness);
     params.distance = o.distance.value_or(params.distance);
-    const FeatureImage picture = picture_of(o, level);
+    const FeatureImage picture = picture_of(o, mesh_image, level);
     const Segmentation result =
         segment_named(o, level, picture, params,
                       [&](double f, std::string_view stage) { context.progress(0.3 + 0.4 * f, stage); });
@@ -164,12 +174,8 @@ Report run(const Options& o, Context& context) {
         const ContourMap map = contour_map(result.cells, result.hierarchy);
         write_float_layer(o.ucm, "height", map.width, map.height, map.values, context.overwrite);
     }
-    if (!o.report.empty()) {
-        const std::string text = regions_text(labels, facts, context.generator, o.input);
-        AtomicFile file(o.report, context.overwrite);
-        file.write({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
-        file.commit();
-    }
+    if (!o.report.empty())
+        write_text(o.report, regions_text(labels, facts, context.generator, o.input), context.overwrite);
     if (!o.mesh.empty())
         write_region_mesh(o.mesh, level.mesh, region_of_faces(level.mesh, level.map, labels),
                           mesh_image.source, context.generator, context.overwrite);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <ostream>
 
@@ -16,9 +17,11 @@
 #include "libcore/warp/warp_image.h"
 #include "libcore/warp/warp_maps.h"
 #include "libcore/warp/warp_mesh.h"
-#include "tools/common/names.h"
+#include "tools/common/choices.h"
+#include "tools/common/container_input.h"
 #include "tools/common/options.h"
 #include "tools/common/output.h"
+#include "tools/common/source_image.h"
 #include "tools/common/text.h"
 #include "tools/common/tool_main.h"
 
@@ -77,46 +80,33 @@ OutputSize parse_size(const std::string& name, const std::string& text) {
 }
 
 void add_options(CLI::App& app, Options& o) {
-    const auto take = [](std::string& target) {
-        return [&target](const std::string& text) {
-            if (text.empty()) throw Error(ErrorKind::kBadArgument, "an empty file name");
-            target = text;
-        };
-    };
     add_input(app, "CONTAINER", o.input, "Container to read (.glb, .gltf)");
-    add_value(app, "--image", "FILE", take(o.image), "The image that the container was made from");
-    add_value(app, "-o,--output", "FILE", take(o.output),
-              "Edited image to write (.png, .exr, .tif, ...), or edited container (.glb, .gltf)");
-    add_value(app, "--displacement", "FILE", take(o.displacement),
-              "Maps of the edit to write (.exr): an STMap, and the displacement of every pixel");
-    add_value(app, "--edits", "FILE", take(o.edits),
-              "Edits to make (.json, schemas/imgmesh-warp.edits.schema.json)");
-    add_value(
+    add_file(app, "--image", o.image, "Image that the container was made from");
+    add_file(app, "-o,--output", o.output,
+             "Edited image to write (.png, .exr, .tif, ...), or edited container (.glb, .gltf)");
+    add_file(app, "--displacement", o.displacement,
+             "Maps of the edit to write (.exr): an STMap, and the displacement of every pixel");
+    add_file(app, "--edits", o.edits, "Edits to make (.json, schemas/imgmesh-warp.edits.schema.json)");
+    CLI::Option* const handle = add_value(
         app, kHandle, "X,Y:DX,DY", [&o](const std::string& text) { o.handle = parse_handle(text); },
-        "One edit more: move the vertex nearest to X,Y by DX,DY pixels");
-    add_count(app, "--level", o.handle_edit.level, {0},
-              "Level of the pyramid for --handle, 0 the finest (default 0)")
-        ->needs(app.get_option(kHandle));
-    add_choice(app, "--solver", o.handle_edit.solver,
-               Choices<WarpSolver>{{"direct", WarpSolver::kDirect}, {"arap", WarpSolver::kArap}},
-               "For --handle: what moves beside the vertex, nothing (default) or all as rigidly as possible")
-        ->needs(app.get_option(kHandle));
-    add_value(
-        app, kSize, "WxH", [&o](const std::string& text) { o.size = parse_size(kSize, text); },
-        "Size of the image and of the STMap (default the image's)");
-    add_value(
+        "One more edit: move the vertex nearest to X,Y by DX,DY pixels");
+    needs(add_count(app, "--level", o.handle_edit.level, {0},
+                    "Level of the pyramid that the handle moves, 0 the finest"),
+          handle);
+    needs(add_choice(app, "--solver", o.handle_edit.solver,
+                     Choices<WarpSolver>{{"direct", WarpSolver::kDirect}, {"arap", WarpSolver::kArap}},
+                     "What moves with the handle's vertex: nothing, or all as rigidly as possible"),
+          handle);
+    add_value(app, kSize, "WxH", [&o](const std::string& text) { o.size = parse_size(kSize, text); },
+              {"Size of the image and of the STMap", "that of the image"});
+    CLI::Option* const retarget = add_value(
         app, kRetarget, "WxH",
         [&o](const std::string& text) {
             o.size = parse_size(kRetarget, text);
             o.retarget = true;
         },
-        "As --size, but detail keeps its proportions and the rest of the image gives way")
-        ->excludes(app.get_option(kSize));
-}
-
-bool is_container(const std::string& path) {
-    const std::string extension = lower_extension(path);
-    return extension == ".glb" || extension == ".gltf";
+        "As --size, but detail keeps its proportions and the rest of the image gives way");
+    exclude(app, retarget, {kSize});
 }
 
 // Throws Error(kBadArgument) for what can be seen to be wrong before anything is read.
@@ -150,10 +140,7 @@ WarpEdits all_edits(const Options& o) {
 
 // solve_edits, where what the command line asks for in vain is a usage error.
 std::vector<VertexMoves> solve(const MeshImage& mesh_image, const WarpEdits& edits, const Options& o) {
-    const auto levels = static_cast<int>(mesh_image.levels.size());
-    if (o.handle && o.handle_edit.level >= levels)
-        throw Error(ErrorKind::kBadArgument,
-                    cat("--level ", o.handle_edit.level, ": ", o.input, " has levels 0 to ", levels - 1));
+    if (o.handle) check_level("--level", o.handle_edit.level, o.input, mesh_image);
     return solve_edits(mesh_image, edits);
 }
 
@@ -196,13 +183,7 @@ Report run(const Options& o, Context& context) {
     check_distinct(read, written_files(o));
     check_separate(written_files(o));
     std::optional<Image> image;
-    if (!o.image.empty()) {
-        image = read_image(o.image);
-        if (image->width != source.width || image->height != source.height)
-            throw Error(ErrorKind::kBadFile,
-                        cat(o.image, ": has ", image->width, "x", image->height, " pixels, the image of ",
-                            o.input, " has ", source.width, "x", source.height));
-    }
+    if (!o.image.empty()) image = read_source_image(o.image, source, o.input);
 
     context.progress(0.3, "solve");
     const std::vector<VertexMoves> moves = solve(mesh_image, edits, o);

@@ -13,7 +13,7 @@
 namespace imgmesh {
 
 struct FitParams {
-    double color_weight = 1.0 / 30;  ///< of colour against smoothness [px^2 / feature^2]; 0: the trivial map
+    double color_weight = 1.0 / 20;  ///< of colour against smoothness [px^2 / feature^2]; 0: the trivial map
     std::optional<WeightPrecision> bary;  ///< none: half where the map stays a bijection with it, else float
     int rounds = 4;                       ///< of relaxation, colours refitted after each
     int sweeps = 4;                       ///< of relaxation a round

@@ -15,6 +15,7 @@
 #include "libcore/metrics/metrics.h"
 #include "libcore/param/fit_map.h"
 #include "libcore/pipeline/lod_meshes.h"
+#include "libcore/pipeline/param_table.h"
 #include "libcore/pipeline/params.h"
 #include "libcore/pipeline/refine_level.h"
 #include "libcore/pipeline/rms_search.h"
@@ -305,9 +306,7 @@ BuildResult build_mesh_image(const Image& image, const BuildParams& asked, const
                                 used_channels(image, params.channels),
                                 !mask.empty(),
                                 space.gamut};
-    result.mesh_image.parameters = listed_params(params, collapse);
-    const bool half = levels.front().map.precision == WeightPrecision::kHalf;
-    result.mesh_image.parameters.emplace_back("bary", std::string(half ? "half" : "float"));
+    result.mesh_image.parameters = list_params(closed_params(params, collapse, levels.front().map.precision));
     if (progress) progress(1.0, "done");
     return result;
 }

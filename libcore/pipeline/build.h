@@ -2,91 +2,16 @@
 // first.
 #pragma once
 
-#include <optional>
+#include <cstdint>
 #include <vector>
 
 #include "libcore/base/progress.h"
-#include "libcore/image/feature_space.h"
 #include "libcore/image/image.h"
 #include "libcore/image/mask.h"
 #include "libcore/mesh/mesh_image.h"
-#include "libcore/simplify/metric.h"
+#include "libcore/pipeline/build_params.h"
 
 namespace imgmesh {
-
-/// When the collapse stops. The first limit reached counts; with none given, `density` does.
-struct StopParams {
-    std::optional<std::int64_t> faces;     ///< at most this many faces; >= 2
-    std::optional<std::int64_t> vertices;  ///< at most this many vertices; >= 4
-    std::optional<double>
-        error;  ///< no collapse above this total quadric error (paper sec. 3.1) [L*u*v*^2 px^2]
-    /// instead: as few vertices as an RMS of at most this through the pixel map takes, to about 3 %; 0 or
-    /// more [L*u*v*]. One level only. Error(kUnsupported) where the dense mesh has a larger one.
-    std::optional<double> rms;
-    double density = 1.0;  ///< percent of the pixels that stay vertices; in (0, 100]
-};
-
-inline constexpr int kMaxLevels = 32;
-inline constexpr int kMaxSmoothing = 64;
-
-/// The pyramid: nested base meshes of one run, each with a pixel map of its own.
-struct PyramidParams {
-    int count = 1;  ///< levels, each but the finest with a quarter of the faces of the one before; 1 to 32
-    std::vector<std::int64_t>
-        faces;  ///< instead: faces of each level, falling, >= 2; then StopParams do not count
-    std::vector<double>
-        errors;  ///< instead: quadric error of each level, rising; then StopParams do not count
-};
-
-/// How pixels find their places on the base mesh.
-enum class MapKind {
-    kRelaxed,  ///< moved to where the mesh has their colours, without a fold
-    kTracked,  ///< carried through every collapse (paper sec. 3.3); it may fold
-    kTrivial   ///< each at its own place
-};
-
-/// Which error refinement lowers, of the mesh drawn alone.
-enum class Objective {
-    kLuv,  ///< L*u*v*; colours are then fitted to the pixel map and to the drawing
-    kRgb   ///< encoded sRGB, interpolated as such; colours are what that drawing alone wants
-};
-
-inline constexpr int kMaxRefine = 1000;
-inline constexpr int kUsualRefine = 2;
-inline constexpr double kUsualMapColorWeight = 1.0 / 20;  ///< of the relaxed map
-
-struct BuildParams {
-    std::vector<ChannelChoice> channels;  ///< the feature space; none: the image's colour
-    StopParams stop;                      ///< of the finest level
-    PyramidParams levels;
-    Metric metric = Metric::kFlattened;
-    Solver solver = Solver::kClosed;
-    double geometry_weight = 0.3;  ///< lambda: geometry against colour in the quadrics [L*u*v*^2 / px^2]; > 0
-    double color_weight = 1.0;     ///< of colour in the quadrics; only the ratio counts, 1e-9 to 1e9
-    bool rebuild_quadrics = false;  ///< take quadrics anew from the mesh at every halving ("memoryless")
-    /// edges go by total error, as in the paper, not by what a merge adds; none: for metrics but the
-    /// flattened
-    std::optional<bool> total_priority;
-    /// passes of [1 2 1] / 4 before gradients are taken; none: by density for the flattened metric, else 0
-    std::optional<int> smoothing;
-    bool quadric_colors = false;  ///< vertex colours are those of the quadrics, as in the paper, not fitted
-    std::optional<MapKind> map;   ///< none: relaxed, or trivial where projection_color_weight is 0
-    /// relaxed: of colour against smoothness; tracked: of squared L*u*v* against squared pixels in the
-    /// flattened rings. 0 is the trivial map and excludes the two others, which need more; none: the map's
-    /// default (map_color_weight).
-    std::optional<double> projection_color_weight;
-    bool visits = false;  ///< count how often the collapse down to the finest level touches each pixel
-    std::optional<WeightPrecision> bary;      ///< none: half where the map stays a bijection, else float
-    std::optional<std::int64_t> max_cluster;  ///< no face with more pixels than this; >= 3
-    /// Rounds of refinement of each level; 0 to kMaxRefine. None: kUsualRefine where the
-    /// features are a colour and the metric the flattened one with fitted colours, else 0; 0 for a
-    /// tracked map, which takes none.
-    std::optional<std::int64_t> refine;
-    double shape_weight = 0.22;  ///< of the triangles' shape in refinement; >= 0
-    double exchange = 0;         ///< share of vertices that a round adds and takes away elsewhere; 0 to 1
-    Objective objective = Objective::kLuv;
-    double min_quality = 0;  ///< no triangle of a lesser q = 4 sqrt(3) area / sum of squared edges; 0 to 0.8
-};
 
 /// Figures of a level, measured on what a reader gets back.
 struct LevelReport {
@@ -109,10 +34,6 @@ struct BuildReport {
     std::int64_t rejected = 0;  ///< collapses that the tracked map has forbidden
     std::vector<LevelReport> levels;
 };
-
-/// What BuildParams::map and projection_color_weight come to.
-MapKind map_kind(const BuildParams& params);
-double map_color_weight(const BuildParams& params);
 
 struct BuildResult {
     MeshImage mesh_image;  ///< without generator; `parameters` lists every parameter that shaped the result

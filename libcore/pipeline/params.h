@@ -3,12 +3,13 @@
 
 #include <vector>
 
-#include "libcore/pipeline/build.h"
+#include "libcore/pipeline/build_params.h"
 #include "libcore/simplify/simplify.h"
 
 namespace imgmesh {
 
-/// Throws Error(kBadArgument) for the first parameter that is out of its range.
+/// Throws Error(kBadArgument) for the first parameter out of its range, and where parameters exclude each
+/// other.
 void check_params(const BuildParams& params);
 
 /// The collapse's targets, finest level first, for an image of that many pixels.
@@ -17,8 +18,9 @@ std::vector<SimplifyTarget> collapse_targets(const BuildParams& params, double p
 /// The collapse's parameters, but for max_face_area.
 SimplifyParams collapse_params(const BuildParams& params, const SimplifyTarget& finest, double pixels);
 
-/// Every parameter that shaped the result, by its option's name.
-std::vector<BuildParameter> listed_params(const BuildParams& params, const SimplifyParams& collapse);
+/// `params` as they shaped the result: nothing that was left to the build is open any more.
+BuildParams closed_params(const BuildParams& params, const SimplifyParams& collapse,
+                          WeightPrecision precision);
 
 /// Rounds of refinement: as wanted, or else none for published metrics and for colours of the quadrics, which
 /// are to be compared as they are, nor for a tracked map, which must end with the collapse.

@@ -1,35 +1,56 @@
 #include "libcore/pipeline/presets.h"
 
+#include "libcore/base/error.h"
+
 namespace imgmesh {
+namespace {
+
+BuildParams fast() {
+    BuildParams params;
+    params.geometry_weight = 1;
+    params.refine = 0;
+    return params;
+}
+
+BuildParams best() {
+    BuildParams params;
+    params.geometry_weight = 0.1;
+    params.rebuild_quadrics = true;
+    params.refine = 6;
+    params.exchange = 0.2;
+    params.shape_weight = 0;
+    return params;
+}
+
+BuildParams fem() {
+    BuildParams params;
+    params.geometry_weight = 1;
+    params.rebuild_quadrics = true;
+    params.refine = 10;
+    params.exchange = 0.2;
+    params.shape_weight = 0.3;
+    params.min_quality = 0.28;
+    params.objective = Objective::kRgb;  // the mesh alone is what a simulation gets
+    return params;
+}
+
+}  // namespace
 
 // Each number is from the tables in docs/decisions/0013-defaults.md.
-BuildParams preset_params(Preset preset) {
-    BuildParams params;
-    switch (preset) {
-        case Preset::kFast:
-            params.geometry_weight = 1;
-            params.refine = 0;
-            break;
-        case Preset::kDefault:
-            break;
-        case Preset::kBest:
-            params.geometry_weight = 0.1;
-            params.rebuild_quadrics = true;
-            params.refine = 6;
-            params.exchange = 0.2;
-            params.shape_weight = 0;
-            break;
-        case Preset::kFem:
-            params.geometry_weight = 1;
-            params.rebuild_quadrics = true;
-            params.refine = 10;
-            params.exchange = 0.2;
-            params.shape_weight = 0.3;
-            params.min_quality = 0.28;
-            params.objective = Objective::kRgb;  // the mesh alone is what a simulation gets
-            break;
-    }
-    return params;
+const std::vector<Preset>& presets() {
+    static const std::vector<Preset> all = {
+        {"fast", "the shortest time, without refinement", fast()},
+        {"default", "the lowest error through the pixel map with triangles of good shape", {}},
+        {"best", "the lowest error of the mesh drawn alone, whatever the shape of its triangles", best()},
+        {"fem", "no triangle of bad shape, for numerical simulation", fem()},
+    };
+    return all;
+}
+
+const BuildParams& preset_params(std::string_view name) {
+    for (const Preset& preset : presets())
+        if (preset.name == name) return preset.params;
+    throw Error(ErrorKind::kBadArgument, cat("'", name, "' is no preset"));
 }
 
 }  // namespace imgmesh

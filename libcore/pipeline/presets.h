@@ -1,17 +1,22 @@
 // Sets of parameters that were measured together (docs/decisions/0013-defaults.md).
 #pragma once
 
-#include "libcore/pipeline/build.h"
+#include <string_view>
+#include <vector>
+
+#include "libcore/pipeline/build_params.h"
 
 namespace imgmesh {
 
-enum class Preset {
-    kFast,     ///< no refinement
-    kDefault,  ///< the lowest error through the map with well-shaped triangles: what BuildParams holds
-    kBest,     ///< the lowest error of the mesh drawn alone, whatever the triangles' shape
-    kFem       ///< refinement with a floor under the triangles' shape, for numerical simulation
+struct Preset {
+    std::string_view name;
+    std::string_view help;  ///< what it is good for
+    BuildParams params;
 };
 
-BuildParams preset_params(Preset preset);
+const std::vector<Preset>& presets();
+
+/// Throws Error(kBadArgument) for an unknown name.
+const BuildParams& preset_params(std::string_view name);
 
 }  // namespace imgmesh

@@ -1,7 +1,7 @@
 // Refinement of one level in the colour space of its objective.
 #pragma once
 
-#include "libcore/pipeline/build.h"
+#include "libcore/pipeline/build_params.h"
 #include "libcore/refine/refine.h"
 
 namespace imgmesh {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "libcore/param/track.h"
-#include "libcore/pipeline/build.h"
+#include "libcore/pipeline/build_params.h"
 #include "libcore/simplify/simplify.h"
 
 namespace imgmesh {

@@ -71,13 +71,7 @@ int mosaic(const Arguments& a) {
 }
 
 BuildParams params_of(const std::string& preset, const std::string& density) {
-    const std::map<std::string, Preset> presets = {{"fast", Preset::kFast},
-                                                   {"default", Preset::kDefault},
-                                                   {"best", Preset::kBest},
-                                                   {"fem", Preset::kFem}};
-    const auto at = presets.find(preset);
-    if (at == presets.end()) throw Error(ErrorKind::kBadArgument, cat("'", preset, "' is no preset"));
-    BuildParams params = preset_params(at->second);
+    BuildParams params = preset_params(preset);
     params.stop.density = std::strtod(density.c_str(), nullptr);
     return params;
 }

@@ -7,14 +7,57 @@ from support import ROOT, TOOLS, CliCase, main
 PROJECT = re.search(r"project\(imgmesh VERSION ([0-9.]+)", (ROOT / "CMakeLists.txt").read_text())
 
 
+def described(text):
+    """The options of a help, by their long names, with what it says of each."""
+    options, name = {}, None
+    for line in text[:text.index("Exit codes:")].splitlines():
+        head = re.match(r"  (-\S+)(?: +(.*))?$", line)
+        if head:
+            name = head[1].split(",")[-1]
+            options[name] = head[2] or ""
+        elif line.startswith("    ") and name:
+            options[name] += " " + line.strip()
+        else:
+            name = None
+    return options
+
+
 class Usage(CliCase):
     def test_help_ends_with_exit_codes(self):
         for tool in TOOLS:
-            text = self.run_ok(tool, "--help").stdout
-            for option in ("--json", "--quiet", "--threads", "--config", "--no-overwrite", "--version"):
-                self.assertIn(option, text)
-            codes = text[text.index("Exit codes:"):].strip().splitlines()[1:]
-            self.assertEqual([int(line.split()[0]) for line in codes], [0, 1, 2, 3, 4, 5, 7])
+            for size in ("--help", "--help-all"):
+                text = self.run_ok(tool, size).stdout
+                for option in ("--json", "--quiet", "--threads", "--config", "--no-overwrite", "--version"):
+                    self.assertIn(option, text)
+                codes = re.findall(r"^  (\d)  \w", text[text.index("Exit codes:"):], re.M)
+                self.assertEqual(list(map(int, codes)), [0, 1, 2, 3, 4, 5, 7])
+
+    def test_help_has_two_sizes(self):
+        """The short one fits a screen, and says that there is another; that one has every option that is taken."""
+        for tool in TOOLS:
+            short, full = (self.run_ok(tool, size).stdout for size in ("--help", "--help-all"))
+            self.assertIn("--help-all", short.splitlines()[-1])
+            self.assertLessEqual(described(short).items(), described(full).items())
+            self.assertLessEqual(len(described(short)), 22)
+            for line in (short + full).splitlines():
+                self.assertLessEqual(len(line), 100, line)
+            for name, text in described(full).items():
+                self.assertLessEqual(text.count("(default"), 1, name)
+        full = self.run_ok("imgmesh-build", "--help-all").stdout
+        for heading in ("Image", "Size", "Levels", "Simplification", "Refinement", "Pixel map", "Container", "General"):
+            self.assertEqual(len(re.findall(f"^{heading}:$", full, re.M)), 1, heading)
+
+    def test_help_of_an_option(self):
+        """Its words, its default and what it is not given with, each in one way."""
+        options = described(self.run_ok("imgmesh-build", "--help-all").stdout)
+        for name, end in (("--objective", ": luv, rgb (default luv)"), ("--geometry-weight", " (default 0.3)"),
+                          ("--texture-type", ": png, jpeg (default png); needs --texture"),
+                          ("--map-smoothness", " (default 20); not with --projection-color-weight"),
+                          ("--density", " (default 1); not with --error, --faces, --level-errors, --level-faces, --rms,"
+                                        " --vertices")):
+            self.assertTrue(options[name].endswith(end), options[name])
+        for name in ("--shape-weight", "--metric", "--bary", "--max-pixels"):
+            self.assertNotIn(name, self.run_ok("imgmesh-build", "--help").stdout)
 
     def test_version_is_the_projects(self):
         for tool in TOOLS:

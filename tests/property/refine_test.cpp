@@ -73,7 +73,7 @@ TEST_CASE("refine: without rounds the colours alone are fitted") {
     const FeatureImage feature = sample_feature(Kind::kGradient, 60, 45);
     BaseMesh mesh = collapsed(feature, 60);
     const BaseMesh before = mesh;
-    const RefineReport report = refine(mesh, feature, {});
+    const RefineReport report = refine(mesh, feature, {.rounds = 0});
     CHECK(mesh.position == before.position);
     CHECK(mesh.faces == before.faces);
     CHECK(report.error.size() == 1);

@@ -190,7 +190,7 @@ TEST_CASE("tracked build: which map it is, is listed") {
     };
     BuildParams zero;
     zero.projection_color_weight = 0;
-    CHECK(listed({}) == std::pair<std::string, double>("relaxed", kUsualMapColorWeight));
+    CHECK(listed({}) == std::pair<std::string, double>("relaxed", 0.05));
     CHECK(listed(zero) == std::pair<std::string, double>("trivial", 0));
     CHECK(listed(with_map(MapKind::kTrivial)) == std::pair<std::string, double>("trivial", 0));
     CHECK(listed(with_map(MapKind::kTracked)) == std::pair<std::string, double>("tracked", 0.1));

@@ -1,15 +1,15 @@
-// --channels: which channels of an image are its features.
+// Which channels of an image are its features, as the command line has it.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "libcore/image/feature_space.h"
-#include "tools/common/options.h"
 
 namespace imgmesh {
 
-/// A list of NAME or NAME:WEIGHT. What is wrong without any image (check_channels) is Error(kBadArgument)
-/// at once.
-CLI::Option* add_channels(CLI::App& app, std::vector<ChannelChoice>& channels);
+/// The channels of a list of NAME or NAME:WEIGHT that was given to option `name`. What is wrong without any
+/// image (check_channels) is Error(kBadArgument) at once.
+std::vector<ChannelChoice> parse_channels(const std::string& name, const std::string& text);
 
 }  // namespace imgmesh

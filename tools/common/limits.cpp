@@ -1,25 +1,19 @@
 #include "tools/common/limits.h"
 
-#include "libcore/base/error.h"
+#include <limits>
+
+#include "tools/common/help.h"
 #include "tools/common/options.h"
 
 namespace imgmesh {
 
 void add_container_limits(CLI::App& app, ContainerLimits& limits) {
-    const auto add = [&](const char* name, auto& target, std::int64_t most, const std::string& help) {
-        const CountRange range = {1, most};
-        add_value(
-            app, name, "N",
-            [&target, name, range](const std::string& text) {
-                target =
-                    static_cast<std::remove_reference_t<decltype(target)>>(parse_count(name, text, range));
-            },
-            cat(help, " (default ", target, ")"))
-            ->group("Limits");
+    const auto add = [&](const char* name, auto& target, std::int64_t most, const char* help) {
+        advanced(app, in_group(add_count(app, name, target, {1, most}, help), "Limits"));
     };
     const std::int64_t any = std::numeric_limits<std::int64_t>::max();
     add("--max-bytes", limits.max_bytes, any, "Refuse a container of more bytes, all files together");
-    add("--max-pixels", limits.max_pixels, any, "Refuse a larger image");
+    add("--max-pixels", limits.max_pixels, any, "Refuse an image of more pixels");
     add("--max-faces", limits.max_faces, any, "Refuse a mesh of more faces");
     add("--max-levels", limits.max_levels, 1000, "Refuse more levels");
     // The parser's result is destroyed level by level on the stack.

@@ -1,9 +1,11 @@
 // Options for what a reader refuses before it takes memory.
 #pragma once
 
-#include <CLI/CLI.hpp>
-
 #include "formats/container/container.h"
+
+namespace CLI {
+class App;
+}
 
 namespace imgmesh {
 

@@ -23,20 +23,6 @@ Choices<DracoMode> draco_choices() {
             {"none", DracoMode::kOff}};
 }
 
-Choices<Metric> metric_choices() {
-    Choices<Metric> choices;
-    for (const Metric metric : {Metric::kFlattened, Metric::kHoppe, Metric::kGarland})
-        choices.emplace_back(metric_name(metric), metric);
-    return choices;
-}
-
-Choices<Solver> solver_choices() {
-    Choices<Solver> choices;
-    for (const Solver solver : {Solver::kSvd, Solver::kLu, Solver::kClosed})
-        choices.emplace_back(solver_name(solver), solver);
-    return choices;
-}
-
 Choices<SampleType> sample_type_choices() {
     return {{"uint8", SampleType::kUint8},
             {"uint16", SampleType::kUint16},

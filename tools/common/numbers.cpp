@@ -1,7 +1,6 @@
 #include "tools/common/numbers.h"
 
 #include <charconv>
-#include <cmath>
 
 #include "libcore/base/error.h"
 
@@ -20,31 +19,17 @@ bool parse_whole(const std::string& text, Value& value) {
     throw Error(ErrorKind::kBadArgument, cat(name, " '", text, "': expected ", expected));
 }
 
-std::string describe(const CountRange& range) {
-    if (range.most >= std::numeric_limits<int>::max()) return cat("a whole number, at least ", range.least);
-    return cat("a whole number from ", range.least, " to ", range.most);
-}
-
-std::string describe(const NumberRange& range) {
-    std::string words = cat("a number ", range.open ? "above " : "of at least ", range.least);
-    if (std::isfinite(range.most)) words += cat(" and at most ", range.most);
-    return words;
-}
-
 }  // namespace
 
 std::int64_t parse_count(const std::string& name, const std::string& text, const CountRange& range) {
     std::int64_t value = 0;
-    if (!parse_whole(text, value) || value < range.least || value > range.most)
-        refuse(name, text, describe(range));
+    if (!parse_whole(text, value) || !contains(range, value)) refuse(name, text, describe(range));
     return value;
 }
 
 double parse_number(const std::string& name, const std::string& text, const NumberRange& range) {
     double value = 0;
-    if (!parse_whole(text, value) || !std::isfinite(value) || value > range.most ||
-        (range.open ? value <= range.least : value < range.least))
-        refuse(name, text, describe(range));
+    if (!parse_whole(text, value) || !contains(range, value)) refuse(name, text, describe(range));
     return value;
 }
 

@@ -1,5 +1,6 @@
 #include "tools/common/options.h"
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 
 namespace imgmesh {
@@ -11,16 +12,21 @@ bool same_name(const std::string& a, const std::string& b) {
 }
 
 CLI::Option* add_value(CLI::App& app, const std::string& name, const std::string& type,
-                       std::function<void(const std::string&)> take, const std::string& help) {
+                       std::function<void(const std::string&)> take, const Help& help) {
     CLI::Option* option = app.add_option(
         name,
         [take = std::move(take)](const CLI::results_t& results) {
             take(results.front());
             return true;
         },
-        help);
+        help.otherwise.empty() ? help.text : cat(help.text, " (default ", help.otherwise, ")"));
     option->type_name(type);
     return option;
+}
+
+CLI::Option* add_flag(CLI::App& app, const std::string& name, std::function<void()> take,
+                      const std::string& help) {
+    return app.add_flag_callback(name, std::move(take), help);
 }
 
 CLI::Option* add_input(CLI::App& app, const std::string& name, std::string& input, const std::string& help) {
@@ -45,14 +51,58 @@ CLI::Option* add_inputs(CLI::App& app, const std::string& name, std::vector<std:
 }
 
 CLI::Option* add_output(CLI::App& app, std::string& output, const std::string& help) {
-    CLI::Option* option = add_value(
-        app, "-o,--output", "FILE",
-        [&output](const std::string& text) {
-            if (text.empty()) throw Error(ErrorKind::kBadArgument, "--output '': expected a file name");
-            output = text;
+    return add_file(app, "-o,--output", output, help)->required();
+}
+
+CLI::Option* add_file(CLI::App& app, const std::string& name, std::string& target, const std::string& help) {
+    const std::string long_name = name.substr(name.find("--"));
+    return add_value(
+        app, name, "FILE",
+        [&target, long_name](const std::string& text) {
+            if (text.empty())
+                throw Error(ErrorKind::kBadArgument, cat(long_name, " '': expected a file name"));
+            target = text;
         },
         help);
-    return option->required();
+}
+
+void exclude(CLI::App& app, CLI::Option* option, const std::vector<std::string>& names) {
+    for (const std::string& name : names) option->excludes(app.get_option(name));
+}
+
+CLI::Option* needs(CLI::Option* option, CLI::Option* other) {
+    return option->needs(other);
+}
+
+CLI::Option* in_group(CLI::Option* option, const std::string& group) {
+    return option->group(group);
+}
+
+void after_parsing(CLI::App& app, std::function<void()> check) {
+    app.final_callback(std::move(check));
+}
+
+bool given(const CLI::App& app, const std::string& name) {
+    return app.count(name) > 0;
+}
+
+std::string typed(const CLI::App& app, std::initializer_list<const char*> names) {
+    for (const char* name : names) {
+        const CLI::Option* option = app.get_option(name);
+        if (option->count() == 0) continue;
+        return option->get_expected_min() == 0 ? name : cat(name, ' ', option->results().front());
+    }
+    return "";
+}
+
+std::vector<std::string> split_list(const std::string& text) {
+    std::vector<std::string> items;
+    for (std::size_t at = 0; at <= text.size();) {
+        const std::size_t end = std::min(text.find(',', at), text.size());
+        items.push_back(text.substr(at, end - at));
+        at = end + 1;
+    }
+    return items;
 }
 
 }  // namespace imgmesh

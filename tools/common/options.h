@@ -1,24 +1,42 @@
 // Options that read their values strictly: anything else is refused with Error(kBadArgument) in one line.
+// CLI11 costs seconds in every file that includes it, so this header only names its types.
 #pragma once
 
-#include <CLI/CLI.hpp>
-#include <algorithm>
 #include <cstdint>
 #include <functional>
+#include <initializer_list>
 #include <limits>
+#include <optional>
 #include <string>
 #include <type_traits>
 #include <utility>
 #include <vector>
 
 #include "libcore/base/error.h"
+#include "tools/common/choices.h"
 #include "tools/common/numbers.h"
+
+namespace CLI {
+class App;
+class Option;
+}  // namespace CLI
 
 namespace imgmesh {
 
+/// What the help says of an option: what it is, and what counts where it is not given.
+struct Help {
+    Help(const char* what) : text(what) {}
+    Help(std::string what, std::string without = "") : text(std::move(what)), otherwise(std::move(without)) {}
+
+    std::string text;       ///< without a full stop
+    std::string otherwise;  ///< "" where there is nothing to say, or where the option's target says it
+};
+
 /// An option that calls `take` with its one value. `name` is the long option, perhaps after a short one.
 CLI::Option* add_value(CLI::App& app, const std::string& name, const std::string& type,
-                       std::function<void(const std::string&)> take, const std::string& help);
+                       std::function<void(const std::string&)> take, const Help& help);
+CLI::Option* add_flag(CLI::App& app, const std::string& name, std::function<void()> take,
+                      const std::string& help);
 
 /// The files to read: one name, or at least one where `inputs` is a vector. Required.
 CLI::Option* add_input(CLI::App& app, const std::string& name, std::string& input, const std::string& help);
@@ -26,73 +44,73 @@ CLI::Option* add_inputs(CLI::App& app, const std::string& name, std::vector<std:
                         const std::string& help);
 /// -o, --output. Required.
 CLI::Option* add_output(CLI::App& app, std::string& output, const std::string& help);
+/// An option for the name of a file, which is not empty.
+CLI::Option* add_file(CLI::App& app, const std::string& name, std::string& target, const std::string& help);
+
+/// `option` is refused together with the options of these names, and says so in its help.
+void exclude(CLI::App& app, CLI::Option* option, const std::vector<std::string>& names);
+/// `option` is refused without `other`.
+CLI::Option* needs(CLI::Option* option, CLI::Option* other);
+/// The heading that an option stands under in the help; "Options" where none is given.
+CLI::Option* in_group(CLI::Option* option, const std::string& group);
+
+/// Calls `check` when all options have been read.
+void after_parsing(CLI::App& app, std::function<void()> check);
+/// Whether the option of this name was given.
+bool given(const CLI::App& app, const std::string& name);
+/// "--refine 6": the first of these options that was given, as it was typed; "" where none was.
+std::string typed(const CLI::App& app, std::initializer_list<const char*> names);
+
+/// The items of a list that commas separate.
+std::vector<std::string> split_list(const std::string& text);
+
+/// The type of a target's value, whether or not it is an optional one; for decltype.
+template <typename T>
+T chosen_type(const T&);
+template <typename T>
+T chosen_type(const std::optional<T>&);
+
+/// `help` with the default that `target` holds, unless it is an optional one.
+template <typename Target>
+Help with_default(Help help, const Target& target) {
+    if constexpr (std::is_arithmetic_v<Target>) help.otherwise = cat(target);
+    return help;
+}
 
 template <typename Integer>
 CLI::Option* add_count(CLI::App& app, const std::string& name, Integer& target, const CountRange& range,
-                       const std::string& help) {
-    using Value = std::conditional_t<std::is_integral_v<Integer>, Integer, std::int64_t>;
-    const CountRange fitting = {range.least,
-                                std::min<std::int64_t>(range.most, std::numeric_limits<Value>::max())};
+                       const Help& help) {
+    using Value = decltype(chosen_type(target));
+    CountRange fitting = range;
+    if (std::cmp_greater(range.most, std::numeric_limits<Value>::max()))
+        fitting.most = static_cast<std::int64_t>(std::numeric_limits<Value>::max());
     return add_value(
         app, name, "N",
         [&target, name, fitting](const std::string& text) {
             target = static_cast<Value>(parse_count(name, text, fitting));
         },
-        help);
+        with_default(help, target));
 }
 
 template <typename Number>
 CLI::Option* add_number(CLI::App& app, const std::string& name, Number& target, const NumberRange& range,
-                        const std::string& help) {
+                        const Help& help) {
     return add_value(
         app, name, "X",
-        [&target, name, range](const std::string& text) { target = parse_number(name, text, range); }, help);
+        [&target, name, range](const std::string& text) { target = parse_number(name, text, range); },
+        with_default(help, target));
 }
-
-/// A list, its items separated by commas, each read by `parse`.
-template <typename Item>
-CLI::Option* add_list(CLI::App& app, const std::string& name, std::vector<Item>& target,
-                      std::function<Item(const std::string&)> parse, const std::string& help) {
-    return add_value(
-        app, name, "LIST",
-        [&target, parse](const std::string& text) {
-            target.clear();
-            for (std::size_t at = 0; at <= text.size();) {
-                const std::size_t end = std::min(text.find(',', at), text.size());
-                target.push_back(parse(text.substr(at, end - at)));
-                at = end + 1;
-            }
-        },
-        help);
-}
-
-/// The names of `choices`, as in "half, float".
-template <typename Value>
-std::string choice_names(const std::vector<std::pair<std::string, Value>>& choices) {
-    std::string names;
-    for (const auto& choice : choices) names += (names.empty() ? "" : ", ") + choice.first;
-    return names;
-}
-
-/// Whether two names differ in no more than the case of ASCII letters.
-bool same_name(const std::string& a, const std::string& b);
 
 /// One of several names in any case, each standing for a value.
 template <typename Target, typename Value>
-CLI::Option* add_choice(CLI::App& app, const std::string& name, Target& target,
-                        const std::vector<std::pair<std::string, Value>>& choices, const std::string& help) {
+CLI::Option* add_choice(CLI::App& app, const std::string& name, Target& target, const Choices<Value>& choices,
+                        Help help) {
+    if constexpr (std::is_same_v<Target, Value>) help.otherwise = name_of(choices, target);
+    help.text += ": " + choice_names(choices);
     return add_value(
         app, name, "NAME",
-        [&target, name, choices](const std::string& text) {
-            for (const auto& [word, value] : choices) {
-                if (!same_name(word, text)) continue;
-                target = value;
-                return;
-            }
-            throw Error(ErrorKind::kBadArgument,
-                        cat(name, " '", text, "': expected one of ", choice_names(choices)));
-        },
-        help + ": " + choice_names(choices));
+        [&target, name, choices](const std::string& text) { target = parse_choice(name, text, choices); },
+        help);
 }
 
 }  // namespace imgmesh

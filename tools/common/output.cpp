@@ -4,6 +4,7 @@
 #include <set>
 #include <system_error>
 
+#include "formats/files/atomic_file.h"
 #include "libcore/base/error.h"
 
 namespace fs = std::filesystem;
@@ -39,6 +40,12 @@ void check_separate(const std::vector<std::string>& outputs) {
         if (!error && !seen.insert(path).second)
             throw Error(ErrorKind::kBadArgument, cat(output, ": is named for two outputs"));
     }
+}
+
+void write_text(const std::string& path, const std::string& text, bool overwrite) {
+    AtomicFile file(path, overwrite);
+    file.write({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
+    file.commit();
 }
 
 void make_folder(const std::string& path) {

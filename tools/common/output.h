@@ -16,6 +16,9 @@ void check_distinct(const std::vector<std::string>& inputs, const std::vector<st
 /// Throws Error(kBadArgument) where two of the `outputs` are one file, whatever their names.
 void check_separate(const std::vector<std::string>& outputs);
 
+/// Writes `text` as the whole of a file, or nothing.
+void write_text(const std::string& path, const std::string& text, bool overwrite);
+
 /// `path` as a folder, made where it is not there. Throws Error(kIo) where that fails.
 void make_folder(const std::string& path);
 

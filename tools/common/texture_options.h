@@ -1,10 +1,14 @@
 // --texture, for the tools that write containers.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <optional>
 
 #include "formats/picture/texture_file.h"
+#include "tools/common/options.h"
+
+namespace CLI {
+class App;
+}
 
 namespace imgmesh {
 
@@ -14,6 +18,6 @@ struct TextureOptions {
 };
 
 /// --texture, --no-texture where there may be one already, and --texture-type, which is refused without.
-void add_texture_options(CLI::App& app, TextureOptions& options, const std::string& help, bool removable);
+void add_texture_options(CLI::App& app, TextureOptions& options, const Help& help, bool removable);
 
 }  // namespace imgmesh

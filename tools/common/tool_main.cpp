@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <CLI/CLI.hpp>
 #include <cerrno>
 #include <csignal>
 #include <cstring>
@@ -10,11 +11,14 @@
 #include <iostream>
 #include <memory>
 #include <new>
+#include <nlohmann/json.hpp>
+#include <optional>
 #include <sstream>
 
 #include "formats/files/atomic_file.h"
 #include "libcore/base/parallel.h"
 #include "tools/common/config_file.h"
+#include "tools/common/help.h"
 #include "tools/common/huge_pages.h"
 #include "tools/common/options.h"
 #include "tools/common/progress_bar.h"
@@ -46,7 +50,7 @@ struct CommonOptions {
     bool json = false;
     bool quiet = false;
     bool overwrite = true;
-    int threads = hardware_threads();
+    std::optional<int> threads;  // none: all
 };
 
 std::string exit_code_table() {
@@ -57,14 +61,20 @@ std::string exit_code_table() {
 }
 
 void add_common_options(CLI::App& app, CommonOptions& common) {
-    app.set_help_flag("-h,--help", "Print this and exit");
-    app.set_version_flag("--version", app.get_name() + " " IMGMESH_VERSION, "Print the version and exit");
-    app.add_flag("--json", common.json, "Print the report as one JSON object");
-    app.add_flag("-q,--quiet", common.quiet, "Print no text report and no progress");
-    app.add_flag("--overwrite,!--no-overwrite", common.overwrite, "Replace files that exist (default)");
-    add_count(app, "--threads", common.threads, {1, kMaxThreads},
-              "Threads at most; results are the same for any number (default all)");
-    add_config_option(app);
+    const std::string group = "General";
+    app.set_help_flag("-h,--help", "Print the options that most people need, and exit")->group(group);
+    app.set_help_all_flag("--help-all", "Print all options, and exit")->group(group);
+    app.set_version_flag("--version", app.get_name() + " " IMGMESH_VERSION, "Print the version and exit")
+        ->group(group);
+    app.add_flag("--json", common.json, "Print the report as one JSON object")->group(group);
+    app.add_flag("-q,--quiet", common.quiet, "Print no text report and no progress")->group(group);
+    app.add_flag("--overwrite,!--no-overwrite", common.overwrite,
+                 "Replace files that exist, or refuse to (default --overwrite)")
+        ->group(group);
+    in_group(add_count(app, "--threads", common.threads, {1, kMaxThreads},
+                       {"Largest number of threads; results are the same for any number", "all"}),
+             group);
+    in_group(add_config_option(app), group);
     app.footer(exit_code_table());
 }
 
@@ -111,7 +121,7 @@ ExitCode run_parsed(const Tool& tool, const CommonOptions& common) {
     ProgressBar bar(!common.quiet && ::isatty(STDERR_FILENO));
     context.progress = [&bar](double fraction, std::string_view stage) { bar.show(fraction, stage); };
 
-    const ThreadLimit limit(common.threads);
+    const ThreadLimit limit(common.threads.value_or(hardware_threads()));
     Report report = {{"$schema", tool.name + ".report.schema.json"}, {"generator", context.generator}};
     report.update(tool.run(context));
     bar.clear();
@@ -131,12 +141,16 @@ ExitCode run_parsed(const Tool& tool, const CommonOptions& common) {
 ExitCode parse_and_run(const Tool& tool, int argc, char** argv) {
     CLI::App app(tool.description, tool.name);
     CommonOptions common;
+    set_help_style(app);
     tool.add_options(app);
     add_common_options(app, common);
     try {
         app.parse(argc, argv);
     } catch (const CLI::CallForHelp&) {
-        write_stdout(app.help());
+        write_stdout(everyday_help(app));
+        return ExitCode::kOk;
+    } catch (const CLI::CallForAllHelp&) {
+        write_stdout(full_help(app));
         return ExitCode::kOk;
     } catch (const CLI::CallForVersion& version) {
         write_stdout(cat(version.what(), '\n'));

@@ -1,19 +1,23 @@
 // The frame of every command line tool: common options, errors, exit codes, the report.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <functional>
 #include <iosfwd>
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
 #include "libcore/base/progress.h"
 #include "tools/common/exit_code.h"
 
+namespace CLI {
+class App;
+}
+
 namespace imgmesh {
 
-/// What a tool found or did: the object that --json prints. The text report is made from it.
+/// What a tool found or did: the object that --json prints. The text report is made from it. Who makes or
+/// reads one includes nlohmann/json.hpp.
 using Report = nlohmann::ordered_json;
 
 /// A mistake as it is told to the user: one error line and an exit code.

@@ -1,0 +1,93 @@
+// The parameters of a build. docs/parameters.md lists each with its name, its range and what it does.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "libcore/image/feature_space.h"
+#include "libcore/mesh/pixel_map.h"
+#include "libcore/refine/refine_params.h"
+#include "libcore/simplify/metric.h"
+
+namespace imgmesh {
+
+/// When the collapse stops. The first limit reached counts; with none given, `density` does.
+struct StopParams {
+    std::optional<std::int64_t> faces;     ///< at most this many faces; >= 2
+    std::optional<std::int64_t> vertices;  ///< at most this many vertices; >= 4
+    std::optional<double>
+        error;  ///< no collapse above this total quadric error (paper sec. 3.1) [L*u*v*^2 px^2]
+    /// instead: as few vertices as an RMS of at most this through the pixel map takes, to about 3 %; 0 or
+    /// more [L*u*v*]. One level only. Error(kUnsupported) where the dense mesh has a larger one.
+    std::optional<double> rms;
+    double density = 1.0;  ///< percent of the pixels that stay vertices; in (0, 100]
+};
+
+inline constexpr int kMaxLevels = 32;
+inline constexpr int kMaxSmoothing = 64;
+
+/// The pyramid: nested base meshes of one run, each with a pixel map of its own.
+struct PyramidParams {
+    int count = 1;  ///< levels, each but the finest with a quarter of the faces of the one before; 1 to 32
+    std::vector<std::int64_t>
+        faces;  ///< instead: faces of each level, falling, >= 2; then StopParams do not count
+    std::vector<double>
+        errors;  ///< instead: quadric error of each level, rising; then StopParams do not count
+};
+
+/// How pixels find their places on the base mesh.
+enum class MapKind {
+    kRelaxed,  ///< moved to where the mesh has their colours, without a fold
+    kTracked,  ///< carried through every collapse (paper sec. 3.3); it may fold
+    kTrivial   ///< each at its own place
+};
+
+/// Which error refinement lowers, of the mesh drawn alone.
+enum class Objective {
+    kLuv,  ///< L*u*v*; colours are then fitted to the pixel map and to the drawing
+    kRgb   ///< encoded sRGB, interpolated as such; colours are what that drawing alone wants
+};
+
+inline constexpr int kMaxRefine = 1000;
+
+struct BuildParams {
+    std::vector<ChannelChoice> channels;  ///< the feature space; none: the image's colour
+    StopParams stop;                      ///< of the finest level
+    PyramidParams levels;
+    Metric metric = Metric::kFlattened;
+    Solver solver = Solver::kClosed;
+    /// lambda: geometry against colour in the quadrics [L*u*v*^2 / px^2]; > 0
+    double geometry_weight = 0.3;
+    double color_weight = 1.0;  ///< of colour in the quadrics; only the ratio counts, 1e-9 to 1e9
+    /// take quadrics anew from the mesh at every halving ("memoryless")
+    bool rebuild_quadrics = false;
+    /// edges go by total error, as in the paper, not by what a merge adds; none: for metrics but the
+    /// flattened
+    std::optional<bool> total_priority;
+    /// passes of [1 2 1] / 4 before gradients are taken; none: by density for the flattened metric, else 0
+    std::optional<int> smoothing;
+    bool quadric_colors = false;  ///< vertex colours are those of the quadrics, as in the paper, not fitted
+    std::optional<MapKind> map;   ///< none: relaxed, or trivial where projection_color_weight is 0
+    /// relaxed: of colour against smoothness; tracked: of squared L*u*v* against squared pixels in the
+    /// flattened rings. 0 is the trivial map and excludes the two others, which need more; none: what
+    /// FitParams or TrackParams have.
+    std::optional<double> projection_color_weight;
+    bool visits = false;  ///< count how often the collapse down to the finest level touches each pixel
+    std::optional<WeightPrecision> bary;      ///< none: half where the map stays a bijection, else float
+    std::optional<std::int64_t> max_cluster;  ///< no face with more pixels than this; >= 3
+    /// Rounds of refinement of each level; 0 to kMaxRefine. None: those of RefineParams
+    /// where the features are a colour and the metric the flattened one with fitted colours, else 0; 0 for
+    /// a tracked map, which takes none.
+    std::optional<std::int64_t> refine;
+    double shape_weight = RefineParams().shape_weight;
+    double exchange = RefineParams().exchange;
+    Objective objective = Objective::kLuv;
+    double min_quality = RefineParams().min_quality;  ///< of every triangle, collapsed or refined; 0 to 0.8
+};
+
+/// What BuildParams::map and projection_color_weight come to.
+MapKind map_kind(const BuildParams& params);
+double map_color_weight(const BuildParams& params);
+
+}  // namespace imgmesh

@@ -1,0 +1,21 @@
+// What refine() is asked to do.
+#pragma once
+
+#include <limits>
+
+namespace imgmesh {
+
+/// The colours that a vertex may have: those of a container (in_gamut), or [0, 1] in each channel.
+enum class ColorRange { kLuv, kUnit };
+
+struct RefineParams {
+    int rounds = 2;          ///< of colours, moves, flips and relocations; >= 0
+    double min_quality = 0;  ///< no new triangle has a lesser q = 4 sqrt(3) area / sum of squared edges
+    double max_face_area = std::numeric_limits<double>::infinity();  ///< no new triangle is larger [px^2]
+    double shape_weight = 0.22;  ///< of sum (1/q - 1) over faces, in mean squared errors of a face; >= 0
+    double relocations = 0.05;   ///< share of the vertices that a round may relocate; 0 to 1
+    double exchange = 0;         ///< share of the vertices that a round adds, then removes elsewhere; 0 to 1
+    ColorRange range = ColorRange::kLuv;
+};
+
+}  // namespace imgmesh

@@ -1,0 +1,149 @@
+#include "tools/build_options.h"
+
+#include "libcore/pipeline/param_table.h"
+#include "libcore/pipeline/presets.h"
+#include "tools/build_contradictions.h"
+#include "tools/common/channel_list.h"
+#include "tools/common/help.h"
+#include "tools/common/names.h"
+#include "tools/common/options.h"
+
+namespace imgmesh {
+namespace {
+
+// The value that `text` gives to the option of a parameter.
+std::int64_t parse(const std::string& name, const std::string& text, const CountParam& kind) {
+    return parse_count(name, text, kind.range);
+}
+double parse(const std::string& name, const std::string& text, const NumberParam& kind) {
+    return parse_number(name, text, kind.range);
+}
+std::vector<std::int64_t> parse(const std::string& name, const std::string& text,
+                                const CountListParam& kind) {
+    std::vector<std::int64_t> values;
+    for (const std::string& item : split_list(text)) values.push_back(parse_count(name, item, kind.range));
+    return values;
+}
+std::vector<double> parse(const std::string& name, const std::string& text, const NumberListParam& kind) {
+    std::vector<double> values;
+    for (const std::string& item : split_list(text)) values.push_back(parse_number(name, item, kind.range));
+    return values;
+}
+std::vector<ChannelChoice> parse(const std::string& name, const std::string& text, const ChannelsParam&) {
+    return parse_channels(name, text);
+}
+
+Choices<std::size_t> choices_of(const WordParam& kind) {
+    Choices<std::size_t> choices;
+    for (const std::string_view word : kind.words) choices.emplace_back(word, choices.size());
+    return choices;
+}
+std::size_t parse(const std::string& name, const std::string& text, const WordParam& kind) {
+    return parse_choice(name, text, choices_of(kind));
+}
+
+// What the argument is called in the help.
+const char* type_of(const CountParam&) {
+    return "N";
+}
+const char* type_of(const NumberParam&) {
+    return "X";
+}
+const char* type_of(const WordParam&) {
+    return "NAME";
+}
+template <typename Kind>
+const char* type_of(const Kind&) {
+    return "LIST";
+}
+
+CLI::Option* add_param(CLI::App& app, const Param& param, BuildParams& params) {
+    const std::string name = "--" + param.name;
+    return std::visit(
+        [&](const auto& kind) {
+            using Kind = std::remove_cvref_t<decltype(kind)>;
+            if constexpr (std::is_same_v<Kind, FlagParam>) {
+                return add_flag(
+                    app, name, [&params, set = kind.set] { set(params, true); }, param.help);
+            } else {
+                Help help(param.help, default_text(param));
+                if constexpr (std::is_same_v<Kind, WordParam>)
+                    help.text += ": " + choice_names(choices_of(kind));
+                return add_value(
+                    app, name, type_of(kind),
+                    [&params, &kind, name](const std::string& text) {
+                        kind.set(params, parse(name, text, kind));
+                    },
+                    help);
+            }
+        },
+        param.kind);
+}
+
+void add_params(CLI::App& app, BuildParams& params) {
+    std::vector<std::pair<CLI::Option*, const Param*>> added;
+    for (const Param& param : param_table()) {
+        CLI::Option* const option = in_group(add_param(app, param, params), param.group);
+        if (!param.everyday) advanced(app, option);
+        added.emplace_back(option, &param);
+        if (param.name != "projection-color-weight") continue;
+        // The same weight by its reciprocal, as decision 2 has it.
+        CLI::Option* const smoothness = add_value(
+            app, "--map-smoothness", "X",
+            [&params](const std::string& text) {
+                params.projection_color_weight = 1 / parse_number("--map-smoothness", text, {1e-9, 1e12});
+            },
+            {"Smoothness of the pixel map against colour, 1 / projection-color-weight",
+             cat(1 / map_color_weight(BuildParams()))});
+        exclude(app, advanced(app, in_group(smoothness, param.group)), {"--" + param.name});
+    }
+    for (const auto& [option, param] : added)
+        for (const std::string& other : param->excludes) exclude(app, option, {"--" + other});
+}
+
+}  // namespace
+
+void add_build_options(CLI::App& app, BuildOptions& o) {
+    add_inputs(app, "IMAGE", o.inputs, "Images to read");
+    add_output(app, o.output,
+               "Container to write (.glb, .gltf), or a folder, ended by /, for NAME.glb of each image");
+    // Before all that it sets, so that other options, wherever they stand, count after it.
+    Choices<BuildParams> choices;
+    std::string help = "Values for many options at once";
+    for (const Preset& preset : presets()) {
+        choices.emplace_back(preset.name, preset.params);
+        help += cat("; ", preset.name, " for ", preset.help);
+    }
+    add_value(
+        app, "--preset", "NAME",
+        [&o, choices](const std::string& text) { o.params = parse_choice("--preset", text, choices); },
+        help + ": " + choice_names(choices));
+
+    const std::string image = "Image";
+    in_group(add_file(app, "--mask", o.mask,
+                      "Image of the same size: only pixels where its alpha, or else its light, reaches "
+                      "the threshold are meshed, whatever the images' own alpha"),
+             image);
+    CLI::Option* const alpha =
+        add_choice(app, "--alpha", o.cut, Choices<bool>{{"cut", true}, {"ignore", false}},
+                   "Mesh only what an alpha channel shows, or all pixels");
+    in_group(alpha, image);
+    CLI::Option* const threshold =
+        add_number(app, "--alpha-threshold", o.alpha_threshold, {0, 1, true},
+                   "Least alpha, or light of a mask, of the pixels that are meshed");
+    advanced(app, in_group(threshold, image));
+    CLI::Option* const space = add_choice(app, "--color-space", o.color_space, color_space_choices(),
+                                          {"Colour space of the images, whatever their files say", ""});
+    advanced(app, in_group(space, image));
+
+    add_params(app, o.params);
+
+    in_group(add_choice(app, "--draco", o.draco, draco_choices(), "Compression of the meshes"), "Container");
+    add_texture_options(app, o.texture, "Put the image on the meshes, for engines and viewers", false);
+    CLI::Option* const pixels =
+        add_count(app, "--max-pixels", o.limits.max_pixels, {1}, "Refuse an image of more pixels");
+    advanced(app, in_group(pixels, "Limits"));
+    after_parsing(app, [&] { check_contradictions(app, o.params); });
+}
+
+}  // namespace imgmesh

@@ -1,0 +1,32 @@
+// The options of imgmesh-build.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "formats/container/container.h"
+#include "formats/picture/image_io.h"
+#include "libcore/pipeline/build_params.h"
+#include "tools/common/texture_options.h"
+
+namespace imgmesh {
+
+struct BuildOptions {
+    std::vector<std::string> inputs;
+    std::string output;
+    BuildParams params;
+    DracoMode draco = DracoMode::kEdgebreaker;
+    std::optional<ColorSpace> color_space;
+    bool cut = true;  ///< along alpha
+    std::string mask;
+    double alpha_threshold = 0.5;
+    TextureOptions texture;
+    ImageLimits limits;
+};
+
+/// Adds every option, those of BuildParams from param_table(). They are checked together when all have been
+/// read (build_contradictions.h).
+void add_build_options(CLI::App& app, BuildOptions& options);
+
+}  // namespace imgmesh

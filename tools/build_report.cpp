@@ -1,0 +1,82 @@
+#include "tools/build_report.h"
+
+#include <nlohmann/json.hpp>
+#include <ostream>
+
+#include "libcore/image/color.h"
+#include "libcore/image/feature_space.h"
+#include "libcore/metrics/metrics.h"
+#include "tools/common/text.h"
+
+namespace imgmesh {
+
+Report image_report(const Image& image, const std::string& alpha, const BuildReport& built,
+                    const Container& written, const FileSeconds& seconds) {
+    Report levels = Report::array();
+    const std::vector<std::string> auxiliary = split_names(written.mesh_image.source.channel_names).auxiliary;
+    for (std::size_t k = 0; k < written.mesh_image.levels.size(); ++k) {
+        const Level& level = written.mesh_image.levels[k];
+        levels.push_back({{"vertices", level.mesh.vertex_count()},
+                          {"faces", level.mesh.faces.size()},
+                          {"error", level.error},
+                          {"map_rms", built.levels[k].map_rms},
+                          {"gouraud_rms", built.levels[k].gouraud_rms},
+                          {"flipped_pixel_triangles", map_quality(level.mesh, level.map).flipped_triangles},
+                          {"mean_edge_ratio", mesh_quality(level.mesh).mean_edge_ratio}});
+        for (std::size_t c = 0; c < auxiliary.size(); ++c)
+            levels.back()["channel_rms"][auxiliary[c]] = built.levels[k].auxiliary_rms[c];
+    }
+    const double bytes = static_cast<double>(written.facts.total_bytes);
+    Report report{{"width", image.width},
+                  {"height", image.height},
+                  {"color_space", color_space_name(image.color_space)},
+                  {"has_light", written.mesh_image.source.gamut == Gamut::kHdr},
+                  {"alpha", alpha},
+                  {"pixels", built.pixels}};
+    report.update(levels.front());  // the finest level's figures are the image's
+    report.update({{"levels", levels},
+                   {"bytes", written.facts.total_bytes},
+                   {"bytes_per_pixel", bytes / static_cast<double>(image.pixel_count())},
+                   {"seconds", seconds.all},
+                   {"stage_seconds",
+                    {{"read", seconds.read},
+                     {"collapse", built.seconds.collapse},
+                     {"refine", built.seconds.refine},
+                     {"map", built.seconds.map},
+                     {"write", seconds.write}}}});
+    return report;
+}
+
+void print_build(const Report& report, std::ostream& out) {
+    for (const Report& image : report["images"]) {
+        if (image.contains("failure")) continue;
+        out << printable_line(image["input"].get<std::string>() + " -> " + image["output"].get<std::string>())
+            << '\n';
+        const auto number = [&](const char* key) { return format_number(image[key].get<double>()); };
+        TextTable table;
+        table.add("size", cat(image["width"], " x ", image["height"], " pixels"));
+        if (image["alpha"] != "none") table.add("alpha", image["alpha"].get<std::string>());
+        if (image["pixels"] != image["width"].get<std::int64_t>() * image["height"].get<std::int64_t>())
+            table.add("masked image", cat(image["pixels"], " pixels"));
+        table.add("mesh", cat(image["vertices"], " vertices, ", image["faces"], " faces"));
+        table.add("error",
+                  cat("map ", number("map_rms"), ", Gouraud ", number("gouraud_rms"), " L*u*v* RMS"));
+        if (image.contains("channel_rms"))
+            for (const auto& [name, rms] : image["channel_rms"].items())
+                table.add(printable_line(name), cat("map ", format_number(rms.get<double>()), " RMS"));
+        for (std::size_t k = 1; k < image["levels"].size(); ++k) {
+            const Report& level = image["levels"][k];
+            table.add(cat("level ", k), cat(level["vertices"], " vertices, ", level["faces"], " faces, map ",
+                                            format_number(level["map_rms"].get<double>()), ", Gouraud ",
+                                            format_number(level["gouraud_rms"].get<double>())));
+        }
+        table.add("edge ratio", number("mean_edge_ratio"));
+        table.add("flipped", cat(image["flipped_pixel_triangles"], " pixel triangles"));
+        table.add("file", cat(format_bytes(image["bytes"].get<std::uint64_t>()), ", ",
+                              number("bytes_per_pixel"), " bytes per pixel"));
+        table.add("time", cat(number("seconds"), " s"));
+        table.print(out, 2);
+    }
+}
+
+}  // namespace imgmesh

@@ -1,0 +1,26 @@
+// What imgmesh-build tells of the containers that it made.
+#pragma once
+
+#include <iosfwd>
+#include <string>
+
+#include "formats/container/container.h"
+#include "libcore/image/image.h"
+#include "libcore/pipeline/build.h"
+#include "tools/common/tool_main.h"
+
+namespace imgmesh {
+
+/// Wall time of what the library does not measure [s].
+struct FileSeconds {
+    double read = 0, write = 0, all = 0;
+};
+
+/// An image's part of the report. written: the container as a reader gets it; alpha: "none", "cut" or
+/// "ignored".
+Report image_report(const Image& image, const std::string& alpha, const BuildReport& built,
+                    const Container& written, const FileSeconds& seconds);
+
+void print_build(const Report& report, std::ostream& out);
+
+}  // namespace imgmesh

@@ -1,0 +1,17 @@
+// What the tools ask of containers that they read.
+#pragma once
+
+#include <string>
+
+#include "libcore/mesh/mesh_image.h"
+
+namespace imgmesh {
+
+/// Whether the name of a file is that of a container: .glb or .gltf.
+bool is_container(const std::string& path);
+
+/// Throws Error(kBadArgument) where `option` names a level that the container `path` does not have.
+void check_level(const std::string& option, std::int64_t level, const std::string& path,
+                 const MeshImage& mesh_image);
+
+}  // namespace imgmesh
