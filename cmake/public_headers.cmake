@@ -19,6 +19,7 @@ set(IMGMESH_PUBLIC_HEADERS
   libcore/mesh/pixel_map.h
 
   libcore/simplify/metric.h
+  libcore/simplify/simplify_params.h
   libcore/refine/refine_params.h
   libcore/param/fit_map.h
   libcore/pipeline/build.h

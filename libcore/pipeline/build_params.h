@@ -8,7 +8,7 @@
 #include "libcore/image/feature_space.h"
 #include "libcore/mesh/pixel_map.h"
 #include "libcore/refine/refine_params.h"
-#include "libcore/simplify/metric.h"
+#include "libcore/simplify/simplify_params.h"
 
 namespace imgmesh {
 
@@ -55,13 +55,13 @@ struct BuildParams {
     std::vector<ChannelChoice> channels;  ///< the feature space; none: the image's colour
     StopParams stop;                      ///< of the finest level
     PyramidParams levels;
-    Metric metric = Metric::kFlattened;
-    Solver solver = Solver::kClosed;
+    Metric metric = SimplifyParams().metric;
+    Solver solver = SimplifyParams().solver;
     /// lambda: geometry against colour in the quadrics [L*u*v*^2 / px^2]; > 0
-    double geometry_weight = 0.3;
+    double geometry_weight = kUsualGeometryWeight;
     double color_weight = 1.0;  ///< of colour in the quadrics; only the ratio counts, 1e-9 to 1e9
     /// take quadrics anew from the mesh at every halving ("memoryless")
-    bool rebuild_quadrics = false;
+    bool rebuild_quadrics = SimplifyParams().rebuild_quadrics;
     /// edges go by total error, as in the paper, not by what a merge adds; none: for metrics but the
     /// flattened
     std::optional<bool> total_priority;

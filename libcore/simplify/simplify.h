@@ -12,7 +12,7 @@
 #include "libcore/base/progress.h"
 #include "libcore/mesh/base_mesh.h"
 #include "libcore/mesh/grid_mesh.h"
-#include "libcore/simplify/metric.h"
+#include "libcore/simplify/simplify_params.h"
 
 namespace imgmesh {
 
@@ -23,25 +23,6 @@ struct SimplifyTarget {
     double face_share = 0;      ///< or at this share of the faces of the level before
     /// no collapse above this total quadric error [feature units^2 px^2]
     double max_error = std::numeric_limits<double>::infinity();
-};
-
-struct SimplifyParams {
-    Metric metric = Metric::kFlattened;
-    Solver solver = Solver::kClosed;
-    float geometry_weight = 3.0f;  ///< lambda, against colour [feature^2 / px^2]; > 0; kHoppe has none
-    int smoothing = 2;             ///< passes of `smoothed` on the copy that gradients are taken from
-    /// quadrics are taken anew from the mesh whenever its vertices have nearly halved, instead of summed up
-    /// from the pixels on
-    bool rebuild_quadrics = false;
-    bool total_priority = false;  ///< edges go by the total error (the paper), not by what a merge adds to it
-    /// while the goal is far, edges go tile by tile, on all threads: faster, but seams show in the order. Not
-    /// with SimplifyHooks::before.
-    bool tiles = true;
-    /// no new triangle larger than this [px^2]
-    float max_face_area = std::numeric_limits<float>::infinity();
-    /// nor of a lesser q = 4 sqrt(3) area / sum of squared edges (1 is best); 0 leaves only the guard against
-    /// slivers
-    float min_shape = 0;
 };
 
 struct SimplifyResult {

@@ -11,6 +11,7 @@
 #include "libcore/recon/draw_channels.h"
 #include "libcore/simplify/simplify.h"
 #include "tests/support/sample_pictures.h"
+#include "tests/support/simplify_params.h"
 
 using namespace imgmesh;
 using namespace imgmesh::test;
@@ -61,7 +62,7 @@ struct Fitted {
 
 Fitted fitted(const FeatureImage& feature, std::int64_t vertices, const FeatureSpace& space) {
     Fitted out;
-    out.mesh = simplify(grid_mesh(feature), {}, SimplifyTarget{.vertices = vertices}).mesh;
+    out.mesh = simplify(grid_mesh(feature), plain_params(), SimplifyTarget{.vertices = vertices}).mesh;
     FitParams params;
     params.space = space;
     out.map = fit_map(out.mesh, feature, params);

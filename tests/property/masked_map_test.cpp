@@ -12,6 +12,7 @@
 #include "libcore/simplify/simplify.h"
 #include "tests/support/sample_masks.h"
 #include "tests/support/sample_pictures.h"
+#include "tests/support/simplify_params.h"
 
 using namespace imgmesh;
 using namespace imgmesh::test;
@@ -31,7 +32,7 @@ Scene scene(Kind kind, const Mask& mask, std::int64_t vertices) {
     Scene s;
     s.feature = sample_feature(kind, mask.width, mask.height);
     s.mask = mask;
-    s.mesh = simplify(grid_mesh(s.feature, mask), {}, SimplifyTarget{.vertices = vertices}).mesh;
+    s.mesh = simplify(grid_mesh(s.feature, mask), plain_params(), SimplifyTarget{.vertices = vertices}).mesh;
     s.fields = face_fields(s.mesh);
     s.neighbors = face_neighbors(s.mesh);
     s.pixels = resting_pixels(trivial_map(s.mesh, mask.width, mask.height, mask), mask);
@@ -184,7 +185,8 @@ TEST_CASE("masked images: what is stored has the mask to the pixel and no fold")
         for (const Kind kind : {Kind::kNoise, Kind::kGradient}) {
             INFO(name << ", " << name_of(kind));
             const FeatureImage feature = sample_feature(kind, mask.width, mask.height);
-            BaseMesh mesh = simplify(grid_mesh(feature, mask), {}, SimplifyTarget{.vertices = 80}).mesh;
+            BaseMesh mesh =
+                simplify(grid_mesh(feature, mask), plain_params(), SimplifyTarget{.vertices = 80}).mesh;
             const PixelMap map = fit_map(mesh, feature, {}, {}, mask);
             for (std::size_t i = 0; i < map.size(); ++i)
                 if (mask.contains(i) != (map[i].face != kNone)) FAIL_CHECK("pixel " << i);
@@ -203,7 +205,8 @@ TEST_CASE("masked images: the same map with any number of threads") {
     const Mask mask = sample_masks(90)[10].mask;
     const FeatureImage feature = sample_feature(Kind::kNoise, 90, 90);
     const auto made = [&] {
-        BaseMesh mesh = simplify(grid_mesh(feature, mask), {}, SimplifyTarget{.vertices = 300}).mesh;
+        BaseMesh mesh =
+            simplify(grid_mesh(feature, mask), plain_params(), SimplifyTarget{.vertices = 300}).mesh;
         return fit_map(mesh, feature, {}, {}, mask).values;
     };
     const std::vector<PixelCoord> first = made();

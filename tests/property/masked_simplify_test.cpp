@@ -13,6 +13,7 @@
 #include "tests/support/mesh_cover.h"
 #include "tests/support/sample_masks.h"
 #include "tests/support/sample_pictures.h"
+#include "tests/support/simplify_params.h"
 
 using namespace imgmesh;
 using namespace imgmesh::test;
@@ -34,7 +35,7 @@ BaseMesh dense_mesh(const GridMesh& grid) {
 }
 
 BaseMesh coarse_mesh(const GridMesh& grid, std::int64_t vertices) {
-    return simplify(grid, {}, SimplifyTarget{.vertices = vertices}).mesh;
+    return simplify(grid, plain_params(), SimplifyTarget{.vertices = vertices}).mesh;
 }
 
 // Directly from the rule: two triangles for a cell of four, one for three; n pixels of a bare run make 2 (n -
@@ -191,7 +192,7 @@ TEST_CASE("masked images: masks at random keep topology, pixels and distance") {
         const SimplifyTarget targets[] = {{.vertices = static_cast<std::int64_t>(dense.vertex_count()) / 2},
                                           {.vertices = 0}};
         for (const SimplifyResult& level :
-             simplify(grid, {.geometry_weight = seed % 2 ? 3.0f : 0.01f}, targets)) {
+             simplify(grid, {.geometry_weight = seed % 2 ? 3.0f : 0.01f, .smoothing = 2}, targets)) {
             check_topology(level.mesh, mesh_quality(dense));
             check_covers(level.mesh, mask);
             check_hull(level.mesh, dense, mask);
@@ -224,8 +225,9 @@ TEST_CASE("masked images: levels, limits and rebuilt quadrics keep the topology"
         const GridMesh grid = masked_grid(mask, Kind::kDisc);
         const MeshQuality dense = mesh_quality(dense_mesh(grid));
         const SimplifyTarget targets[] = {{.vertices = 600}, {.vertices = 150}, {.vertices = 20}};
-        for (const SimplifyParams& params : {SimplifyParams{}, SimplifyParams{.rebuild_quadrics = true},
-                                             SimplifyParams{.max_face_area = 6, .min_shape = 0.4f}})
+        for (const SimplifyParams& params :
+             {plain_params(), plain_params_but([](auto& p) { p.rebuild_quadrics = true; }),
+              plain_params_but([](auto& p) { p.max_face_area = 6, p.min_shape = 0.4f; })})
             for (const SimplifyResult& level : simplify(grid, params, targets)) {
                 check_topology(level.mesh, dense);
                 check_covers(level.mesh, mask);

@@ -7,6 +7,7 @@
 #include "libcore/simplify/simplify.h"
 #include "tests/support/sample_masks.h"
 #include "tests/support/sample_pictures.h"
+#include "tests/support/simplify_params.h"
 #include "tests/support/sound_mesh.h"
 
 using namespace imgmesh;
@@ -37,8 +38,7 @@ TEST_CASE("metrics: every one makes a sound mesh of every image, by every solver
                 for (const std::int64_t vertices : {size.width * size.height / 10, 4}) {
                     INFO(metric_name(metric) << ", " << solver_name(solver) << ", " << name_of(kind) << " "
                                              << size.width << " x " << size.height << " to " << vertices);
-                    const SimplifyResult result =
-                        collapse(feature, vertices, {.metric = metric, .solver = solver});
+                    const SimplifyResult result = collapse(feature, vertices, plain_params(metric, solver));
                     check_sound(result.mesh, size);
                     if (vertices > 8) CHECK(result.mesh.vertex_count() == std::size_t(vertices));
                 }
@@ -49,10 +49,11 @@ TEST_CASE("metrics: with rebuilt quadrics and total priority as well, each a mes
     const FeatureImage feature = sample_feature(Kind::kDisc, 32, 24);
     for (const Metric metric : {Metric::kHoppe, Metric::kGarland}) {
         INFO(metric_name(metric));
-        const BaseMesh plain = collapse(feature, 80, {.metric = metric}).mesh;
-        CHECK(plain.position != collapse(feature, 80, {}).mesh.position);
-        for (const SimplifyParams& params : {SimplifyParams{.metric = metric, .rebuild_quadrics = true},
-                                             SimplifyParams{.metric = metric, .total_priority = true}}) {
+        const BaseMesh plain = collapse(feature, 80, plain_params(metric)).mesh;
+        CHECK(plain.position != collapse(feature, 80, plain_params()).mesh.position);
+        for (const SimplifyParams& params :
+             {plain_params_but([](auto& p) { p.rebuild_quadrics = true; }, metric),
+              plain_params_but([](auto& p) { p.total_priority = true; }, metric)}) {
             const BaseMesh mesh = collapse(feature, 80, params).mesh;
             check_sound(mesh, {32, 24});
             CHECK(mesh.vertex_count() == 80);
@@ -67,10 +68,12 @@ TEST_CASE("metrics: solvers and forms differ by rounding alone") {
     const FeatureImage feature = sample_feature(Kind::kNoise, 32, 24);
     for (const Metric metric : kMetrics) {
         INFO(metric_name(metric));
-        const SimplifyResult closed = collapse(feature, 60, {.metric = metric, .tiles = false});
+        const SimplifyResult closed =
+            collapse(feature, 60, plain_params_but([](auto& p) { p.tiles = false; }, metric));
         for (const Solver solver : {Solver::kSvd, Solver::kLu}) {
-            const SimplifyResult other =
-                collapse(feature, 60, {.metric = metric, .solver = solver, .tiles = false});
+            const SimplifyResult other = collapse(
+                feature, 60,
+                plain_params_but([&, by = solver](auto& p) { p.tiles = false, p.solver = by; }, metric));
             CHECK(other.mesh.vertex_count() == closed.mesh.vertex_count());
             CHECK(other.error == doctest::Approx(closed.error).epsilon(0.1));
         }
@@ -89,7 +92,8 @@ TEST_CASE("metrics: a linear image is free of error to all but the flattened met
         }
     for (const Metric metric : kMetrics) {
         INFO(metric_name(metric));
-        const SimplifyResult result = collapse(feature, 12, {.metric = metric, .smoothing = 0});
+        const SimplifyResult result =
+            collapse(feature, 12, plain_params_but([](auto& p) { p.smoothing = 0; }, metric));
         check_sound(result.mesh, {20, 16});
         if (metric == Metric::kFlattened)
             CHECK(result.error > 1);
@@ -140,8 +144,9 @@ TEST_CASE("metrics: masked images keep their topology") {
             const GridMesh grid =
                 grid_mesh(sample_feature(Kind::kDisc, named.mask.width, named.mask.height), named.mask);
             const MeshQuality dense =
-                mesh_quality(simplify(grid, {.metric = metric}, {.vertices = 1 << 20}).mesh);
-            const MeshQuality coarse = mesh_quality(simplify(grid, {.metric = metric}, {.vertices = 0}).mesh);
+                mesh_quality(simplify(grid, plain_params(metric), {.vertices = 1 << 20}).mesh);
+            const MeshQuality coarse =
+                mesh_quality(simplify(grid, plain_params(metric), {.vertices = 0}).mesh);
             CHECK(coarse.components == dense.components);
             CHECK(coarse.euler == dense.euler);
             CHECK(coarse.flipped_faces == 0);
@@ -158,7 +163,7 @@ TEST_CASE("metrics: any number of features") {
         five.data.insert(five.data.end(), {color.pixel(v)[0], 7.0f});
     }
     for (const Metric metric : kMetrics) {
-        const BaseMesh mesh = collapse(five, 30, {.metric = metric, .solver = Solver::kSvd}).mesh;
+        const BaseMesh mesh = collapse(five, 30, plain_params(metric, Solver::kSvd)).mesh;
         CHECK(mesh.channels == 5);
         CHECK(mesh.feature.size() == 5 * mesh.vertex_count());
         for (Id v = 0; v < mesh.vertex_count(); ++v) {

@@ -9,6 +9,7 @@
 #include "libcore/simplify/simplify.h"
 #include "tests/support/meshes.h"
 #include "tests/support/sample_pictures.h"
+#include "tests/support/simplify_params.h"
 
 using namespace imgmesh;
 using namespace imgmesh::test;
@@ -37,8 +38,8 @@ Scene at_rest(BaseMesh mesh, int width, int height) {
 
 Scene relaxed(Kind kind, int width, int height, std::int64_t vertices, float smoothness) {
     const FeatureImage feature = sample_feature(kind, width, height);
-    Scene s =
-        at_rest(simplify(grid_mesh(feature), {}, SimplifyTarget{.vertices = vertices}).mesh, width, height);
+    Scene s = at_rest(simplify(grid_mesh(feature), plain_params(), SimplifyTarget{.vertices = vertices}).mesh,
+                      width, height);
     relax(s.pixels, s.fields, s.neighbors, feature, smoothness, 12);
     return s;
 }

@@ -7,6 +7,7 @@
 #include "libcore/simplify/simplify.h"
 #include "tests/support/reference_collapse.h"
 #include "tests/support/sample_pictures.h"
+#include "tests/support/simplify_params.h"
 #include "tests/support/sound_mesh.h"
 
 using namespace imgmesh;
@@ -39,7 +40,7 @@ TEST_CASE("reference collapse: its meshes are sound, too") {
     for (const Kind kind : kAllKinds)
         for (const std::size_t vertices : {200u, 30u, 4u}) {
             INFO(name_of(kind) << " to " << vertices);
-            const BaseMesh mesh = reference_mesh(sample_feature(kind, 24, 18), {}, vertices);
+            const BaseMesh mesh = reference_mesh(sample_feature(kind, 24, 18), plain_params(), vertices);
             check_sound(mesh, {24, 18});
             if (vertices > 4) CHECK(mesh.vertex_count() == vertices);
         }
@@ -64,7 +65,10 @@ TEST_CASE("collapse: as good as the plain one with an exactly sorted queue") {
             double fast = 0, plain = 0;
             for (const FeatureImage& feature : pictures) {
                 const std::size_t vertices = feature.pixel_count() / static_cast<std::size_t>(share);
-                const SimplifyParams params{.smoothing = total ? 0 : 2, .total_priority = total};
+                const SimplifyParams params = plain_params_but([&, by_total = total](auto& p) {
+                    p.smoothing = by_total ? 0 : 2;
+                    p.total_priority = by_total;
+                });
                 const SimplifyTarget target{.vertices = static_cast<std::int64_t>(vertices)};
                 const BaseMesh mesh = simplify(grid_mesh(feature), params, target).mesh;
                 const BaseMesh reference = reference_mesh(feature, params, vertices);

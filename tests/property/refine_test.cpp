@@ -13,14 +13,22 @@
 #include "tests/support/meshes.h"
 #include "tests/support/sample_masks.h"
 #include "tests/support/sample_pictures.h"
+#include "tests/support/simplify_params.h"
 
 using namespace imgmesh;
 using namespace imgmesh::test;
 
 namespace {
 
+// What is tested of the error alone.
+RefineParams without_shape() {
+    RefineParams params;
+    params.shape_weight = 0;
+    return params;
+}
+
 BaseMesh collapsed(const FeatureImage& feature, std::int64_t vertices, float min_shape = 0) {
-    SimplifyParams params;
+    SimplifyParams params = plain_params();
     params.min_shape = min_shape;
     SimplifyTarget target;
     target.vertices = vertices;
@@ -55,7 +63,7 @@ TEST_CASE("refine: the error never rises, and the mesh stays sound") {
             const FeatureImage feature = sample_feature(kind, w, h);
             BaseMesh mesh = collapsed(feature, std::max(4, w * h / 30));
             const std::size_t vertices = mesh.vertex_count(), faces = mesh.faces.size();
-            RefineParams params;
+            RefineParams params = without_shape();
             params.rounds = 5;
             params.relocations = 0.1;
             params.exchange = 0.2;
@@ -102,7 +110,7 @@ TEST_CASE("refine: vertices find a ridge") {
             mesh.faces.push_back({a, c, d});
             mesh.faces.push_back({a, d, b});
         }
-    RefineParams params;
+    RefineParams params = without_shape();
     params.rounds = 20;
     params.relocations = 0;
     const RefineReport report = refine(mesh, roof, params);
@@ -124,7 +132,7 @@ TEST_CASE("refine: edges flip along the image's edges") {
     mesh.position = {{0, 0}, {32, 0}, {0, 32}, {32, 32}};
     mesh.feature.assign(12, 30.0f);
     mesh.faces = {{0, 2, 1}, {1, 2, 3}};
-    RefineParams params;
+    RefineParams params = without_shape();
     params.rounds = 2;
     const RefineReport report = refine(mesh, halves, params);
     CHECK(report.flips == 1);
@@ -145,7 +153,7 @@ TEST_CASE("refine: vertices are relocated to where the error is") {
         return n;
     };
     const int before = inside();
-    RefineParams params;
+    RefineParams params = without_shape();
     params.rounds = 10;
     params.relocations = 0.1;
     const RefineReport report = refine(mesh, feature, params);
@@ -158,7 +166,7 @@ TEST_CASE("refine: vertices are relocated to where the error is") {
 TEST_CASE("refine: limits on shape and area hold, and shape weighs against error") {
     const FeatureImage feature = sample_feature(Kind::kDisc, 80, 60);
     const BaseMesh start = collapsed(feature, 150, 0.4f);
-    RefineParams params;
+    RefineParams params = without_shape();
     params.rounds = 6;
     params.relocations = 0.1;
     const auto refined = [&] {
@@ -188,7 +196,7 @@ TEST_CASE("refine: limits on shape and area hold, and shape weighs against error
 TEST_CASE("refine: the same bytes for any number of threads, in the range of colours asked for") {
     FeatureImage feature = sample_feature(Kind::kNoise, 120, 90);
     for (float& f : feature.data) f = std::abs(f) / 100;
-    RefineParams params;
+    RefineParams params = without_shape();
     params.rounds = 4;
     params.exchange = 0.2;
     params.range = ColorRange::kUnit;
@@ -206,7 +214,7 @@ TEST_CASE("refine: the same bytes for any number of threads, in the range of col
 // What is remembered about vertices must equal a fresh evaluation, whatever has changed in between.
 TEST_CASE("refine: remembered removals are those that are found anew") {
     const FeatureImage feature = sample_feature(Kind::kDisc, 90, 70);
-    RefineParams params;
+    RefineParams params = without_shape();
     params.shape_weight = 0.2;
     const ImagePlanes planes(feature);
     Refiner refiner(collapsed(feature, 300), planes, params);

@@ -8,6 +8,7 @@
 #include "libcore/param/relax.h"
 #include "libcore/simplify/simplify.h"
 #include "tests/support/sample_pictures.h"
+#include "tests/support/simplify_params.h"
 
 using namespace imgmesh;
 using namespace imgmesh::test;
@@ -26,7 +27,7 @@ struct Scene {
 Scene scene(FeatureImage feature, std::int64_t vertices) {
     Scene out;
     out.feature = std::move(feature);
-    out.mesh = simplify(grid_mesh(out.feature), {}, SimplifyTarget{.vertices = vertices}).mesh;
+    out.mesh = simplify(grid_mesh(out.feature), plain_params(), SimplifyTarget{.vertices = vertices}).mesh;
     out.fields = face_fields(out.mesh);
     out.neighbors = face_neighbors(out.mesh);
     out.pixels = resting_pixels(trivial_map(out.mesh, out.feature.width, out.feature.height));

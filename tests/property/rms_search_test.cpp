@@ -10,6 +10,7 @@
 #include "libcore/pipeline/lod_meshes.h"
 #include "libcore/pipeline/rms_search.h"
 #include "tests/support/sample_pictures.h"
+#include "tests/support/simplify_params.h"
 
 using namespace imgmesh;
 using namespace imgmesh::test;
@@ -102,7 +103,7 @@ TEST_CASE("rms search: errors that follow no law") {
 TEST_CASE("mesh lods: meshes of any number of vertices, from as few runs as possible") {
     const FeatureImage feature = sample_feature(Kind::kNoise, 150, 120);
     const GridMesh grid = grid_mesh(feature);
-    const auto params = [](std::int64_t) { return SimplifyParams{}; };
+    const auto params = [](std::int64_t) { return plain_params(); };
     const Progress none;
     LodMeshes lods(grid, params, none);
     const auto count = [&](std::int64_t vertices, bool near) {

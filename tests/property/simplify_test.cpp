@@ -9,6 +9,7 @@
 #include "libcore/simplify/quadrics/vertex_quadrics.h"
 #include "libcore/simplify/simplify.h"
 #include "tests/support/sample_pictures.h"
+#include "tests/support/simplify_params.h"
 #include "tests/support/sound_mesh.h"
 
 using namespace imgmesh;
@@ -17,7 +18,7 @@ using namespace imgmesh::test;
 namespace {
 
 SimplifyResult collapse(const FeatureImage& feature, const SimplifyTarget& target,
-                        const SimplifyParams& params = {}) {
+                        const SimplifyParams& params = plain_params()) {
     return simplify(grid_mesh(feature), params, target);
 }
 
@@ -168,7 +169,7 @@ TEST_CASE("collapse: more geometry weight makes rounder triangles") {
 TEST_CASE("collapse: progress never falls and stays within 0 and 1") {
     double last = 0;
     int calls = 0;
-    simplify(grid_mesh(sample_feature(Kind::kGradient, 300, 260)), {}, to_vertices(500),
+    simplify(grid_mesh(sample_feature(Kind::kGradient, 300, 260)), plain_params(), to_vertices(500),
              [&](double f, std::string_view) {
                  CHECK(f >= last);
                  CHECK(f <= 1);
@@ -182,7 +183,7 @@ TEST_CASE("collapse: progress never falls and stays within 0 and 1") {
 TEST_CASE("collapse: levels of one run are what single runs give, each coarser than the one before") {
     const FeatureImage feature = sample_feature(Kind::kDisc, 40, 30);
     const SimplifyTarget targets[] = {{.vertices = 300}, {.vertices = 120}, {.faces = 60}};
-    const auto levels = simplify(grid_mesh(feature), {}, targets);
+    const auto levels = simplify(grid_mesh(feature), plain_params(), targets);
     REQUIRE(levels.size() == 3);
     CHECK(levels[0].mesh.position == collapse(feature, targets[0]).mesh.position);
     CHECK(levels[0].mesh.faces == collapse(feature, targets[0]).mesh.faces);
@@ -212,8 +213,8 @@ TEST_CASE("collapse: rebuilt quadrics and total priority give sound meshes of th
         const FeatureImage feature = sample_feature(kind, 40, 30);
         const SimplifyTarget target = to_vertices(100);
         const BaseMesh plain = collapse(feature, target).mesh;
-        for (const SimplifyParams& params :
-             {SimplifyParams{.rebuild_quadrics = true}, SimplifyParams{.total_priority = true}}) {
+        for (const SimplifyParams& params : {plain_params_but([](auto& p) { p.rebuild_quadrics = true; }),
+                                             plain_params_but([](auto& p) { p.total_priority = true; })}) {
             const BaseMesh mesh = collapse(feature, target, params).mesh;
             check_sound(mesh, {40, 30});
             CHECK(mesh.vertex_count() == 100);

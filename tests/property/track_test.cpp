@@ -8,6 +8,7 @@
 #include "libcore/param/track_start.h"
 #include "libcore/simplify/simplify.h"
 #include "tests/support/sample_pictures.h"
+#include "tests/support/simplify_params.h"
 
 using namespace imgmesh;
 using namespace imgmesh::test;
@@ -30,7 +31,7 @@ PixelTracker tracked(const FeatureImage& feature, const TrackParams& params,
     hooks.reached = [&](std::size_t, const SimplifyResult& result) {
         check(result.mesh, tracker.map(result.mesh));
     };
-    simplify(grid, {}, targets, {}, hooks);
+    simplify(grid, plain_params(), targets, {}, hooks);
     return tracker;
 }
 
@@ -182,7 +183,8 @@ TEST_CASE("collapse hooks: called for each collapse in order, and their word cou
     const FeatureImage feature = sample_feature(Kind::kNoise, 30, 20);
     const GridMesh grid = grid_mesh(feature);
     const std::vector<SimplifyTarget> targets{{.vertices = 100}, {.vertices = 30}};
-    const std::vector<SimplifyResult> plain = simplify(grid, {.tiles = false}, targets);
+    const std::vector<SimplifyResult> plain =
+        simplify(grid, plain_params_but([](auto& p) { p.tiles = false; }), targets);
     std::int64_t calls = 0;
     std::vector<std::int64_t> calls_at_level;
     SimplifyHooks hooks;
@@ -197,7 +199,7 @@ TEST_CASE("collapse hooks: called for each collapse in order, and their word cou
         CHECK(result.collapses == calls);
         calls_at_level.push_back(calls);
     };
-    const std::vector<SimplifyResult> followed = simplify(grid, {}, targets, {}, hooks);
+    const std::vector<SimplifyResult> followed = simplify(grid, plain_params(), targets, {}, hooks);
     CHECK(calls_at_level == std::vector<std::int64_t>{500, 570});
     for (std::size_t k = 0; k < 2; ++k) {
         CHECK(followed[k].mesh.position == plain[k].mesh.position);
@@ -206,5 +208,5 @@ TEST_CASE("collapse hooks: called for each collapse in order, and their word cou
     }
     hooks.before = [](const CollapseStep&) { return false; };
     hooks.reached = {};
-    CHECK(simplify(grid, {}, targets, {}, hooks).back().collapses == 0);
+    CHECK(simplify(grid, plain_params(), targets, {}, hooks).back().collapses == 0);
 }

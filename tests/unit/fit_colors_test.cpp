@@ -13,6 +13,7 @@
 #include "libcore/simplify/simplify.h"
 #include "tests/support/meshes.h"
 #include "tests/support/sample_pictures.h"
+#include "tests/support/simplify_params.h"
 
 using namespace imgmesh;
 using namespace imgmesh::test;
@@ -48,7 +49,7 @@ Eigen::MatrixXd dense_solution(const BaseMesh& mesh, const FeatureImage& feature
 }
 
 BaseMesh collapsed(const FeatureImage& feature, std::int64_t vertices) {
-    return simplify(grid_mesh(feature), {}, SimplifyTarget{.vertices = vertices}).mesh;
+    return simplify(grid_mesh(feature), plain_params(), SimplifyTarget{.vertices = vertices}).mesh;
 }
 
 double objective(const BaseMesh& mesh, const FeatureImage& feature, const std::vector<FitTerm>& terms) {

@@ -4,6 +4,7 @@
 #include "libcore/simplify/quadrics/quadric_sources.h"
 #include "tests/support/sample_masks.h"
 #include "tests/support/sample_pictures.h"
+#include "tests/support/simplify_params.h"
 
 using namespace imgmesh;
 using namespace imgmesh::test;
@@ -26,7 +27,7 @@ bool close(float a, float b) {
 
 // The tiles together must be the dense mesh that ring_mesh() and initial_quadrics() make as a whole.
 void check_tiles(const GridMesh& grid) {
-    const SimplifyParams params;
+    const SimplifyParams params = plain_params();
     const FeaturePatch gradients = smoothed_patch(grid, params.smoothing, whole_rect(grid));
     const RingMesh rings = ring_mesh(grid);
     const auto quadrics = initial_quadrics<Quadric<3>>(grid, rings, gradients, params);
