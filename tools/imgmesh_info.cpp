@@ -78,7 +78,8 @@ Report facts_report(const Container& container) {
                                              level.map.precision)}});
     }
     Report build = Report::object();
-    for (const auto& [name, value] : m.parameters) std::visit([&](const auto& v) { build[name] = v; }, value);
+    for (const auto& [name, value] : m.parameters)
+        std::visit([&member = build[name]](const auto& v) { member = v; }, value);
     return {{"version", facts.version},
             {"built_by", m.generator},
             {"width", m.source.width},
