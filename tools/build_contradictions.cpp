@@ -9,7 +9,7 @@
 namespace imgmesh {
 namespace {
 
-// Whose rounds are meant: those of --refine, or else of the preset.
+// Names the source of the rounds: --refine, or else the preset.
 std::string typed_rounds(const CLI::App& app, std::int64_t rounds) {
     const std::string refine = typed(app, {"--refine"});
     return refine.empty()

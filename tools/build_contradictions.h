@@ -1,4 +1,4 @@
-// Options of imgmesh-build that are right alone and contradict each other, told in the words that were typed.
+// Conflicting options of imgmesh-build are reported as the user typed them.
 #pragma once
 
 #include "libcore/pipeline/build_params.h"
@@ -9,8 +9,8 @@ class App;
 
 namespace imgmesh {
 
-/// Throws Error(kBadArgument), in one line with the options as given and the reason, where `params`, which
-/// come from the parsed options of `app`, exclude each other or are outside their range together.
+/// Throws Error(kBadArgument), one line with the options as given and the reason, if `params`, which come
+/// from the parsed options of `app`, exclude each other or are out of range together.
 void check_contradictions(const CLI::App& app, const BuildParams& params);
 
 }  // namespace imgmesh

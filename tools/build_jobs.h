@@ -1,4 +1,4 @@
-// Which container each image of imgmesh-build goes to.
+// The container for each image of imgmesh-build.
 #pragma once
 
 #include <string>
@@ -13,7 +13,7 @@ struct Job {
     std::string output;
 };
 
-/// Throws Error(kBadArgument) for what can be seen to be wrong before any work: an output that is no
+/// Throws Error(kBadArgument) for mistakes that can be found before any work: an output that is not a
 /// container, two images for one container, an output that would replace an input.
 std::vector<Job> plan_jobs(const BuildOptions& options);
 

@@ -11,7 +11,7 @@
 namespace imgmesh {
 namespace {
 
-// The value that `text` gives to the option of a parameter.
+// Returns the value that `text` means for a parameter's option.
 std::int64_t parse(const std::string& name, const std::string& text, const CountParam& kind) {
     return parse_count(name, text, kind.range);
 }
@@ -42,7 +42,7 @@ std::size_t parse(const std::string& name, const std::string& text, const WordPa
     return parse_choice(name, text, choices_of(kind));
 }
 
-// What the argument is called in the help.
+// Returns the name of the argument in the help.
 const char* type_of(const CountParam&) {
     return "N";
 }
@@ -107,7 +107,7 @@ void add_build_options(CLI::App& app, BuildOptions& o) {
     add_inputs(app, "IMAGE", o.inputs, "Images to read");
     add_output(app, o.output,
                "Container to write (.glb, .gltf), or a folder, ended by /, for NAME.glb of each image");
-    // Before all that it sets, so that other options, wherever they stand, count after it.
+    // First, so that other options count after it wherever they are on the command line.
     Choices<BuildParams> choices;
     std::string help = "Values for many options at once";
     for (const Preset& preset : presets()) {

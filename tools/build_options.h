@@ -18,7 +18,7 @@ struct BuildOptions {
     BuildParams params;
     DracoMode draco = DracoMode::kEdgebreaker;
     std::optional<ColorSpace> color_space;
-    bool cut = true;  ///< along alpha
+    bool cut = true;  ///< whether alpha masks the image
     std::string mask;
     double alpha_threshold = 0.5;
     TextureOptions texture;

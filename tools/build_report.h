@@ -1,4 +1,4 @@
-// What imgmesh-build tells of the containers that it made.
+// What imgmesh-build reports about the containers that it made.
 #pragma once
 
 #include <iosfwd>
@@ -11,12 +11,12 @@
 
 namespace imgmesh {
 
-/// Wall time of what the library does not measure [s].
+/// Wall time of the parts that the library does not measure [s].
 struct FileSeconds {
     double read = 0, write = 0, all = 0;
 };
 
-/// An image's part of the report. written: the container as a reader gets it; alpha: "none", "cut" or
+/// Returns an image's part of the report. written: the container as a reader gets it; alpha: "none", "cut" or
 /// "ignored".
 Report image_report(const Image& image, const std::string& alpha, const BuildReport& built,
                     const Container& written, const FileSeconds& seconds);

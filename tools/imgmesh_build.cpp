@@ -21,7 +21,7 @@ using namespace imgmesh;
 
 namespace {
 
-// What --mask says; empty() without it.
+// Returns the mask of --mask; empty() without it.
 Mask read_mask(const BuildOptions& o) {
     if (o.mask.empty()) return {};
     const Image picture = read_image(o.mask, {}, o.limits);
@@ -53,7 +53,7 @@ Report build_one(const Job& job, const BuildOptions& o, const Context& context, 
     write_container(job.output, result.mesh_image, container);
     const double write_seconds = stage.lap();
 
-    // The figures are those of what a reader gets.
+    // The figures are those that a reader of the container gets.
     const Container written = read_container(job.output);
     Report report = {{"input", job.input}, {"output", job.output}};
     const char* alpha = image.channel("A") < 0 ? "none" : cut ? "cut" : "ignored";
@@ -76,7 +76,7 @@ Report run(const BuildOptions& o, Context& context) {
                 progress.show(i, fraction, stage);
             });
         } catch (...) {
-            // One bad image does not keep the others from being built.
+            // A bad image does not stop the others.
             failures[i] = current_failure();
             if (failures[i]->code == ExitCode::kInternal)
                 failures[i]->message = cat(jobs[i].input, ": ", failures[i]->message);

@@ -1,4 +1,4 @@
-// imgmesh-compare: two images or containers against each other, or the quality of a container.
+// imgmesh-compare: compares two images or containers, or measures the quality of a container.
 #include <algorithm>
 #include <filesystem>
 #include <limits>
@@ -24,9 +24,9 @@ using namespace imgmesh;
 
 namespace {
 
-// Kodak photographs at 1 % vertices have an RMS of 4.5: their usual errors are dark, what one sees is bright.
+// Kodak photographs at 1 % vertices have an RMS of 4.5. Their usual errors are dark, visible ones bright.
 constexpr double kErrorRange = 20;
-// Of plots as PNG, whose letters would be coarse at the size that suits an SVG.
+// The scale of PNG plots, whose letters would be coarse at the size that suits an SVG.
 constexpr int kPngScale = 2;
 
 struct Options {
@@ -62,7 +62,7 @@ void add_options(CLI::App& app, Options& o) {
     add_file(app, "--plot", o.plot, "Histograms to write (.svg, .png)");
 }
 
-// Throws Error(kBadArgument) for what can be seen to be wrong before any file is read.
+// Throws Error(kBadArgument) for mistakes that can be found before any file is read.
 void check_options(const Options& o) {
     const auto refuse = [](const std::string& text) { throw Error(ErrorKind::kBadArgument, text); };
     const bool pair = o.inputs.size() == 2;
@@ -92,7 +92,7 @@ void check_options(const Options& o) {
 
 struct Input {
     std::vector<std::string> files;
-    Image image;  // only where two files are compared
+    Image image;  // only if two files are compared
     std::optional<LevelQuality> quality;
     Report report;
 };
@@ -150,7 +150,7 @@ ImageDifference compare_inputs(const Input& a, const Input& b, const Options& o)
     return difference;
 }
 
-// panels: of the errors of two files, or empty; the containers' measures follow them.
+// panels: those of the errors of two files, or empty; the containers' measures are added.
 Plot make_plot(const std::vector<Input>& inputs, const Options& o, std::vector<HistogramPanel> panels) {
     std::vector<std::string> names;
     std::vector<LevelQuality> qualities;

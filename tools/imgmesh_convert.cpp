@@ -84,7 +84,7 @@ void add_options(CLI::App& app, Options& o) {
     add_container_limits(app, o.limits);
 }
 
-// Throws Error(kBadArgument) for what can be seen to be wrong before the container is read.
+// Throws Error(kBadArgument) for mistakes that can be found before the container is read.
 void check_options(const Options& o) {
     const std::string extension = lower_extension(o.output);
     const auto only_for = [&](bool given, const char* option, bool fits, const char* what) {
@@ -124,12 +124,12 @@ void keep_levels(const Options& o, MeshImage& m, Texture& texture) {
         if (!texture.coords.empty()) coords.push_back(std::move(texture.coords[static_cast<std::size_t>(k)]));
     }
     texture.coords = std::move(coords);
-    // The visit map tells of the finest level's pixels, and goes with it.
+    // The visit map belongs to the finest level, and is dropped with it.
     if (o.levels.front() != 0) m.visits.clear();
     m.levels = std::move(kept);
 }
 
-// What goes on the meshes; `kept` is what is there already.
+// Returns the texture of the meshes; `kept` is the existing one.
 Texture chosen_texture(const Options& o, const MeshImage& m, Texture kept) {
     if (!o.texture.wanted) return kept;
     if (!*o.texture.wanted) return {};

@@ -1,4 +1,4 @@
-// imgmesh-info: what is in a container, and whether it is sound. Does not link OpenImageIO.
+// imgmesh-info: facts about a container, and whether it is sound. Does not link OpenImageIO.
 #include <map>
 #include <nlohmann/json.hpp>
 #include <ostream>
@@ -115,7 +115,8 @@ Report place_report(const Place& place) {
     return report;
 }
 
-// The verdict; the first finding that counts as an error becomes the run's failure, as a reader tells it.
+// Returns the verdict. The first finding that counts as an error becomes the run's failure, with the text of
+// a reader's error.
 Report validate(const Options& o, Context& context) {
     std::map<Severity, std::uint64_t> counts;
     Report findings = Report::array();

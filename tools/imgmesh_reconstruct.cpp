@@ -56,7 +56,7 @@ void add_options(CLI::App& app, Options& o) {
     add_container_limits(app, o.limits);
 }
 
-// Throws Error(kBadArgument) for what can be seen to be wrong before the container is read.
+// Throws Error(kBadArgument) for mistakes that can be found before the container is read.
 void check_options(const Options& o, bool svg) {
     const bool plane = o.draw.mode == DrawMode::kMap || o.draw.mode == DrawMode::kPatches ||
                        o.draw.mode == DrawMode::kVisits;
@@ -76,7 +76,7 @@ void check_options(const Options& o, bool svg) {
                     cat("-o ", o.output, ": expected the name of an image, as in .png"));
 }
 
-// Throws Error(kBadArgument) where a scaled image would be larger than any that can be read.
+// Throws Error(kBadArgument) if a scaled image would be larger than any that can be read.
 void check_size(const SourceInfo& source, double scale) {
     const ImageLimits limits;
     const double width = source.width * scale, height = source.height * scale;
@@ -86,8 +86,8 @@ void check_size(const SourceInfo& source, double scale) {
                         " pixels, more than ", limits.max_side, " a side or ", limits.max_pixels, " in all"));
 }
 
-// Whether all channels are written, not the colour alone. Throws Error(kUnsupported) where there is no colour
-// to draw.
+// Returns whether all channels are written, not only the colour. Throws Error(kUnsupported) if there is no
+// colour to draw.
 bool writes_channels(const Options& o, const SourceInfo& source) {
     const SplitNames names = split_names(source.channel_names);
     const bool holds = lower_extension(o.output) == ".exr" &&

@@ -93,7 +93,7 @@ void expect_extension(const std::string& option, const std::string& path, const 
                     cat(option, " ", path, ": expected a name that ends with ", extension));
 }
 
-// Throws Error(kBadArgument) for what can be seen to be wrong before the container is read.
+// Throws Error(kBadArgument) for mistakes that can be found before the container is read.
 void check_options(const Options& o) {
     if (o.threshold && o.params.segments)
         throw Error(ErrorKind::kBadArgument, "--threshold and --segments: expected one of them");
@@ -123,7 +123,7 @@ FeatureImage picture_of(const Options& o, const MeshImage& mesh_image, const Lev
     return luv_image(read_source_image(o.image, mesh_image.source, o.input), Range::kClipped);
 }
 
-// segment(), where what the command line asks for in vain is told in its own words.
+// Calls segment(). Requests that cannot be met are reported in the words of the command line.
 Segmentation segment_named(const Options& o, const Level& level, const FeatureImage& picture,
                            const SegmentParams& params, const Progress& progress) {
     try {

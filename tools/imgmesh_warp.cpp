@@ -1,5 +1,5 @@
-// imgmesh-warp: a container, its image and edits in; the edited image, maps of the edit, or the edited
-// container out.
+// imgmesh-warp: applies edits to a container's image. Writes the edited image, maps of the edit, or the
+// edited container.
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -38,7 +38,7 @@ struct Options {
     std::optional<WarpHandle> handle;
     WarpEdit handle_edit;  ///< level and solver of `handle`
     OutputSize size;
-    bool retarget = false;  ///< `size` is --retarget's
+    bool retarget = false;  ///< whether `size` comes from --retarget
 };
 
 const std::string kHandle = "--handle", kSize = "--size", kRetarget = "--retarget";
@@ -109,7 +109,7 @@ void add_options(CLI::App& app, Options& o) {
     exclude(app, retarget, {kSize});
 }
 
-// Throws Error(kBadArgument) for what can be seen to be wrong before anything is read.
+// Throws Error(kBadArgument) for mistakes that can be found before anything is read.
 void check_options(const Options& o) {
     if (o.output.empty() && o.displacement.empty())
         throw Error(ErrorKind::kBadArgument, "nothing to write: expected --output, --displacement or both");
@@ -138,7 +138,7 @@ WarpEdits all_edits(const Options& o) {
     return edits;
 }
 
-// solve_edits, where what the command line asks for in vain is a usage error.
+// Calls solve_edits(). Mistakes of the command line become usage errors.
 std::vector<VertexMoves> solve(const MeshImage& mesh_image, const WarpEdits& edits, const Options& o) {
     if (o.handle) check_level("--level", o.handle_edit.level, o.input, mesh_image);
     return solve_edits(mesh_image, edits);
@@ -201,7 +201,7 @@ Report run(const Options& o, Context& context) {
         ContainerOptions options;
         options.draco = container.facts.draco;
         options.overwrite = context.overwrite;
-        options.texture = container.texture;  // moves along: vertices keep their places in it
+        options.texture = container.texture;  // moves along: vertices keep their texture coordinates
         write_container(o.output, warped, options);
     } else if (!o.output.empty()) {
         const Image out = warp_image(*image, field, o.size);

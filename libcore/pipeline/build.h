@@ -1,4 +1,4 @@
-// The whole pipeline on one screen: an image in, a pyramid of base meshes with pixel maps out. Read this
+// The whole pipeline on one screen: from an image to a pyramid of base meshes with pixel maps. Read this
 // first.
 #pragma once
 
@@ -13,25 +13,25 @@
 
 namespace imgmesh {
 
-/// Figures of a level, measured on what a reader gets back.
+/// Figures of a level, measured on what a reader of the container gets.
 struct LevelReport {
     double map_rms = 0;                 ///< through the pixel map [L*u*v*, or features with their weights]
-    double gouraud_rms = 0;             ///< base mesh drawn without the map, likewise
-    std::vector<double> auxiliary_rms;  ///< of each channel beside the colour, through the map [its own unit]
+    double gouraud_rms = 0;             ///< of the base mesh drawn without the map, in the same unit
+    std::vector<double> auxiliary_rms;  ///< of each auxiliary channel, through the map [its own unit]
 };
 
 /// Wall time of the stages, all levels together [s].
 struct BuildSeconds {
-    double collapse = 0;  ///< with L*u*v* and the dense mesh
+    double collapse = 0;  ///< includes L*u*v* and the dense mesh
     double refine = 0;
-    double map = 0;  ///< with the fit of colours, and the figures of LevelReport
+    double map = 0;  ///< includes the fit of colours and the figures of LevelReport
 };
 
 struct BuildReport {
     BuildSeconds seconds;
-    std::int64_t pixels = 0;  ///< meshed: those inside the mask, or all
+    std::int64_t pixels = 0;  ///< meshed pixels: those inside the mask, or all
     std::int64_t collapses = 0;
-    std::int64_t rejected = 0;  ///< collapses that the tracked map has forbidden
+    std::int64_t rejected = 0;  ///< collapses that the tracked map has rejected
     std::vector<LevelReport> levels;
 };
 

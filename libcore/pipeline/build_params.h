@@ -12,14 +12,14 @@
 
 namespace imgmesh {
 
-/// When the collapse stops. The first limit reached counts; with none given, `density` does.
+/// When the collapse stops. The first limit reached counts; if none is given, `density` counts.
 struct StopParams {
     std::optional<std::int64_t> faces;     ///< at most this many faces; >= 2
     std::optional<std::int64_t> vertices;  ///< at most this many vertices; >= 4
     std::optional<double>
         error;  ///< no collapse above this total quadric error (paper sec. 3.1) [L*u*v*^2 px^2]
-    /// instead: as few vertices as an RMS of at most this through the pixel map takes, to about 3 %; 0 or
-    /// more [L*u*v*]. One level only. Error(kUnsupported) where the dense mesh has a larger one.
+    /// instead: as few vertices (to about 3 %) as an RMS of at most this through the pixel map takes; 0 or
+    /// more [L*u*v*]. One level only. Error(kUnsupported) if even the dense mesh has a larger RMS.
     std::optional<double> rms;
     double density = 1.0;  ///< percent of the pixels that stay vertices; in (0, 100]
 };
@@ -29,7 +29,7 @@ inline constexpr int kMaxSmoothing = 64;
 
 /// The pyramid: nested base meshes of one run, each with a pixel map of its own.
 struct PyramidParams {
-    int count = 1;  ///< levels, each but the finest with a quarter of the faces of the one before; 1 to 32
+    int count = 1;  ///< levels, each with a quarter of the faces of the one before; 1 to 32
     std::vector<std::int64_t>
         faces;  ///< instead: faces of each level, falling, >= 2; then StopParams do not count
     std::vector<double>
@@ -43,10 +43,10 @@ enum class MapKind {
     kTrivial   ///< each at its own place
 };
 
-/// Which error refinement lowers, of the mesh drawn alone.
+/// The error of the mesh drawn alone that refinement lowers.
 enum class Objective {
     kLuv,  ///< L*u*v*; colours are then fitted to the pixel map and to the drawing
-    kRgb   ///< encoded sRGB, interpolated as such; colours are what that drawing alone wants
+    kRgb   ///< encoded sRGB, interpolated as such; colours are the best for that drawing alone
 };
 
 inline constexpr int kMaxRefine = 1000;
@@ -60,15 +60,15 @@ struct BuildParams {
     /// lambda: geometry against colour in the quadrics [L*u*v*^2 / px^2]; > 0
     double geometry_weight = kUsualGeometryWeight;
     double color_weight = 1.0;  ///< of colour in the quadrics; only the ratio counts, 1e-9 to 1e9
-    /// take quadrics anew from the mesh at every halving ("memoryless")
+    /// rebuild quadrics from the mesh at every halving ("memoryless")
     bool rebuild_quadrics = SimplifyParams().rebuild_quadrics;
-    /// edges go by total error, as in the paper, not by what a merge adds; none: for metrics but the
-    /// flattened
+    /// edges are ordered by total error, as in the paper, not by what a merge adds; none: only for metrics
+    /// other than the flattened one
     std::optional<bool> total_priority;
     /// passes of [1 2 1] / 4 before gradients are taken; none: by density for the flattened metric, else 0
     std::optional<int> smoothing;
     bool quadric_colors = false;  ///< vertex colours are those of the quadrics, as in the paper, not fitted
-    std::optional<MapKind> map;   ///< none: relaxed, or trivial where projection_color_weight is 0
+    std::optional<MapKind> map;   ///< none: relaxed, or trivial if projection_color_weight is 0
     /// relaxed: of colour against smoothness; tracked: of squared L*u*v* against squared pixels in the
     /// flattened rings. 0 is the trivial map and excludes the two others, which need more; none: what
     /// FitParams or TrackParams have.
@@ -86,7 +86,7 @@ struct BuildParams {
     double min_quality = RefineParams().min_quality;  ///< of every triangle, collapsed or refined; 0 to 0.8
 };
 
-/// What BuildParams::map and projection_color_weight come to.
+/// Return the map and the weight that BuildParams::map and projection_color_weight mean.
 MapKind map_kind(const BuildParams& params);
 double map_color_weight(const BuildParams& params);
 

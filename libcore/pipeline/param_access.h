@@ -1,4 +1,4 @@
-// How the rows of the table of parameters reach the members of BuildParams.
+// How the rows of the table of parameters access the members of BuildParams.
 #pragma once
 
 #include <algorithm>
@@ -33,7 +33,7 @@ struct Chosen<std::optional<T>> {
     using Type = T;
 };
 
-/// A member as it is, or as the value of an optional one; an empty list is nothing chosen.
+/// A member, or the value of an optional one; an empty list means that nothing is chosen.
 template <typename Kind, typename... Path>
 Kind access(Path... path) {
     using Value = typename Kind::Value;

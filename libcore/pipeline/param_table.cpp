@@ -10,7 +10,7 @@
 namespace imgmesh {
 namespace {
 
-// Whether the finest level ends where StopParams say.
+// Whether StopParams decide where the finest level ends.
 bool stops(const BuildParams& p) {
     return !p.stop.rms && p.levels.faces.empty() && p.levels.errors.empty();
 }
@@ -211,7 +211,7 @@ std::string joined(const std::vector<T>& values) {
     return out.str();
 }
 
-// A value as containers list it.
+// Returns a value as containers list it.
 template <typename Kind>
 BuildParameter::second_type listed_value(const Kind& kind, const typename Kind::Value& value) {
     if constexpr (std::is_same_v<Kind, WordParam>)

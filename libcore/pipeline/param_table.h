@@ -15,7 +15,7 @@
 
 namespace imgmesh {
 
-/// How a parameter is read from BuildParams and put there. `get` gives none where nothing is chosen.
+/// How a parameter is read from BuildParams and stored there. `get` returns none if nothing is chosen.
 template <typename T>
 struct ParamAccess {
     using Value = T;
@@ -54,25 +54,26 @@ struct ParamListing {
 struct Param {
     std::string name;  ///< in containers, in messages and, with dashes before it, on the command line
     std::string group;
-    bool everyday = false;  ///< what most people need
+    bool everyday = false;  ///< whether most people need it
     ParamKind kind;
-    std::string help;            ///< what it is, without its words and its default
-    std::string otherwise = {};  ///< what counts where nothing is chosen, where there is something to say
+    std::string help;            ///< its meaning, without its words and its default
+    std::string otherwise = {};  ///< the default in words, if nothing chosen means something
     ParamListing listed = {};
     std::vector<std::string> excludes = {};  ///< parameters that are not given together with it
 };
 
 const std::vector<Param>& param_table();
 
-/// The parameter's value as containers, messages and the command line have it; "" where nothing is chosen.
+/// Returns the parameter's value as containers, messages and the command line write it; "" if nothing is
+/// chosen.
 std::string value_text(const Param& param, const BuildParams& params);
-/// What counts where the parameter is not given: its value in BuildParams, or `otherwise`; "" for a flag.
+/// Returns the default: the value in BuildParams, or `otherwise`; "" for a flag.
 std::string default_text(const Param& param);
 
 /// Throws Error(kBadArgument) for the first parameter outside its own range.
 void check_ranges(const BuildParams& params);
 
-/// The parameters of the table that a container lists. `params` has nothing left open.
+/// Returns the parameters that a container lists. `params` has nothing left open.
 std::vector<BuildParameter> list_params(const BuildParams& params);
 
 }  // namespace imgmesh

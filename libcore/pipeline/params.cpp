@@ -14,7 +14,7 @@ void require(bool holds, const std::string& text) {
     if (!holds) throw Error(ErrorKind::kBadArgument, text);
 }
 
-// Smoother gradients pay where vertices are far apart; figures in docs/paper-map.md.
+// Smoother gradients help if vertices are far apart; figures in docs/paper-map.md.
 int smoothing_passes(double pixels_per_vertex) {
     return pixels_per_vertex >= 250 ? 4 : pixels_per_vertex >= 66 ? 2 : pixels_per_vertex >= 12 ? 1 : 0;
 }
@@ -99,12 +99,12 @@ SimplifyParams collapse_params(const BuildParams& params, const SimplifyTarget& 
     out.geometry_weight = static_cast<float>(params.geometry_weight / params.color_weight);
     out.rebuild_quadrics = params.rebuild_quadrics;
     out.tiles = map_kind(params) != MapKind::kTracked && !params.visits;
-    // Summing up what merges add and smoothing are not part of what others published.
+    // Ordering by what merges add, and smoothing, are not part of what others published.
     const bool published = params.metric != Metric::kFlattened;
     out.total_priority = params.total_priority.value_or(published);
     out.min_shape = static_cast<float>(params.min_quality);
     const auto vertices = static_cast<double>(std::max(finest.vertices, finest.faces / 2));
-    // With an error alone the density is not known beforehand; the default's serves.
+    // If only an error is given, the density is unknown beforehand; the default's is used.
     const int passes = published ? 0 : smoothing_passes(vertices > 0 ? pixels / vertices : 100);
     out.smoothing = params.smoothing.value_or(passes);
     return out;

@@ -1,4 +1,4 @@
-// What the parameters of a build mean to its stages.
+// Translates the parameters of a build for its stages.
 #pragma once
 
 #include <vector>
@@ -12,18 +12,18 @@ namespace imgmesh {
 /// other.
 void check_params(const BuildParams& params);
 
-/// The collapse's targets, finest level first, for an image of that many pixels.
+/// Returns the collapse's targets, finest level first, for an image of that many pixels.
 std::vector<SimplifyTarget> collapse_targets(const BuildParams& params, double pixels);
 
-/// The collapse's parameters, but for max_face_area.
+/// Returns the collapse's parameters except max_face_area.
 SimplifyParams collapse_params(const BuildParams& params, const SimplifyTarget& finest, double pixels);
 
 /// `params` as they shaped the result: nothing that was left to the build is open any more.
 BuildParams closed_params(const BuildParams& params, const SimplifyParams& collapse,
                           WeightPrecision precision);
 
-/// Rounds of refinement: as wanted, or else none for published metrics and for colours of the quadrics, which
-/// are to be compared as they are, nor for a tracked map, which must end with the collapse.
+/// Returns the rounds of refinement: the chosen number, else none for published metrics and for the quadrics'
+/// colours, which are compared unrefined, and for a tracked map, which must end with the collapse.
 std::int64_t refine_rounds(const BuildParams& params);
 
 }  // namespace imgmesh

@@ -30,7 +30,7 @@ BuildParams fem() {
     params.exchange = 0.2;
     params.shape_weight = 0.3;
     params.min_quality = 0.28;
-    params.objective = Objective::kRgb;  // the mesh alone is what a simulation gets
+    params.objective = Objective::kRgb;  // a simulation uses only the mesh
     return params;
 }
 

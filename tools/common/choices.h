@@ -1,4 +1,4 @@
-// Words that stand for values.
+// Words for the values of options.
 #pragma once
 
 #include <stdexcept>
@@ -13,7 +13,7 @@ namespace imgmesh {
 template <typename Value>
 using Choices = std::vector<std::pair<std::string, Value>>;
 
-/// The word of a value that is among the choices.
+/// Returns the word of a value that is among the choices.
 template <typename Value>
 std::string name_of(const Choices<Value>& choices, const Value& value) {
     for (const auto& [name, candidate] : choices) {
@@ -22,7 +22,7 @@ std::string name_of(const Choices<Value>& choices, const Value& value) {
     throw std::logic_error("a value without a name");
 }
 
-/// The words of `choices`, as in "half, float".
+/// Returns the words of `choices`, as in "half, float".
 template <typename Value>
 std::string choice_names(const Choices<Value>& choices) {
     std::string names;
@@ -30,10 +30,10 @@ std::string choice_names(const Choices<Value>& choices) {
     return names;
 }
 
-/// Whether two words differ in no more than the case of ASCII letters.
+/// Returns whether two words are equal, ignoring the case of ASCII letters.
 bool same_name(const std::string& a, const std::string& b);
 
-/// The value of the word `text`, in any case, that was given to option `name`.
+/// Returns the value of the word `text`, in any case, given to option `name`.
 template <typename Value>
 Value parse_choice(const std::string& name, const std::string& text, const Choices<Value>& choices) {
     for (const auto& [word, value] : choices)

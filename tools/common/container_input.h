@@ -1,4 +1,4 @@
-// What the tools ask of containers that they read.
+// Checks of containers that the tools read.
 #pragma once
 
 #include <string>
@@ -7,10 +7,10 @@
 
 namespace imgmesh {
 
-/// Whether the name of a file is that of a container: .glb or .gltf.
+/// Returns whether a file name is that of a container: .glb or .gltf.
 bool is_container(const std::string& path);
 
-/// Throws Error(kBadArgument) where `option` names a level that the container `path` does not have.
+/// Throws Error(kBadArgument) if `option` names a level that the container `path` does not have.
 void check_level(const std::string& option, std::int64_t level, const std::string& path,
                  const MeshImage& mesh_image);
 

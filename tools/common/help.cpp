@@ -31,7 +31,7 @@ class HelpFormatter : public CLI::Formatter {
 
     std::string make_option(const CLI::Option* option, bool is_positional) const override {
         std::string head = "  " + make_option_name(option, is_positional) + make_option_opts(option);
-        // What CLI11 shows of a flag's name that switches it off.
+        // CLI11's mark of a flag name that switches the flag off.
         if (const std::size_t at = head.find("{false}"); at != std::string::npos) head.erase(at, 7);
         std::ostringstream out;
         out << head;

@@ -10,16 +10,16 @@ class Option;
 
 namespace imgmesh {
 
-/// Gives `app` its way of showing options, in groups under headings, wrapped. Call it before any option is
-/// added.
+/// Makes `app` show its options in groups under headings, wrapped. Call it before adding
+/// options.
 void set_help_style(CLI::App& app);
 
-/// Leaves an option of `app` to --help-all.
+/// Shows an option of `app` only in --help-all.
 CLI::Option* advanced(CLI::App& app, CLI::Option* option);
 
-/// What --help prints.
+/// Returns what --help prints.
 std::string everyday_help(const CLI::App& app);
-/// What --help-all prints, and manuals and completions are made from.
+/// Returns what --help-all prints, from which manuals and completions are made.
 std::string full_help(const CLI::App& app);
 
 }  // namespace imgmesh

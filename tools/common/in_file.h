@@ -1,4 +1,4 @@
-// Errors of libraries that know no file, with the name of the file that they are about.
+// Adds a file's name to Errors of libraries that do not know it.
 #pragma once
 
 #include <string>
@@ -8,7 +8,7 @@
 
 namespace imgmesh {
 
-/// The result of `work`. The text of an Error that it throws gets `name` before it, a file or an option.
+/// Returns the result of `work`. The text of an Error from it is preceded by `name`, a file or an option.
 template <typename Work>
 auto in_file(const std::string& name, Work&& work) {
     try {

@@ -1,4 +1,4 @@
-// One progress for work that goes on in parallel.
+// One progress for parallel work.
 #pragma once
 
 #include <mutex>
@@ -9,7 +9,7 @@
 
 namespace imgmesh {
 
-/// The share of all parts that is done, from the shares of each, which come from several threads.
+/// The share of all parts that is done, from the shares of each part, which several threads report.
 class JointProgress {
   public:
     JointProgress(std::size_t count, const Progress& progress)

@@ -1,4 +1,4 @@
-// Options for what a reader refuses before it takes memory.
+// Options for the limits that a reader checks before it takes memory.
 #pragma once
 
 #include "formats/container/container.h"

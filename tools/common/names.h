@@ -1,4 +1,4 @@
-// The words by which options and reports call the values of enums.
+// The words of options and reports for the values of enums.
 #pragma once
 
 #include "formats/container/container.h"

@@ -1,4 +1,4 @@
-// Numbers from text, strictly: what is not wholly a number in range is refused with Error(kBadArgument), in a
+// Reads numbers from text, strictly: anything but a number in range is refused with Error(kBadArgument), in a
 // line that names the option, the value and what is expected.
 #pragma once
 
@@ -9,9 +9,9 @@
 
 namespace imgmesh {
 
-/// `text` as a value of option `name`. Plain decimal digits; no sign but '-', no space, no other base.
+/// Reads `text` as a value of option `name`: decimal digits; no sign except '-', no space, no other base.
 std::int64_t parse_count(const std::string& name, const std::string& text, const CountRange& range);
-/// Decimal with optional exponent; neither infinite nor nan.
+/// Reads a decimal number with optional exponent; neither infinite nor nan.
 double parse_number(const std::string& name, const std::string& text, const NumberRange& range);
 
 }  // namespace imgmesh

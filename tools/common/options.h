@@ -23,13 +23,13 @@ class Option;
 
 namespace imgmesh {
 
-/// What the help says of an option: what it is, and what counts where it is not given.
+/// What the help says about an option: its meaning and its default.
 struct Help {
     Help(const char* what) : text(what) {}
     Help(std::string what, std::string without = "") : text(std::move(what)), otherwise(std::move(without)) {}
 
     std::string text;       ///< without a full stop
-    std::string otherwise;  ///< "" where there is nothing to say, or where the option's target says it
+    std::string otherwise;  ///< the default in words; "" if the option's target has it, or if there is none
 };
 
 /// An option that calls `take` with its one value. `name` is the long option, perhaps after a short one.
@@ -38,7 +38,7 @@ CLI::Option* add_value(CLI::App& app, const std::string& name, const std::string
 CLI::Option* add_flag(CLI::App& app, const std::string& name, std::function<void()> take,
                       const std::string& help);
 
-/// The files to read: one name, or at least one where `inputs` is a vector. Required.
+/// The files to read: one name, or at least one if `inputs` is a vector. Required.
 CLI::Option* add_input(CLI::App& app, const std::string& name, std::string& input, const std::string& help);
 CLI::Option* add_inputs(CLI::App& app, const std::string& name, std::vector<std::string>& inputs,
                         const std::string& help);
@@ -47,30 +47,30 @@ CLI::Option* add_output(CLI::App& app, std::string& output, const std::string& h
 /// An option for the name of a file, which is not empty.
 CLI::Option* add_file(CLI::App& app, const std::string& name, std::string& target, const std::string& help);
 
-/// `option` is refused together with the options of these names, and says so in its help.
+/// Refuses `option` together with the options of these names, and says so in its help.
 void exclude(CLI::App& app, CLI::Option* option, const std::vector<std::string>& names);
-/// `option` is refused without `other`.
+/// Refuses `option` without `other`.
 CLI::Option* needs(CLI::Option* option, CLI::Option* other);
-/// The heading that an option stands under in the help; "Options" where none is given.
+/// Puts an option under this heading of the help; "Options" if none is given.
 CLI::Option* in_group(CLI::Option* option, const std::string& group);
 
 /// Calls `check` when all options have been read.
 void after_parsing(CLI::App& app, std::function<void()> check);
-/// Whether the option of this name was given.
+/// Returns whether the option of this name was given.
 bool given(const CLI::App& app, const std::string& name);
-/// "--refine 6": the first of these options that was given, as it was typed; "" where none was.
+/// Returns the first of these options that was given, as it was typed ("--refine 6"); "" if none was.
 std::string typed(const CLI::App& app, std::initializer_list<const char*> names);
 
-/// The items of a list that commas separate.
+/// Returns the items of a list, which commas separate.
 std::vector<std::string> split_list(const std::string& text);
 
-/// The type of a target's value, whether or not it is an optional one; for decltype.
+/// The type of a target's value, optional or not; for decltype.
 template <typename T>
 T chosen_type(const T&);
 template <typename T>
 T chosen_type(const std::optional<T>&);
 
-/// `help` with the default that `target` holds, unless it is an optional one.
+/// Returns `help` with the default in `target`, unless that is an optional one.
 template <typename Target>
 Help with_default(Help help, const Target& target) {
     if constexpr (std::is_arithmetic_v<Target>) help.otherwise = cat(target);
@@ -101,7 +101,7 @@ CLI::Option* add_number(CLI::App& app, const std::string& name, Number& target, 
         with_default(help, target));
 }
 
-/// One of several names in any case, each standing for a value.
+/// An option with several words in any case, each for a value.
 template <typename Target, typename Value>
 CLI::Option* add_choice(CLI::App& app, const std::string& name, Target& target, const Choices<Value>& choices,
                         Help help) {

@@ -25,7 +25,7 @@ void check_output(const std::string& path, bool overwrite) {
 void check_distinct(const std::vector<std::string>& inputs, const std::vector<std::string>& outputs) {
     for (const std::string& output : outputs) {
         for (const std::string& input : inputs) {
-            std::error_code error;  // of files that are not there, which are no conflict
+            std::error_code error;  // of files that do not exist, which are no conflict
             if (fs::equivalent(input, output, error))
                 throw Error(ErrorKind::kBadArgument, cat(output, ": would replace the input ", input));
         }
@@ -35,7 +35,7 @@ void check_distinct(const std::vector<std::string>& inputs, const std::vector<st
 void check_separate(const std::vector<std::string>& outputs) {
     std::set<fs::path> seen;
     for (const std::string& output : outputs) {
-        std::error_code error;  // of what cannot be resolved; writing it will say why
+        std::error_code error;  // of paths that cannot be resolved; writing reports the reason
         const fs::path path = fs::weakly_canonical(fs::absolute(output), error);
         if (!error && !seen.insert(path).second)
             throw Error(ErrorKind::kBadArgument, cat(output, ": is named for two outputs"));

@@ -1,4 +1,4 @@
-// Checks of where results go, before any work is done.
+// Checks of output files, before any work.
 #pragma once
 
 #include <string>
@@ -6,20 +6,20 @@
 
 namespace imgmesh {
 
-/// Throws Error(kIo) where `path` cannot become a new file: its folder is not there, it is a folder itself,
-/// or it exists and `overwrite` is false.
+/// Throws Error(kIo) if `path` cannot become a new file: its folder does not exist, it is a folder itself, or
+/// it exists and `overwrite` is false.
 void check_output(const std::string& path, bool overwrite);
 
-/// Throws Error(kBadArgument) where one of the `outputs` is one of the files of `inputs`, by whatever name.
+/// Throws Error(kBadArgument) if one of the `outputs` is one of the files of `inputs`, by any name.
 void check_distinct(const std::vector<std::string>& inputs, const std::vector<std::string>& outputs);
 
-/// Throws Error(kBadArgument) where two of the `outputs` are one file, whatever their names.
+/// Throws Error(kBadArgument) if two of the `outputs` are one file, by any name.
 void check_separate(const std::vector<std::string>& outputs);
 
-/// Writes `text` as the whole of a file, or nothing.
+/// Writes `text` as a whole file, atomically.
 void write_text(const std::string& path, const std::string& text, bool overwrite);
 
-/// `path` as a folder, made where it is not there. Throws Error(kIo) where that fails.
+/// Returns `path` as a folder, which is made if it does not exist. Throws Error(kIo) if that fails.
 void make_folder(const std::string& path);
 
 }  // namespace imgmesh

@@ -1,4 +1,4 @@
-// The image that a container was made from.
+// Reads the image that a container was made from.
 #pragma once
 
 #include <string>
@@ -8,7 +8,7 @@
 
 namespace imgmesh {
 
-/// Reads it. Throws Error(kBadFile) where its size is not that of `source`, which is `container`'s.
+/// Reads it. Throws Error(kBadFile) if its size is not that of `source`, which belongs to `container`.
 Image read_source_image(const std::string& path, const SourceInfo& source, const std::string& container);
 
 }  // namespace imgmesh

@@ -17,7 +17,8 @@ struct TextureOptions {
     TextureType type = TextureType::kPng;
 };
 
-/// --texture, --no-texture where there may be one already, and --texture-type, which is refused without.
+/// --texture, --no-texture if there may be a texture already, and --texture-type, which is refused without a
+/// texture.
 void add_texture_options(CLI::App& app, TextureOptions& options, const Help& help, bool removable);
 
 }  // namespace imgmesh

@@ -32,7 +32,7 @@ struct ExitCodeMeaning {
     const char* meaning;
 };
 
-// Every exit code of every tool; --help prints it.
+// Every exit code of every tool, for --help.
 constexpr ExitCodeMeaning kExitCodes[] = {
     {ExitCode::kOk, "done"},
     {ExitCode::kInternal, "internal error"},
@@ -43,7 +43,7 @@ constexpr ExitCodeMeaning kExitCodes[] = {
     {ExitCode::kDifferent, "compared, and different"},
 };
 
-// More than any machine has, few enough for the thread library's tables.
+// More than any machine has, and few enough for the thread library's tables.
 constexpr int kMaxThreads = 1024;
 
 struct CommonOptions {
@@ -78,8 +78,8 @@ void add_common_options(CLI::App& app, CommonOptions& common) {
     app.footer(exit_code_table());
 }
 
-// A standard stream that was closed by the caller would lend its number to the next file that is opened, and
-// the report would end up in that file. Opening the null device the wrong way round keeps writing an error.
+// If the caller closed a standard stream, its number would go to the next file that is opened, and the report
+// would end up there. Opening the null device in the wrong direction keeps writing an error.
 void hold_standard_streams() {
     for (int fd = STDIN_FILENO; fd <= STDERR_FILENO; ++fd) {
         if (::fcntl(fd, F_GETFD) == -1 && errno == EBADF) {
@@ -88,7 +88,7 @@ void hold_standard_streams() {
     }
 }
 
-// Throws Error(kIo) where the text does not reach standard output as a whole.
+// Throws Error(kIo) if standard output does not take the whole text.
 void write_stdout(const std::string& text) {
     std::size_t done = 0;
     while (done < text.size()) {
@@ -105,7 +105,7 @@ void print_error(const std::string& tool, const std::string& message) {
     std::cerr << tool << ": error: " << printable_line(message) << std::endl;
 }
 
-// What failures that did not stop the run add up to.
+// The exit code of failures that did not stop the run.
 ExitCode joint_code(const std::vector<Failure>& failures) {
     if (failures.empty()) return ExitCode::kOk;
     for (const Failure& f : failures) {
@@ -129,7 +129,7 @@ ExitCode run_parsed(const Tool& tool, const CommonOptions& common) {
     for (const Failure& f : context.failures) print_error(tool.name, f.message);
     std::ostringstream text;
     if (common.json) {
-        // File names may be no UTF-8, which JSON must be.
+        // File names may not be UTF-8, which JSON requires.
         text << report.dump(2, ' ', false, Report::error_handler_t::replace) << '\n';
     } else if (!common.quiet) {
         tool.print(report, text);
@@ -183,7 +183,7 @@ Failure current_failure() {
 
 int run_tool(const Tool& tool, int argc, char** argv) {
     hold_standard_streams();
-    // A reader that goes away and a limit on file size are errors of write(), not the end of the process.
+    // A closed pipe and a limit on file size are errors of write(), not the end of the process.
     std::signal(SIGPIPE, SIG_IGN);
     std::signal(SIGXFSZ, SIG_IGN);
     use_huge_pages();

@@ -16,26 +16,26 @@ class App;
 
 namespace imgmesh {
 
-/// What a tool found or did: the object that --json prints. The text report is made from it. Who makes or
+/// The result of a tool: the object that --json prints. The text report is made from it. Code that makes or
 /// reads one includes nlohmann/json.hpp.
 using Report = nlohmann::ordered_json;
 
-/// A mistake as it is told to the user: one error line and an exit code.
+/// A mistake as the user sees it: one error line and an exit code.
 struct Failure {
     ExitCode code = ExitCode::kInternal;
     std::string message;
 };
 
-/// The exception being handled as a Failure. Call it in a catch block only.
+/// Returns the exception being handled as a Failure. Call it only in a catch block.
 Failure current_failure();
 
-/// What a run gets beside its tool's own options.
+/// What a run gets besides its tool's own options.
 struct Context {
     std::string generator;  ///< "imgmesh-build 0.1.0"
     bool overwrite = true;  ///< of --overwrite, --no-overwrite
     Progress progress;      ///< never empty; may be called from any thread
-    /// Mistakes that did not stop the run. Each becomes an error line, in this order, and they decide the
-    /// exit code: theirs where all agree, kBadFile where they differ.
+    /// Mistakes that did not stop the run. Each becomes an error line, in this order. They decide the exit
+    /// code: their common code, or kBadFile if they differ.
     std::vector<Failure> failures;
 };
 
