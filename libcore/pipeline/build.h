@@ -43,9 +43,9 @@ struct BuildResult {
 /// Builds a MeshImage: image -> features -> dense mesh of all pixels -> collapse -> base mesh -> refinement
 /// -> pixel map -> least-squares features. Source: the paper, sec. 3; docs/paper-map.md lists what differs.
 ///
-/// image     at least one pixel. Alpha counts only as a channel of params.channels. Linear light below 0 is
-///           clipped to 0, and above 1 to 1 unless the image is one of floats (gamut_of). A side of one
-///           pixel counts as a strip one pixel wide (docs/format.md).
+/// image     at least one pixel. Alpha counts only as a channel of params.channels. Linear RGB below 0 is
+///           clipped to 0, and above 1 to 1 unless the image is HDR (gamut_of). A side of one pixel counts
+///           as a strip one pixel wide (docs/format.md).
 /// progress  called now and then, on this thread
 /// mask      the pixels to mesh, of the image's size; empty() for all. Exactly the others have no face in
 ///           the map. Percents and shares are of the pixels inside.

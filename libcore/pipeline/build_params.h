@@ -76,9 +76,9 @@ struct BuildParams {
     bool visits = false;  ///< count how often the collapse down to the finest level touches each pixel
     std::optional<WeightPrecision> bary;      ///< none: half where the map stays a bijection, else float
     std::optional<std::int64_t> max_cluster;  ///< no face with more pixels than this; >= 3
-    /// Rounds of refinement of each level; 0 to kMaxRefine. None: those of RefineParams
-    /// where the features are a colour and the metric the flattened one with fitted colours, else 0; 0 for
-    /// a tracked map, which takes none.
+    /// Rounds of refinement of each level; 0 to kMaxRefine. None: those of RefineParams if the features are
+    /// a colour and the metric is the flattened one with fitted colours, else 0. A tracked map allows only
+    /// 0.
     std::optional<std::int64_t> refine;
     double shape_weight = RefineParams().shape_weight;
     double exchange = RefineParams().exchange;
