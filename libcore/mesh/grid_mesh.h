@@ -50,6 +50,11 @@ struct FeaturePatch {
 
     /// Takes the image's coordinates.
     const float* pixel(int x, int y) const { return image.pixel(x - left, y - top); }
+    /// Of the pixel that a vertex of the image's grid mesh stands for.
+    const float* of_vertex(const GridMesh& grid, Id v) const {
+        const Id at = grid.pixel_of(v), w = static_cast<Id>(grid.feature.width);
+        return pixel(static_cast<int>(at % w), static_cast<int>(at / w));
+    }
 };
 
 /// Returns smoothed() for the pixels in `rect` and, inside the image, for those beside it, computed from the

@@ -1,3 +1,4 @@
+// Sources: paper sec. 3.2 and table 1; `closed` is docs/decisions/0001-canonical-quadric.md for any matrix.
 #include "libcore/simplify/quadrics/matrix_minimum.h"
 
 #include <Eigen/Cholesky>

@@ -1,3 +1,6 @@
+// Steps: (1) the face quadrics around each vertex are summed, about the vertex; (2) the sum's minimum is
+// found. Sources: paper sec. 3.2; Hoppe 1999; Garland and Heckbert 1998;
+// docs/decisions/0006-metrics-and-solvers.md.
 #include <Eigen/LU>
 #include <algorithm>
 #include <array>
@@ -109,7 +112,8 @@ std::vector<MatrixQuadric<C>> quadrics_of(const RingMesh& rings, Eigen::Index ch
                                           const SimplifyParams& params, const FeaturesOf& own,
                                           const FeaturesOf& slope) {
     std::vector<MatrixQuadric<C>> quadrics(rings.size());
-    parallel_blocks(0, static_cast<int>(rings.size()), 1 << 12, [&](int first, int last) {
+    constexpr int kVertices = 1 << 12;  // that a thread takes at a time; results do not depend on it
+    parallel_blocks(0, static_cast<int>(rings.size()), kVertices, [&](int first, int last) {
         for (Id v = static_cast<Id>(first); v < static_cast<Id>(last); ++v) {
             const Ring& ring = rings[v];
             if (!ring.live()) continue;
@@ -132,13 +136,9 @@ std::vector<MatrixQuadric<C>> quadrics_of(const RingMesh& rings, Eigen::Index ch
 template <int C>
 std::vector<MatrixQuadric<C>> matrix_quadrics(const GridMesh& grid, const RingMesh& rings,
                                               const FeaturePatch& gradients, const SimplifyParams& params) {
-    const Id w = static_cast<Id>(grid.feature.width);
     return quadrics_of<C>(
         rings, grid.feature.channels, params, [&](Id v) { return grid.feature.pixel(v); },
-        [&](Id v) {
-            const Id pixel = grid.pixel_of(v);
-            return gradients.pixel(static_cast<int>(pixel % w), static_cast<int>(pixel / w));
-        });
+        [&](Id v) { return gradients.of_vertex(grid, v); });
 }
 
 template <int C>

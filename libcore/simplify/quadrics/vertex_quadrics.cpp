@@ -1,15 +1,20 @@
+// Steps: (1) the faces around each vertex are summed, their gradients from the smoothed copy; (2) the sum is
+// brought into canonical form. Colour quadrics of pixels that are on no side are made eight at a time.
+// Sources: paper sec. 3.2; Hoppe 1999; the form is derived in docs/decisions/0001-canonical-quadric.md.
 #include "libcore/simplify/quadrics/vertex_quadrics.h"
 
 #include <algorithm>
-#include <cstring>
 #include <type_traits>
 
 #include "libcore/base/parallel.h"
-#include "libcore/base/simd.h"
 #include "libcore/mesh/ring_mesh.h"
+#include "libcore/simplify/quadrics/quadric_lanes.h"
 
 namespace imgmesh {
 namespace {
+
+// What a thread takes at a time. Results do not depend on it.
+constexpr int kRows = 16, kVertices = 1 << 14;
 
 // With a the area of face f, t its centroid less the vertex, g its gradient, summed over the faces around the
 // vertex:
@@ -46,41 +51,40 @@ struct Accumulator {
         for (int c = 0; c < C; ++c)
             add_gradient(a, c, (by * da[c] - ay * db[c]) / det, (ax * db[c] - bx * da[c]) / det);
     }
-
-    // The quadric of a vertex at (x, y) with features s: its members in their order.
-    IMGMESH_INLINE void finish(T x, T y, const T* s, float lambda, T* out) const {
-        T sxx = lambda * area + gxx, sxy = gxy, syy = lambda * area + gyy;
-        T mean_x[C], mean_y[C];
-        for (int c = 0; c < C; ++c) {
-            mean_x[c] = gx[c] / area;
-            mean_y[c] = gy[c] / area;
-            sxx -= area * mean_x[c] * mean_x[c];
-            sxy -= area * mean_x[c] * mean_y[c];
-            syy -= area * mean_y[c] * mean_y[c];
+    // The faces around a vertex, of whose k-th neighbour (ox[k], oy[k]) is the offset and d[k] are the
+    // features less its own.
+    void add_faces(const Ring& ring, const float* ox, const float* oy,
+                   const float (*d)[C]) requires std::is_same_v<T, float> {
+        for (int k = 0; k < ring.valence - (ring.border() ? 1 : 0); ++k) {
+            const int m = k + 1 == ring.valence ? 0 : k + 1;
+            add(ox[k], oy[k], d[k], ox[m], oy[m], d[m]);
         }
-        const T scale = lambda / (sxx * syy - sxy * sxy);
-        const T dx = scale * (syy * tx - sxy * ty), dy = scale * (sxx * ty - sxy * tx);
-        *out++ = x + dx;
-        *out++ = y + dy;
-        for (int c = 0; c < C; ++c) *out++ = s[c] + mean_x[c] * dx + mean_y[c] * dy;
-        for (int c = 0; c < C; ++c) *out++ = mean_x[c];
-        for (int c = 0; c < C; ++c) *out++ = mean_y[c];
-        *out++ = sxx;
-        *out++ = sxy;
-        *out++ = syy;
-        *out++ = area;
+    }
+
+    // The quadric of a vertex at (x, y) with features s.
+    IMGMESH_INLINE Quadric<C, T> finish(T x, T y, const T* s, float lambda) const {
+        Quadric<C, T> q;
+        q.weight = area;
+        q.sxx = lambda * area + gxx;
+        q.sxy = gxy;
+        q.syy = lambda * area + gyy;
+        for (int c = 0; c < C; ++c) {
+            q.gx[c] = gx[c] / area;
+            q.gy[c] = gy[c] / area;
+            q.sxx -= area * q.gx[c] * q.gx[c];
+            q.sxy -= area * q.gx[c] * q.gy[c];
+            q.syy -= area * q.gy[c] * q.gy[c];
+        }
+        const T scale = lambda / (q.sxx * q.syy - q.sxy * q.sxy);
+        const T dx = scale * (q.syy * tx - q.sxy * ty), dy = scale * (q.sxx * ty - q.sxy * tx);
+        q.px = x + dx;
+        q.py = y + dy;
+        for (int c = 0; c < C; ++c) q.s[c] = s[c] + q.gx[c] * dx + q.gy[c] * dy;
         const T error = lambda * (tt - dx * tx - dy * ty);
-        *out++ = error > T{} ? error : T{};
+        q.error = error > T{} ? error : T{};
+        return q;
     }
 };
-
-template <int C>
-Quadric<C> finished(const Accumulator<C, float>& sum, const Ring& ring, const float* s, float lambda) {
-    Quadric<C> q;
-    static_assert(sizeof q == (2 + 3 * C + 5) * sizeof(float));
-    sum.finish(ring.x, ring.y, s, lambda, &q.px);
-    return q;
-}
 
 template <int C>
 Quadric<C> quadric_at(const GridMesh& grid, const FeaturePatch& gradients, float lambda, int x, int y) {
@@ -97,11 +101,8 @@ Quadric<C> quadric_at(const GridMesh& grid, const FeaturePatch& gradients, float
         for (int c = 0; c < C; ++c) d[k][c] = gradients.pixel(nx, ny)[c] - own[c];
     }
     Accumulator<C, float> sum;
-    for (int k = 0; k < ring.valence - (ring.border() ? 1 : 0); ++k) {
-        const int m = k + 1 == ring.valence ? 0 : k + 1;
-        sum.add(ox[k], oy[k], d[k], ox[m], oy[m], d[m]);
-    }
-    return finished(sum, ring, grid.feature.pixel(v), lambda);
+    sum.add_faces(ring, ox, oy, d);
+    return sum.finish(ring.x, ring.y, grid.feature.pixel(v), lambda);
 }
 
 // Colours of the pixel (x, y) and the seven to its right, channel by channel.
@@ -165,20 +166,9 @@ IMGMESH_INLINE void eight_quadrics(const GridMesh& grid, const FeaturePatch& gra
         }
     }
     const EightColors own(grid.feature.pixel(x, y));
-    Float8 members[16];
-    sum.finish(grid.origin_x + static_cast<float>(x) + Float8{0, 1, 2, 3, 4, 5, 6, 7},
-               Float8{} + (grid.origin_y + static_cast<float>(y)), own.c, lambda, members);
-    Float8 low[8], high[8];
-    for (int k = 0; k < 8; ++k) {
-        low[k] = members[k];
-        high[k] = members[8 + k];
-    }
-    transpose8(low);
-    transpose8(high);
-    for (int k = 0; k < 8; ++k) {
-        std::memcpy(&out[k].px, &low[k], sizeof low[k]);
-        std::memcpy(&out[k].px + 8, &high[k], sizeof high[k]);
-    }
+    write_in_turn(sum.finish(grid.origin_x + static_cast<float>(x) + Float8{0, 1, 2, 3, 4, 5, 6, 7},
+                             Float8{} + (grid.origin_y + static_cast<float>(y)), own.c, lambda),
+                  out);
 }
 
 // Pixels [x, right) of row y as long as there are eight of them inside the image; returns where it stopped.
@@ -232,7 +222,7 @@ template <int C>
 std::vector<Quadric<C>> vertex_quadrics(const GridMesh& grid, const FeaturePatch& gradients, float lambda) {
     const int w = grid.feature.width;
     std::vector<Quadric<C>> quadrics(grid.feature.pixel_count());
-    parallel_blocks(0, grid.feature.height, 16, [&](int first, int last) {
+    parallel_blocks(0, grid.feature.height, kRows, [&](int first, int last) {
         vertex_quadrics(grid, gradients, lambda, {0, first, w, last},
                         quadrics.data() + static_cast<std::size_t>(first) * static_cast<std::size_t>(w));
     });
@@ -247,7 +237,7 @@ template <int C, class Own, class Slope>
 std::vector<Quadric<C>> quadrics_over(const RingMesh& rings, float lambda, const Own& own,
                                       const Slope& slope) {
     std::vector<Quadric<C>> quadrics(rings.size());
-    parallel_blocks(0, static_cast<int>(rings.size()), 1 << 14, [&](int first, int last) {
+    parallel_blocks(0, static_cast<int>(rings.size()), kVertices, [&](int first, int last) {
         for (Id v = static_cast<Id>(first); v < static_cast<Id>(last); ++v) {
             const Ring& ring = rings[v];
             if (!ring.live()) continue;
@@ -259,13 +249,10 @@ std::vector<Quadric<C>> quadrics_over(const RingMesh& rings, float lambda, const
                 slope(v, k, d[k]);
             }
             Accumulator<C, float> sum;
-            for (int k = 0; k < ring.valence - (ring.border() ? 1 : 0); ++k) {
-                const int m = k + 1 == ring.valence ? 0 : k + 1;
-                sum.add(ox[k], oy[k], d[k], ox[m], oy[m], d[m]);
-            }
+            sum.add_faces(ring, ox, oy, d);
             float s[C];
             own(v, s);
-            quadrics[v] = finished(sum, ring, s, lambda);
+            quadrics[v] = sum.finish(ring.x, ring.y, s, lambda);
         }
     });
     return quadrics;
@@ -278,11 +265,7 @@ std::vector<Quadric<C>> vertex_quadrics(const GridMesh& grid, const RingMesh& ri
                                         const std::vector<Id>& number, const FeaturePatch& gradients,
                                         float lambda) {
     const auto in_grid = [&](Id v) { return number.empty() ? v : number[v]; };
-    const Id w = static_cast<Id>(grid.feature.width);
-    const auto at = [&](Id v) {
-        const Id pixel = grid.pixel_of(in_grid(v));
-        return gradients.pixel(static_cast<int>(pixel % w), static_cast<int>(pixel / w));
-    };
+    const auto at = [&](Id v) { return gradients.of_vertex(grid, in_grid(v)); };
     return quadrics_over<C>(
         rings, lambda, [&](Id v, float* s) { std::copy_n(grid.feature.pixel(in_grid(v)), C, s); },
         [&](Id v, int k, float* out) {

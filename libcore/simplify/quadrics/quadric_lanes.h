@@ -1,0 +1,89 @@
+// Eight quadrics of colours side by side: between records in memory and one vector for each member.
+#pragma once
+
+#include <cstddef>
+#include <cstring>
+#include <type_traits>
+
+#include "libcore/base/simd.h"
+#include "libcore/base/types.h"
+#include "libcore/simplify/quadrics/quadric.h"
+
+namespace imgmesh {
+
+using ColorQuadric = Quadric<3>;
+using ColorQuadric8 = Quadric<3, Float8>;
+
+// A record is copied as two vectors of bytes, which hold its members in this order.
+static_assert(std::is_trivially_copyable_v<ColorQuadric> && sizeof(ColorQuadric) == 2 * sizeof(Float8));
+static_assert(offsetof(ColorQuadric, s) == 2 * sizeof(float) &&
+              offsetof(ColorQuadric, gx) == 5 * sizeof(float) &&
+              offsetof(ColorQuadric, gy) == 8 * sizeof(float) &&
+              offsetof(ColorQuadric, sxx) == 11 * sizeof(float) &&
+              offsetof(ColorQuadric, weight) == 14 * sizeof(float));
+
+/// Half a record: 0 or 1.
+IMGMESH_INLINE Float8 half_of(const ColorQuadric& quadric, std::size_t half) {
+    Float8 v;
+    std::memcpy(&v, reinterpret_cast<const std::byte*>(&quadric) + half * sizeof v, sizeof v);
+    return v;
+}
+
+/// The quadrics of these eight numbers, one in each lane.
+IMGMESH_INLINE ColorQuadric8 side_by_side(const ColorQuadric* quadrics, const Id* which) {
+    Float8 low[8], high[8];
+    for (int lane = 0; lane < 8; ++lane) {
+        low[lane] = half_of(quadrics[which[lane]], 0);
+        high[lane] = half_of(quadrics[which[lane]], 1);
+    }
+    transpose8(low);
+    transpose8(high);
+    ColorQuadric8 q;
+    q.px = low[0];
+    q.py = low[1];
+    for (int c = 0; c < 3; ++c) {
+        q.s[c] = low[2 + c];
+        q.gx[c] = low[5 + c];
+        q.gy[c] = high[c];
+    }
+    q.sxx = high[3];
+    q.sxy = high[4];
+    q.syy = high[5];
+    q.weight = high[6];
+    q.error = high[7];
+    return q;
+}
+
+/// The way back, to eight quadrics that follow each other.
+IMGMESH_INLINE void write_in_turn(const ColorQuadric8& q, ColorQuadric* out) {
+    Float8 low[8] = {q.px, q.py, q.s[0], q.s[1], q.s[2], q.gx[0], q.gx[1], q.gx[2]};
+    Float8 high[8] = {q.gy[0], q.gy[1], q.gy[2], q.sxx, q.sxy, q.syy, q.weight, q.error};
+    transpose8(low);
+    transpose8(high);
+    for (int lane = 0; lane < 8; ++lane) {
+        auto* bytes = reinterpret_cast<std::byte*>(out + lane);
+        std::memcpy(bytes, &low[lane], sizeof low[lane]);
+        std::memcpy(bytes + sizeof low[lane], &high[lane], sizeof high[lane]);
+    }
+}
+
+/// The same quadric in every lane.
+IMGMESH_INLINE ColorQuadric8 in_every_lane(const ColorQuadric& quadric) {
+    const Float8 zero = {};
+    ColorQuadric8 q;
+    q.px = zero + quadric.px;
+    q.py = zero + quadric.py;
+    for (int c = 0; c < 3; ++c) {
+        q.s[c] = zero + quadric.s[c];
+        q.gx[c] = zero + quadric.gx[c];
+        q.gy[c] = zero + quadric.gy[c];
+    }
+    q.sxx = zero + quadric.sxx;
+    q.sxy = zero + quadric.sxy;
+    q.syy = zero + quadric.syy;
+    q.weight = zero + quadric.weight;
+    q.error = zero + quadric.error;
+    return q;
+}
+
+}  // namespace imgmesh
