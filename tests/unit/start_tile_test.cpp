@@ -94,3 +94,21 @@ TEST_CASE("start tiles: together they are the dense mesh of a masked image") {
         check_tiles(grid_mesh(sample_feature(Kind::kNoise, mask.width, mask.height), mask));
     }
 }
+
+// A strip at the left of two tiles: the right one has no pixel inside.
+TEST_CASE("start tiles: one outside the mask is empty, whatever it held before") {
+    constexpr int kWidth = 2 * kStartTile, kHeight = kStartTile;
+    const GridMesh grid = grid_mesh(sample_feature(Kind::kNoise, kWidth, kHeight),
+                                    mask_where(kWidth, kHeight, [](int x, int) { return x < 10; }));
+    const StartTiles tiles(grid);
+    TileMesh<Quadric<3>> tile;
+    fill_tile(grid, SimplifyParams{}, tiles.rect(0), tile);
+    CHECK(tile.own == 10 * kHeight);
+    fill_tile(grid, SimplifyParams{}, tiles.rect(1), tile);
+    CHECK(tile.own == 0);
+    CHECK(tile.live == 0);
+    CHECK(tile.boundary == 0);
+    CHECK(tile.mesh.rings.empty());
+    CHECK(tile.mesh.quadrics.empty());
+    CHECK(tile.mesh.pixel.empty());
+}

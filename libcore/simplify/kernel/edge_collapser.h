@@ -1,36 +1,20 @@
-// The inner loop of simplify: which edges of a mesh may merge, where to, and the queue that says which is
-// next. It works on a whole mesh, or on one tile of it beside others that work on theirs.
+// The inner loop of simplify: edges collapse in the order of their costs until there is nothing left to do.
+// It works on a whole mesh, or on one tile of it beside others that work on theirs.
 #pragma once
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <limits>
 #include <span>
-#include <utility>
 #include <vector>
 
 #include "libcore/image/channel_count.h"
 #include "libcore/mesh/ring_mesh.h"
-#include "libcore/simplify/kernel/border_rules.h"
 #include "libcore/simplify/kernel/bucket_queue.h"
-#include "libcore/simplify/kernel/mask_boundary.h"
-#include "libcore/simplify/kernel/merge_increments.h"
-#include "libcore/simplify/kernel/shape_limits.h"
-#include "libcore/simplify/quadrics/quadric_sources.h"
-#include "libcore/simplify/simplify.h"
+#include "libcore/simplify/kernel/edge_costs.h"
+#include "libcore/simplify/kernel/quadric_mesh.h"
 
 namespace imgmesh {
-
-inline constexpr float kNever = std::numeric_limits<float>::infinity();
-
-/// A mesh with what its vertices carry.
-template <class Q>
-struct QuadricMesh {
-    RingMesh rings;
-    std::vector<Q> quadrics;
-    std::vector<Id> pixel;  ///< the number in the grid mesh of each vertex; empty where it is the same
-};
 
 /// What has been collapsed, or may be.
 struct CollapseStats {
@@ -49,19 +33,7 @@ struct CollapseStats {
 inline constexpr CollapseStats kAllMayGo{.vertices = std::numeric_limits<std::int64_t>::max(),
                                          .faces = std::numeric_limits<std::int64_t>::max()};
 
-/// What holds for every collapse of a run.
-struct SimplifyRules {
-    const SimplifyParams& params;
-    const SimplifyHooks& hooks;
-    int channels;  ///< of the quadrics
-    ShapeLimits limits;
-    MaskBoundary* boundary = nullptr;  ///< of a masked image
-    double max_error = std::numeric_limits<double>::infinity();
-};
-
-/// Source and steps: simplify.cpp. `Q` is the quadric that vertices carry: merged(a, b), at(x, y),
-/// features(x, y, out), error, the minimiser (px, py) and best_x(y), best_y(x) on a
-/// line where has_minimum(fixed); initial_quadrics and rebuilt_quadrics make vectors of it.
+/// Sources and steps: simplify.cpp. `Q` is the quadric that vertices carry (edge_costs.h).
 ///
 /// Edges with a locked end (Ring::locked) are left alone. So several collapsers may work on one mesh at the
 /// same time where each has its own vertices, and those with a neighbour of another collapser are locked.
@@ -69,7 +41,7 @@ template <class Q>
 class EdgeCollapser {
   public:
     EdgeCollapser(QuadricMesh<Q>& mesh, const SimplifyRules& rules)
-        : rings_(mesh.rings), quadrics_(mesh.quadrics), rules_(rules) {}
+        : rings_(mesh.rings), quadrics_(mesh.quadrics), rules_(rules), costs_(mesh, rules) {}
 
     /// Collapses the edges of the vertices [0, count) that vertex(n) gives, the cheapest first, until none is
     /// left below `threshold` or as many vertices or faces are removed as may go. Each edge counts for its
@@ -88,17 +60,11 @@ class EdgeCollapser {
         return stats_;
     }
 
-    /// What filing an edge of two vertices would cost; kNever where it may not merge.
-    float cost(Id i, Id j) const { return minimiser(i, j, merged(quadrics_[i], quadrics_[j])).cost; }
-
   private:
-    struct Placement {
-        float x = 0, y = 0;
-        float cost = kNever;  // by which the edge is filed; kNever where the merge is not allowed
-    };
-
-    // Collapses until the queue is empty or a limit is reached. Memory is what takes the time: an edge is
-    // handed out a few steps ahead of its turn, and what it will touch is fetched meanwhile.
+    // Collapses until the queue is empty or a limit is reached. Most of the time goes into waiting for
+    // memory. So an edge is taken from the queue a few steps ahead of its turn, and what it will touch is
+    // fetched meanwhile. Recheck kAhead by the time of `imgmesh-build --preset fast` on an image of 2048 x
+    // 2048.
     void drain() {
         constexpr std::size_t kAhead = 8;
         struct Waiting {
@@ -140,98 +106,15 @@ class EdgeCollapser {
 
     bool done() const { return stats_.vertices >= may_go_.vertices || stats_.faces >= may_go_.faces; }
 
-    // Where the merged vertex goes at best, and what that costs; legality of the star left aside.
-    Placement minimiser(Id i, Id j, const Q& sum) const {
-        if (along_boundary(i, j)) return boundary_place(i, j, sum, [](const Placement&) { return true; });
-        const BorderConstraint border = border_constraint(rings_[i], rings_[j]);
-        if (!border.allowed) return {};
-        if (!sum.has_minimum(border.fixed))
-            return cheapest_of_three(i, j, sum, border, [](const Placement&) { return true; });
-        Placement place{border.x, border.y};
-        // On a side the position is free along one axis only.
-        if (border.fixed == 0) {
-            place.x = snapped(sum.px);
-            place.y = snapped(sum.py);
-        } else if (border.fixed == kFixedX) {
-            place.y = snapped(sum.best_y(place.x));
-        } else if (border.fixed == kFixedY) {
-            place.x = snapped(sum.best_x(place.y));
-        }
-        place.cost = cost_at(i, j, sum, place);
-        return place;
-    }
-
-    // Whether an edge joins two vertices on a boundary of a masked image, be it along it or through the
-    // inside.
-    bool along_boundary(Id i, Id j) const {
-        return rules_.boundary && rings_[i].border() && rings_[j].border();
-    }
-
-    // The cheapest of the places that the boundary has for the merged vertex, of those allowed.
-    template <class Allowed>
-    Placement boundary_place(Id i, Id j, const Q& sum, const Allowed& allowed) const {
-        Placement best;
-        if (rings_[i].neighbor[0] != j && rings_[j].neighbor[0] != i) return best;
-        const MaskBoundary::Places places = rules_.boundary->places(rings_, i, j, sum.px, sum.py);
-        for (int k = 0; k < places.count; ++k) {
-            const Vec2f& at = places.at[static_cast<std::size_t>(k)];
-            Placement p{at.x(), at.y(), 0};
-            p.cost = cost_at(i, j, sum, p);
-            if (p.cost < best.cost && allowed(p)) best = p;
-        }
-        return best;
-    }
-
-    // Whether the merge of i and j, with the ring `ring`, may stand at a place.
-    bool allowed(Id i, Id j, const MergedRing& ring, const Placement& place) {
-        const bool border = rings_[i].border() || rings_[j].border();
-        return rules_.limits.allow(rings_, ring, border, place.x, place.y) &&
-               (!along_boundary(i, j) || rules_.boundary->allows(rings_, i, j, place.x, place.y));
-    }
-
-    float cost_at(Id i, Id j, const Q& sum, const Placement& place) const {
-        return priority(i, j, sum.at(place.x, place.y) - quadrics_[i].error - quadrics_[j].error);
-    }
-
-    // What an edge is filed by, from what its merge adds to the error.
-    float priority(Id i, Id j, float added) const {
-        added = std::max(0.0f, added);
-        return rules_.params.total_priority ? added + (quadrics_[i].error + quadrics_[j].error) : added;
-    }
-
-    // The cheapest legal one of midpoint and ends, or of the boundary's places.
-    Placement fallback(Id i, Id j, const MergedRing& ring, const Q& sum) {
-        const auto legal = [&](const Placement& p) { return allowed(i, j, ring, p); };
-        if (along_boundary(i, j)) return boundary_place(i, j, sum, legal);
-        const BorderConstraint border = border_constraint(rings_[i], rings_[j]);
-        return border.allowed ? cheapest_of_three(i, j, sum, border, legal) : Placement{};
-    }
-
-    template <class Allowed>
-    Placement cheapest_of_three(Id i, Id j, const Q& sum, const BorderConstraint& border,
-                                const Allowed& allowed) const {
-        const Ring &a = rings_[i], &b = rings_[j];
-        Placement best;
-        const std::pair<float, float> candidates[] = {
-            {0.5f * (a.x + b.x), 0.5f * (a.y + b.y)}, {a.x, a.y}, {b.x, b.y}};
-        for (const auto& [cx, cy] : candidates) {
-            Placement p{border.fixed & kFixedX ? border.x : snapped(cx),
-                        border.fixed & kFixedY ? border.y : snapped(cy), 0};
-            p.cost = cost_at(i, j, sum, p);
-            if (p.cost < best.cost && allowed(p)) best = p;
-        }
-        return best;
-    }
-
     void try_collapse(const QueuedEdge& edge, int bucket) {
         if (!current(edge)) return;
         const Id i = edge.i, j = edge.j;
         MergedRing ring;
         if (!merge_rings(rings_, i, j, ring)) return;
         const Q sum = merged(quadrics_[i], quadrics_[j]);
-        Placement place = minimiser(i, j, sum);
-        if (!allowed(i, j, ring, place)) {
-            place = fallback(i, j, ring, sum);
+        Placement place = costs_.best_place(i, j, sum);
+        if (!costs_.allowed(i, j, ring, place)) {
+            place = costs_.fallback(i, j, ring, sum);
             if (place.cost == kNever) return;
             if (BucketQueue::bucket_of(place.cost) > bucket) {
                 if (place.cost < threshold_)
@@ -267,30 +150,27 @@ class EdgeCollapser {
     void file_edges_of(Id i, Id from) {
         const Ring& ring = rings_[i];
         Id others[kNeighborRoom];
-        float costs[kNeighborRoom];
+        float increments[kNeighborRoom];
         int count = 0;
         for (int k = 0; k < ring.valence; ++k) {
             const Id j = others[count] = ring.neighbor[k];
             count += j >= from && !rings_[j].locked;
         }
-        if constexpr (kBatched) merge_increments(quadrics_.data(), i, others, count, costs);
+        costs_.increments(i, others, count, increments);
         for (int k = 0; k < count; ++k) {
             const Id j = others[k];
-            const bool batched = kBatched && !ring.border() && !rings_[j].border();
-            const float cost_k = batched ? priority(i, j, costs[k]) : cost(i, j);
-            if (cost_k < threshold_)
-                queue_.push(cost_k, {i, j, ring.version, rings_[j].version});
+            const float cost = costs_.cost(i, j, increments[k]);
+            if (cost < threshold_)
+                queue_.push(cost, {i, j, ring.version, rings_[j].version});
             else
-                stats_.postponed = std::min(stats_.postponed, cost_k);
+                stats_.postponed = std::min(stats_.postponed, cost);
         }
     }
-
-    // Of a quadric that may have no minimiser the edge's midpoint and ends have to be tried.
-    static constexpr bool kBatched = kCanonical<Q>;
 
     RingMesh& rings_;
     std::vector<Q>& quadrics_;
     const SimplifyRules& rules_;
+    EdgeCosts<Q> costs_;
     BucketQueue queue_;
     float threshold_ = 0;
     CollapseStats stats_, may_go_;

@@ -1,5 +1,5 @@
 // Source: progressive hulls (Sander, Gu, Gortler, Hoppe and Snyder, "Silhouette clipping", 2000), in the
-// plane and by exact tests. Boundarys run with the inside on their left.
+// plane and by exact tests. Boundaries run with the inside on their left.
 #include "libcore/simplify/kernel/mask_boundary.h"
 
 #include <algorithm>
@@ -38,8 +38,8 @@ bool segments_meet(const Vec2f& a, const Vec2f& b, const Vec2f& c, const Vec2f& 
     return on_segment(c, a, b) || on_segment(d, a, b) || on_segment(a, c, d) || on_segment(b, c, d);
 }
 
-// Whether the segment p, q shares a point with the closed counter-clockwise triangle t, but for an end of it
-// that is a corner of the triangle.
+// Whether the segment p, q shares a point with the closed counter-clockwise triangle t. An end of the segment
+// that is a corner of the triangle does not count.
 bool enters(const Vec2f& p, const Vec2f& q, const std::array<Vec2f, 3>& t) {
     for (const auto& [end, other] : {std::pair(&p, &q), std::pair(&q, &p)})
         for (std::size_t k = 0; k < 3; ++k) {

@@ -12,12 +12,14 @@
 
 namespace imgmesh {
 
-/// A square tiling of the plane, moved by a share of a tile so that seams do not stay where they are.
+/// A tiling of the plane by squares. It is moved from round to round so that seams do not stay where they
+/// are.
 struct RoundTiles {
     float side, shift;  // [px]
     int across, down;
 
-    /// About `vertices_a_tile` of the `live` vertices in each tile; odd rounds lie half a tile beside.
+    /// Each tile has about `vertices_a_tile` of the `live` vertices. Tiles of odd rounds lie half a tile
+    /// beside those of even ones.
     RoundTiles(int width, int height, std::int64_t live, double vertices_a_tile, int round) {
         const double area =
             double(width) * height * vertices_a_tile / double(std::max<std::int64_t>(1, live));
@@ -34,15 +36,16 @@ struct RoundTiles {
     }
 };
 
-/// Collapses edges below `threshold` in every tile, as long as at most `share_that_goes` of its vertices go;
-/// leaves edges that touch a neighbour of another tile, and with a boundary those that touch the border. Same
-/// result for any number of threads.
+/// Collapses edges below `threshold` in every tile, but at most until `share_that_goes` of its vertices are
+/// removed. Edges
+/// of a vertex with a neighbour in another tile stay; with a mask, edges of its boundary too. Same result for
+/// any number of threads.
 template <class Q>
 CollapseStats round_in_tiles(QuadricMesh<Q>& mesh, const SimplifyRules& rules, const RoundTiles& tiles,
                              float threshold, double share_that_goes) {
     RingMesh& rings = mesh.rings;
     const auto count = static_cast<int>(rings.size());
-    constexpr int kGrain = 1 << 14;
+    constexpr int kGrain = 1 << 14;  // vertices that a thread takes at a time
     std::vector<Id> tile(rings.size());
     parallel_blocks(0, count, kGrain, [&](int begin, int end) {
         for (auto v = static_cast<std::size_t>(begin); v < static_cast<std::size_t>(end); ++v)

@@ -1,4 +1,9 @@
-// The schedule of simplify: tiles by themselves while the goal is far, then the whole mesh.
+// The engine of simplify: the schedule by which its inner loop (edge_collapser.h) gets to the goal.
+//
+// Steps: (1) the dense mesh tile by tile, until about an eighth of it is left (start_in_tiles.h); (2) rounds
+// of larger tiles while the goal is far (round_in_tiles.h); (3) the whole mesh at once. Each step works in
+// windows: only edges below a threshold are looked at, and the threshold rises from one to the next. Figures
+// for what is chosen here are in docs/decisions/0019-collapse-in-tiles.md.
 #pragma once
 
 #include <algorithm>
@@ -12,18 +17,23 @@
 
 namespace imgmesh {
 
-// The queue holds only edges cheaper than a threshold, which rises by this factor when they are used up.
-// Larger wastes memory, smaller scans the mesh more often.
+// The threshold of the whole mesh rises by this factor from window to window. A larger one lets the queue
+// hold edges that are never reached, a smaller one scans the mesh more often. Recheck by time and peak memory
+// of `imgmesh-build --map tracked` on an image of 2048 x 2048, which has no tiles.
 inline constexpr float kWindow = 4.0f;
 
-// Tiles end where fewer vertices are left than so many times the goal: where a window could reach it, the
-// first tiles would pay for all.
+// Rounds in tiles end where fewer vertices are left than so many times the goal, and so does each tile:
+// otherwise the first tiles would pay for all. Decision 19 has the error for 4, 2 and 1.5.
 inline constexpr double kTiledAbove = 1.5;
 
-// Of the tiles after the first round.
+// Of rounds. Rings and quadrics of so many vertices take 512 KB, which stays in a core's own cache.
 inline constexpr double kVerticesPerTile = 4096;
-// Fewer vertices than these are not worth a round of tiles.
-inline constexpr std::int64_t kLeastTiled = 16384;
+// Fewer vertices than in four tiles are not worth a round: threads would wait for each other, and a large
+// part of the edges would be at seams.
+inline constexpr std::int64_t kLeastTiled = 4 * static_cast<std::int64_t>(kVerticesPerTile);
+// Rounds end too when one has taken less than this share of what it might have: what is left is at seams. It
+// only saves rounds that do nothing; recheck by their number.
+inline constexpr double kLeastOfRound = 1.0 / 20;
 
 /// The engine of simplify(), whatever the kind of its quadrics.
 class AnySimplifier {
@@ -42,7 +52,7 @@ class Simplifier : public AnySimplifier {
           params_(params),
           rules_{params_, hooks, grid.feature.channels,
                  ShapeLimits::of(params.max_face_area, params.min_shape)} {
-        // Who follows the collapse is told of one step at a time, in the grid's numbers.
+        // A follower is told of one step at a time, and vertices have the grid's numbers.
         if (hooks.before) params_.tiles = false;
     }
 
@@ -63,14 +73,13 @@ class Simplifier : public AnySimplifier {
             take(part);
             if (progress) progress(fraction_done(), "collapse");
             if (tiled) {
-                // Where tiles have nothing to do, what is left is at their seams.
-                tiles_over_ = 20 * static_cast<double>(part.vertices) < might_go;
+                tiles_over_ = static_cast<double>(part.vertices) < kLeastOfRound * might_go;
                 threshold_ *= kTileWindow;
                 continue;
             }
             if (done() || (part.vertices == 0 && part.postponed == kNever)) break;
-            // Where nothing has changed, windows below the cheapest edge would stay empty: a flat image's
-            // first window is far below what the rest costs.
+            // Where nothing has changed, windows below the cheapest edge would stay empty. The first window
+            // of an image with flat parts is far below what the rest costs.
             do threshold_ *= kWindow;
             while (part.vertices == 0 && threshold_ <= part.postponed);
         }
@@ -116,7 +125,7 @@ class Simplifier : public AnySimplifier {
         error_ = std::max(error_, part.error);
     }
 
-    // The dense mesh, or what its tiles leave of it.
+    // Makes the dense mesh, or what its tiles leave of it.
     void start(const SimplifyTarget& target, const Progress& progress) {
         if constexpr (kCanonical<Q>) {
             if (params_.tiles && !params_.total_priority) {
@@ -145,7 +154,7 @@ class Simplifier : public AnySimplifier {
         count_dense();
         next_rebuild_ = vertices_ / 2;
         if (!grid_.mask.empty()) rules_.boundary = &boundary_.emplace(grid_, mesh_.rings, mesh_.pixel);
-        threshold_ = median(sampled_costs());
+        threshold_ = first_threshold();
     }
 
     void count_dense() {
@@ -157,7 +166,8 @@ class Simplifier : public AnySimplifier {
         vertices_ = dense_vertices_;
     }
 
-    // Of the vertices of each tile, so that none can take what others would have to pay for.
+    // The share of its vertices that each tile may remove. Without such a limit one tile could use up the
+    // whole budget.
     double share_that_goes() const {
         const auto share = [](std::int64_t now, std::int64_t goal) {
             return 1 - kTiledAbove * static_cast<double>(goal) /
@@ -174,7 +184,7 @@ class Simplifier : public AnySimplifier {
                                ++rounds_);
         CollapseStats sum = round_in_tiles(mesh_, rules_, tiles, threshold_, share_that_goes());
         if (!rules_.boundary) return sum;
-        // The boundary knows all of itself, so one thread at a time may change it.
+        // The boundary is one object, so one thread at a time may change it.
         CollapseStats may_go = left_to_go();
         may_go.vertices -= sum.vertices;
         may_go.faces -= sum.faces;
@@ -203,34 +213,34 @@ class Simplifier : public AnySimplifier {
 
     void rebuild_quadrics() {
         mesh_.quadrics = rebuilt_quadrics(mesh_.rings, mesh_.quadrics, params_);
-        threshold_ = median(sampled_costs());
+        threshold_ = first_threshold();
         next_rebuild_ = vertices_ / 2;
     }
 
-    // The costs of edges of some vertices all over the image; of those that may collapse, in ascending
-    // order.
+    // Costs of edges that may collapse, one of each of some vertices all over the image.
     std::vector<float> sampled_costs() const {
-        EdgeCollapser<Q> collapser(const_cast<QuadricMesh<Q>&>(mesh_), rules_);
+        const EdgeCosts<Q> edges(mesh_, rules_);
         const std::size_t step = std::max<std::size_t>(1, mesh_.rings.size() / kSampled);
         std::vector<float> costs;
         for (std::size_t v = 0; v < mesh_.rings.size(); v += step) {
             if (!mesh_.rings[v].live()) continue;
-            const float cost = collapser.cost(static_cast<Id>(v), mesh_.rings[v].neighbor[0]);
+            const float cost = edges.cost(static_cast<Id>(v), mesh_.rings[v].neighbor[0]);
             if (cost < kNever) costs.push_back(cost);
         }
-        std::sort(costs.begin(), costs.end());
         return costs;
     }
 
-    // So that the first window holds about half of the edges.
-    static float median(const std::vector<float>& costs) {
-        return costs.empty() ? 1.0f : std::max(costs[costs.size() / 2], std::numeric_limits<float>::min());
+    // So that the first window holds about half of the edges. Where none may collapse any value will do.
+    float first_threshold() const {
+        const std::vector<float> costs = sampled_costs();
+        return costs.empty() ? 1.0f : std::max(median(costs), std::numeric_limits<float>::min());
     }
 
     bool far_from_done() const {
         if (tiles_over_ || vertices_ < kLeastTiled) return false;
         const std::vector<float> costs = sampled_costs();
-        const auto below = std::lower_bound(costs.begin(), costs.end(), threshold_) - costs.begin();
+        const auto below =
+            std::count_if(costs.begin(), costs.end(), [&](float cost) { return cost < threshold_; });
         const double left =
             1 - static_cast<double>(below) / static_cast<double>(std::max<std::size_t>(1, costs.size()));
         return share_that_goes() > 0 &&
@@ -238,16 +248,20 @@ class Simplifier : public AnySimplifier {
                left * static_cast<double>(faces_) > static_cast<double>(target_.faces);
     }
 
+    // Vertices whose edges are sampled: the median of so many is within 2 % of the true rank, and they cost
+    // less than a tile of a round.
     static constexpr std::size_t kSampled = 4096;
     // Quadrics are rebuilt when the vertices have nearly halved. From tile to tile less than a half may go at
-    // first, and the last of it would take many rounds; 1.05 to 1.3 make no difference in time, and the
+    // first, and the last of it would take many rounds. 1.05 to 1.3 make no difference in time, and the
     // larger is the lower in error.
     static constexpr double kHalved = 1.25;
-    // What the first tiles leave: little enough to make the dense mesh's memory and time theirs alone; the
-    // seams do not show in the result (docs/decisions/0019-collapse-in-tiles.md). Where the goal is near,
-    // more; and of a masked image, whose boundary waits meanwhile.
-    static constexpr double kStartShare = 0.12, kMaskedStartShare = 0.2, kStartAbove = 1.3,
-                            kMostStartShare = 0.7;
+    // The share of the vertices that the first tiles leave. It is small enough that the rest needs little of
+    // the dense mesh's memory and time; seams do not show in the result (decision 19). Of a masked image more
+    // is left, as its boundary waits meanwhile.
+    static constexpr double kStartShare = 0.12, kMaskedStartShare = 0.2;
+    // Where the goal is near, the start leaves this many times what rounds would leave. Above the last share
+    // there is no start: one that leaves half takes more memory than none (decision 19).
+    static constexpr double kStartAbove = 1.3, kMostStartShare = 0.7;
 
     const GridMesh& grid_;
     SimplifyParams params_;

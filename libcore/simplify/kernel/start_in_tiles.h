@@ -1,10 +1,16 @@
-// The first part of the collapse, which takes most vertices away: small tiles of the image by themselves.
-// The dense mesh, of which they are parts, never exists as a whole.
+// The first part of the collapse, which removes most vertices: small tiles of the image by themselves. The
+// dense mesh, of which they are parts, never exists as a whole.
+//
+// Steps: (1) some tiles show at which threshold the wanted share of the vertices is left; (2) each tile is
+// made, collapsed below that threshold and reduced to what is left; (3) what is left of all of them becomes
+// one mesh.
 #pragma once
 
 #include <algorithm>
 #include <atomic>
+#include <limits>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "libcore/base/parallel.h"
@@ -13,24 +19,34 @@
 
 namespace imgmesh {
 
-// Of a threshold from one round of tiles to the next.
+// The threshold rises by this factor from one round of tiles to the next. With 4 the error rises by 0.2 %
+// (docs/decisions/0019-collapse-in-tiles.md).
 inline constexpr float kTileWindow = 2.0f;
 
-// Tiles that one collapser works off, one after the other.
+// Tiles that one thread takes at a time, with one queue for all of them: enough to make its memory serve
+// again, few enough to keep all threads busy to the end of an image of 1000 x 1000, which has 256.
 inline constexpr int kStartTilesPerBlock = 4;
-// Tiles whose survivors are kept one by one before they are put together.
+// Tiles whose survivors are kept one by one before they are put together. Recheck by the peak memory of
+// `imgmesh-build --preset fast` on a large image.
 inline constexpr int kStartTilesAtATime = 512;
+// The threshold is found on one tile in so many, at most on kMostTried: they are collapsed twice, and the
+// threshold is wanted to no more than kTileWindow.
+inline constexpr int kTriedOneIn = 32, kMostTried = 16;
+// Room for survivors, as a multiple of those expected: the threshold is rather too low than too high. Room
+// that is not touched costs nothing, while a vector that grows is copied.
+inline constexpr double kRoomForSurvivors = 1.3;
 
-/// The threshold at which `share` of the vertices would be left, found out on some of the tiles; to a factor
-/// of kTileWindow, rather too low.
+/// The threshold at which `share` of the vertices would be left, to a factor of kTileWindow and rather too
+/// low. It is found on some of the tiles.
 template <class Q>
 float start_threshold(const GridMesh& grid, const SimplifyRules& rules, double share);
 
-/// Collapses edges below `threshold` in every tile of the grid, as long as at most `share_that_goes` of its
-/// vertices go; vertices next to another tile stay, and those on the boundary of a masked image.
+/// Collapses edges below `threshold` in every tile of the grid, but at most until `share_that_goes` of its
+/// vertices are removed. Vertices next to another tile stay, and so do those on the boundary of a masked
+/// image.
 ///
-/// share     of the vertices that is expected to be left
-/// left      out: what is left, vertices tile by tile, in the grid's order within each
+/// share     the share of the vertices that is expected to be left
+/// left      out: what is left, tile by tile, in the grid's order within each
 /// progress  is told how many vertices are removed so far
 template <class Q, class Progress>
 CollapseStats start_in_tiles(const GridMesh& grid, const SimplifyRules& rules, float threshold, double share,
@@ -41,8 +57,8 @@ namespace start_tiles {
 // Among the neighbours in what survivors() returns: a neighbour in another tile, by its pixel.
 inline constexpr Id kElsewhere = 1u << 31;
 
-// Collapses the tile's edges below `threshold`, rebuilding quadrics at every halving of its vertices where
-// that is asked for. What their neighbours in other tiles look like is known then: they too are locked.
+// Collapses the tile's edges below `threshold`. Where that is asked for, quadrics are rebuilt whenever its
+// vertices have halved. What the neighbours in other tiles look like is known then, as they too are locked.
 template <class Q>
 CollapseStats collapse_tile(EdgeCollapser<Q>& collapser, const SimplifyParams& params, TileMesh<Q>& tile,
                             float threshold, std::int64_t may_go) {
@@ -64,7 +80,7 @@ CollapseStats collapse_tile(EdgeCollapser<Q>& collapser, const SimplifyParams& p
     }
 }
 
-// What has survived, numbered from 0 on; writes these numbers to number[vertex].
+// The vertices that are left, numbered from 0 on. Writes these numbers to number[vertex].
 template <class Q>
 QuadricMesh<Q> survivors(const TileMesh<Q>& tile, std::vector<Id>& number) {
     const QuadricMesh<Q>& mesh = tile.mesh;
@@ -112,22 +128,20 @@ inline void join(const StartTiles& tiles, const std::vector<Id>& first, const st
 
 // Tiles all over the image.
 inline std::vector<int> some_tiles(const StartTiles& tiles) {
-    const int count = std::clamp(tiles.count() / 32, 1, 16);
+    const int count = std::clamp(tiles.count() / kTriedOneIn, 1, kMostTried);
     std::vector<int> some;
     for (int n = 0; n < count; ++n) some.push_back((2 * n + 1) * tiles.count() / (2 * count));
     return some;
 }
 
 template <class Q>
-float median_cost(QuadricMesh<Q>& mesh, const SimplifyRules& rules) {
+float median_cost(const QuadricMesh<Q>& mesh, const SimplifyRules& rules) {
     std::vector<float> costs;
-    EdgeCollapser<Q> collapser(mesh, rules);
+    const EdgeCosts<Q> edges(mesh, rules);
     for (Id v = 0; v < mesh.rings.size(); ++v)
         if (const Ring& ring = mesh.rings[v]; ring.live() && !ring.locked)
-            if (const float cost = collapser.cost(v, ring.neighbor[0]); cost < kNever) costs.push_back(cost);
-    if (costs.empty()) return 0;
-    std::nth_element(costs.begin(), costs.begin() + costs.size() / 2, costs.end());
-    return costs[costs.size() / 2];
+            if (const float cost = edges.cost(v, ring.neighbor[0]); cost < kNever) costs.push_back(cost);
+    return costs.empty() ? 0 : median(std::move(costs));
 }
 
 }  // namespace start_tiles
@@ -149,8 +163,7 @@ float start_threshold(const GridMesh& grid, const SimplifyRules& rules, double s
     });
     std::int64_t all = 0, removed = 0;
     for (const TileMesh<Q>& tile : meshes) all += tile.live - tile.boundary;
-    std::nth_element(medians.begin(), medians.begin() + medians.size() / 2, medians.end());
-    float threshold = std::max(medians[medians.size() / 2], std::numeric_limits<float>::min());
+    float threshold = std::max(median(medians), std::numeric_limits<float>::min());
     for (float next = threshold;; next *= kTileWindow) {
         std::vector<CollapseStats> stats(some.size());
         each([&](std::size_t n) {
@@ -172,8 +185,8 @@ CollapseStats start_in_tiles(const GridMesh& grid, const SimplifyRules& rules, f
                              double share_that_goes, QuadricMesh<Q>& left, const Progress& progress) {
     using namespace start_tiles;
     const StartTiles tiles(grid);
-    // Room that is not touched costs nothing.
-    const auto expected = static_cast<std::size_t>(1.3 * share * static_cast<double>(grid.vertex_count()));
+    const auto expected =
+        static_cast<std::size_t>(kRoomForSurvivors * share * static_cast<double>(grid.vertex_count()));
     left.rings.reserve(expected);
     left.quadrics.reserve(expected);
     left.pixel.reserve(expected);
@@ -182,7 +195,7 @@ CollapseStats start_in_tiles(const GridMesh& grid, const SimplifyRules& rules, f
     CollapseStats sum;
     std::atomic<std::int64_t> removed = 0;
     const std::thread::id caller = std::this_thread::get_id();
-    // Some tiles at a time, so that their parts' memory serves again and again.
+    // Some tiles at a time, so that the memory of their parts is used again.
     for (int begin = 0; begin < tiles.count(); begin += kStartTilesAtATime) {
         const int end = std::min(begin + kStartTilesAtATime, tiles.count());
         std::vector<QuadricMesh<Q>> parts(static_cast<std::size_t>(end - begin));

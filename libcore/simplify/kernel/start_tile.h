@@ -1,4 +1,4 @@
-// The dense mesh of one small tile of the image, which the collapse begins with.
+// The dense mesh of one small tile of the image. The collapse begins with such tiles.
 #pragma once
 
 #include <algorithm>
@@ -9,7 +9,8 @@
 
 namespace imgmesh {
 
-/// A tile of rings and quadrics stays in a core's own cache.
+/// Side of a tile [px]. Its rings and quadrics take 512 KB, which stays in a core's own cache. Recheck by the
+/// time of `imgmesh-build --preset fast` on an image of 2048 x 2048.
 inline constexpr int kStartTile = 64;
 
 /// The square tiles of a grid, the last of each row and column perhaps smaller.
@@ -32,9 +33,9 @@ struct StartTiles {
     }
 };
 
-/// A tile while it collapses. Its vertices that have a neighbour in another tile are locked, like those on
-/// the boundary of a masked image; such a neighbour is a *ghost*: a place and features, without a ring of its
-/// own.
+/// A tile while it collapses. A neighbour in another tile is a *ghost*: it has a place and features, but no
+/// ring of its own. Vertices with a ghost among their neighbours are locked, and so are those on the boundary
+/// of a masked image.
 template <class Q>
 struct TileMesh {
     QuadricMesh<Q> mesh;        ///< the tile's own vertices row by row, then ghosts
@@ -50,8 +51,8 @@ inline bool contains(const PixelRect& rect, int x, int y) {
     return x >= rect.left && x < rect.right && y >= rect.top && y < rect.bottom;
 }
 
-// A ring of pixel (x, y) whose neighbours are named by their numbers in the grid mesh gets the tile's:
-// local(number, x, y) of those inside, and new ghosts.
+// Renumbers the neighbours of a ring, which are named by their numbers in the grid mesh: those in the tile
+// get local(number, x, y), the others become new ghosts.
 template <class Q, class Local>
 void localize(const GridMesh& grid, const PixelRect& rect, QuadricMesh<Q>& mesh, Ring& ring,
               const Local& local) {
@@ -85,13 +86,14 @@ void add_ghosts(const GridMesh& grid, QuadricMesh<Q>& mesh) {
     }
 }
 
-// Without a mask, or where it leaves the tile and two pixels around it whole.
+// Where whole() holds.
 template <class Q>
 void fill_whole(const GridMesh& grid, const FeaturePatch& gradients, float lambda, const PixelRect& rect,
                 QuadricMesh<Q>& mesh) {
     const Id w = static_cast<Id>(grid.feature.width), stride = static_cast<Id>(rect.width());
     const std::size_t own = stride * static_cast<std::size_t>(rect.height());
-    const std::size_t most = own + 6 * (stride + static_cast<std::size_t>(rect.height()));  // with ghosts
+    // With ghosts: each pixel of a side has at most three neighbours beyond it.
+    const std::size_t most = own + 3 * 2 * (stride + static_cast<std::size_t>(rect.height()));
     mesh.rings.reserve(most);
     mesh.quadrics.reserve(most);
     mesh.rings.resize(own);
@@ -146,11 +148,22 @@ void fill_masked(const GridMesh& grid, const FeaturePatch& gradients, float lamb
     std::copy_n(quadrics.begin(), own, mesh.quadrics.begin());
 }
 
+// Whether all pixels are inside, and those around the tile on which the rings at its sides depend: a
+// neighbour has copies, or none, by the pixels around it.
 inline bool whole(const GridMesh& grid, const PixelRect& rect) {
+    constexpr int kReach = 2;
     if (grid.mask.empty()) return true;
-    for (int y = rect.top - 2; y < rect.bottom + 2; ++y)
-        for (int x = rect.left - 2; x < rect.right + 2; ++x)
+    for (int y = rect.top - kReach; y < rect.bottom + kReach; ++y)
+        for (int x = rect.left - kReach; x < rect.right + kReach; ++x)
             if (!grid.mask.at(x, y)) return false;
+    return true;
+}
+
+inline bool outside(const GridMesh& grid, const PixelRect& rect) {
+    if (grid.mask.empty()) return false;
+    for (int y = rect.top; y < rect.bottom; ++y)
+        for (int x = rect.left; x < rect.right; ++x)
+            if (grid.mask.at(x, y)) return false;
     return true;
 }
 
@@ -159,12 +172,18 @@ inline bool whole(const GridMesh& grid, const PixelRect& rect) {
 /// Makes `tile` the part of the dense mesh that has the vertices of the pixels in `rect`.
 template <class Q>
 void fill_tile(const GridMesh& grid, const SimplifyParams& params, const PixelRect& rect, TileMesh<Q>& tile) {
-    const FeaturePatch gradients = smoothed_patch(grid, params.smoothing, rect);
-    const float lambda = params.geometry_weight;
-    if (start_tile::whole(grid, rect))
-        start_tile::fill_whole(grid, gradients, lambda, rect, tile.mesh);
-    else
-        start_tile::fill_masked(grid, gradients, lambda, rect, tile.mesh);
+    if (start_tile::outside(grid, rect)) {
+        tile.mesh.rings.clear();
+        tile.mesh.quadrics.clear();
+        tile.mesh.pixel.clear();
+    } else {
+        const FeaturePatch gradients = smoothed_patch(grid, params.smoothing, rect);
+        const float lambda = params.geometry_weight;
+        if (start_tile::whole(grid, rect))
+            start_tile::fill_whole(grid, gradients, lambda, rect, tile.mesh);
+        else
+            start_tile::fill_masked(grid, gradients, lambda, rect, tile.mesh);
+    }
     const auto live = [](const Ring& ring) { return ring.live(); };
     const auto end = std::find_if_not(tile.mesh.rings.begin(), tile.mesh.rings.end(), live);
     tile.own = static_cast<std::size_t>(end - tile.mesh.rings.begin());
