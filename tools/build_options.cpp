@@ -121,7 +121,7 @@ void add_build_options(CLI::App& app, BuildOptions& o) {
 
     const std::string image = "Image";
     in_group(add_file(app, "--mask", o.mask,
-                      "Image of the same size: only pixels where its alpha, or else its light, reaches "
+                      "Image of the same size: only pixels where its alpha, or else its brightness, reaches "
                       "the threshold are meshed, whatever the images' own alpha"),
              image);
     CLI::Option* const alpha =
@@ -130,7 +130,7 @@ void add_build_options(CLI::App& app, BuildOptions& o) {
     in_group(alpha, image);
     CLI::Option* const threshold =
         add_number(app, "--alpha-threshold", o.alpha_threshold, {0, 1, true},
-                   "Least alpha, or light of a mask, of the pixels that are meshed");
+                   "Least alpha, or brightness of a mask, of the pixels that are meshed");
     advanced(app, in_group(threshold, image));
     CLI::Option* const space = add_choice(app, "--color-space", o.color_space, color_space_choices(),
                                           {"Colour space of the images, whatever their files say", ""});

@@ -212,9 +212,8 @@ void print(const Report& report, std::ostream& out) {
     out << input << '\n';
     TextTable table;
     table.add("size", cat(report["width"], " x ", report["height"], " pixels"));
-    table.add("channels",
-              cat(channels, ", ", text("sample_type"), ", ", text("color_space"),
-                  report["has_light"] ? ", light above 1" : "", report["has_mask"] ? ", with a mask" : ""));
+    table.add("channels", cat(channels, ", ", text("sample_type"), ", ", text("color_space"),
+                              report["has_light"] ? ", HDR" : "", report["has_mask"] ? ", with a mask" : ""));
     table.add("container", cat("version ", text("version"), ", Draco ", text("draco")));
     table.add("file", cat(bytes("total"), ": meshes ", bytes("meshes"), ", layers ", bytes("layers"),
                           ", other ", bytes("other")));

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Channels beside the colour, and light above 1, from image to container and back."""
+"""Auxiliary channels and HDR, from image to container and back."""
 import numpy as np
 
 import picture_files as files
