@@ -1,4 +1,4 @@
-// From the dense mesh to the base mesh by edge collapses in order of the quadric error (paper sec. 3.1
+// Simplifies the dense mesh to the base mesh by edge collapses in order of the quadric error (paper sec. 3.1
 // and 3.2).
 #pragma once
 
@@ -16,7 +16,7 @@
 
 namespace imgmesh {
 
-/// Where a level of the pyramid ends; whichever limit comes first.
+/// Where a level of the pyramid ends: at the first limit that is reached.
 struct SimplifyTarget {
     std::int64_t vertices = 0;  ///< at this many vertices
     std::int64_t faces = 0;     ///< or at this many faces
@@ -39,20 +39,20 @@ struct CollapseStep {
     std::span<const float> feature;  ///< of the merged vertex; perhaps with zeros behind the grid's channels
 };
 
-/// Who follows the collapse while it runs; both may be empty, and cost nothing then.
+/// Functions that follow the collapse; both may be empty, and then cost nothing.
 struct SimplifyHooks {
     /// Before each collapse, in order. Returns false to reject it: the edge is tried again only when
     /// something around it has changed.
     std::function<bool(const CollapseStep&)> before;
-    /// When a level's target is reached, with its result (features perhaps padded likewise), before the
-    /// collapse goes on to the next.
+    /// Called when a level's target is reached, with its result (features may be padded likewise), before the
+    /// collapse continues.
     std::function<void(std::size_t level, const SimplifyResult&)> reached;
 };
 
-/// Collapses edges until a limit is reached or no edge may go. Every collapse keeps the mesh a triangulation
-/// of the image's rectangle: no face flips or degenerates, corners stay, sides stay straight. Vertices sit
-/// at their quadric's minimiser wherever that is legal, else at the edge's midpoint or an end, whichever
-/// costs least.
+/// Collapses edges until a limit is reached or no collapse is possible. Every collapse keeps the mesh a
+/// triangulation of the image's rectangle: no face flips or degenerates, corners stay, sides stay straight. A
+/// vertex is placed at its quadric's minimiser if that is legal, else at the edge's midpoint or an end,
+/// whichever costs least.
 ///
 /// targets  one a level, each at least as coarse as the one before
 /// return   the mesh at each of the targets, in that order
@@ -66,20 +66,20 @@ std::vector<SimplifyResult> simplify(const GridMesh& grid, const SimplifyParams&
 
 class AnySimplifier;  // kernel/simplifier.h
 
-/// The same, one target after the other: where it goes on may depend on what came of it so far.
+/// The same, one target after the other: the next target may depend on earlier results.
 class SimplifyRun {
   public:
-    /// `grid` must live as long as the run.
+    /// `grid` must outlive the run.
     SimplifyRun(const GridMesh& grid, const SimplifyParams& params);
     ~SimplifyRun();
-    /// On from where it stands, to a target at least as coarse as the last.
+    /// Continues to a target at least as coarse as the last.
     SimplifyResult to(const SimplifyTarget& target, const Progress& progress = {});
 
   private:
     std::unique_ptr<AnySimplifier> simplifier_;
 };
 
-/// The mesh of a single level.
+/// Returns the mesh of a single level.
 SimplifyResult simplify(const GridMesh& grid, const SimplifyParams& params, const SimplifyTarget& target,
                         const Progress& progress = {});
 

@@ -1,4 +1,4 @@
-// What may become of the boundary of a masked image: it covers the mask, and stays close to it.
+// Decides how the boundary of a masked image may change: it covers the mask, and stays close to it.
 #pragma once
 
 #include <array>
@@ -36,10 +36,10 @@ class MaskBoundary {
     };
     Places places(const RingMesh& rings, Id i, Id j, float x, float y) const;
 
-    /// Whether (x, y), one of places(), is within the band and collides with nothing.
+    /// Returns whether (x, y), one of places(), is within the band and collides with nothing.
     bool allows(const RingMesh& rings, Id i, Id j, float x, float y);
 
-    /// To be told of every merge of j into i at (x, y), also of vertices that are on no boundary.
+    /// Must be called for every merge of j into i at (x, y), also of vertices on no boundary.
     void merge(const RingMesh& rings, Id i, Id j, float x, float y);
 
   private:

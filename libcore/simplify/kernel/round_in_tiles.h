@@ -37,9 +37,8 @@ struct RoundTiles {
 };
 
 /// Collapses edges below `threshold` in every tile, but at most until `share_that_goes` of its vertices are
-/// removed. Edges
-/// of a vertex with a neighbour in another tile stay; with a mask, edges of its boundary too. Same result for
-/// any number of threads.
+/// removed. Otherwise one tile could use up the whole budget. Edges of a vertex with a neighbour in another
+/// tile stay; with a mask, edges of its boundary too. The result is the same for any number of threads.
 template <class Q>
 CollapseStats round_in_tiles(QuadricMesh<Q>& mesh, const SimplifyRules& rules, const RoundTiles& tiles,
                              float threshold, double share_that_goes) {

@@ -1,8 +1,8 @@
 // The first part of the collapse, which removes most vertices: small tiles of the image by themselves. The
 // dense mesh, of which they are parts, never exists as a whole.
 //
-// Steps: (1) some tiles show at which threshold the wanted share of the vertices is left; (2) each tile is
-// made, collapsed below that threshold and reduced to what is left; (3) what is left of all of them becomes
+// Steps: (1) some tiles show the threshold that leaves the wanted share of the vertices; (2) each tile is
+// made, collapsed below that threshold and reduced to its survivors; (3) the survivors of all tiles become
 // one mesh.
 #pragma once
 
@@ -36,8 +36,8 @@ inline constexpr int kTriedOneIn = 32, kMostTried = 16;
 // that is not touched costs nothing, while a vector that grows is copied.
 inline constexpr double kRoomForSurvivors = 1.3;
 
-/// The threshold at which `share` of the vertices would be left, to a factor of kTileWindow and rather too
-/// low. It is found on some of the tiles.
+/// Returns the threshold that would leave `share` of the vertices, within a factor of kTileWindow and rather
+/// too low. It is found on some of the tiles.
 template <class Q>
 float start_threshold(const GridMesh& grid, const SimplifyRules& rules, double share);
 
@@ -45,9 +45,9 @@ float start_threshold(const GridMesh& grid, const SimplifyRules& rules, double s
 /// vertices are removed. Vertices next to another tile stay, and so do those on the boundary of a masked
 /// image.
 ///
-/// share     the share of the vertices that is expected to be left
-/// left      out: what is left, tile by tile, in the grid's order within each
-/// progress  is told how many vertices are removed so far
+/// share     the share of the vertices that is expected to remain
+/// left      out: the survivors, tile by tile, in the grid's order within each
+/// progress  gets the number of vertices removed so far
 template <class Q, class Progress>
 CollapseStats start_in_tiles(const GridMesh& grid, const SimplifyRules& rules, float threshold, double share,
                              double share_that_goes, QuadricMesh<Q>& left, const Progress& progress);
@@ -57,8 +57,8 @@ namespace start_tiles {
 // Among the neighbours in what survivors() returns: a neighbour in another tile, by its pixel.
 inline constexpr Id kElsewhere = 1u << 31;
 
-// Collapses the tile's edges below `threshold`. Where that is asked for, quadrics are rebuilt whenever its
-// vertices have halved. What the neighbours in other tiles look like is known then, as they too are locked.
+// Collapses the tile's edges below `threshold`. If requested, quadrics are rebuilt whenever its vertices have
+// halved. Neighbours in other tiles are locked too, so their state is known then.
 template <class Q>
 CollapseStats collapse_tile(EdgeCollapser<Q>& collapser, const SimplifyParams& params, TileMesh<Q>& tile,
                             float threshold, std::int64_t may_go) {
@@ -68,7 +68,7 @@ CollapseStats collapse_tile(EdgeCollapser<Q>& collapser, const SimplifyParams& p
         if (params.rebuild_quadrics) part_may = std::min(part_may, tile.live - tile.halved);
         const CollapseStats part = collapser.run(tile.own, [](std::size_t v) { return static_cast<Id>(v); },
                                                  threshold, {.vertices = part_may, .faces = kAllMayGo.faces});
-        // What is put off while quadrics are old may be cheaper now.
+        // Edges put off while quadrics were old may be cheaper now.
         sum.postponed = kNever;
         sum.add(part);
         tile.live -= part.vertices;
@@ -80,7 +80,7 @@ CollapseStats collapse_tile(EdgeCollapser<Q>& collapser, const SimplifyParams& p
     }
 }
 
-// The vertices that are left, numbered from 0 on. Writes these numbers to number[vertex].
+// Returns the remaining vertices, numbered from 0. Writes these numbers to number[vertex].
 template <class Q>
 QuadricMesh<Q> survivors(const TileMesh<Q>& tile, std::vector<Id>& number) {
     const QuadricMesh<Q>& mesh = tile.mesh;
