@@ -51,6 +51,7 @@ enum class Objective {
 
 inline constexpr int kMaxRefine = 1000;
 
+/// All of it. Defaults are those of the preset "default".
 struct BuildParams {
     std::vector<ChannelChoice> channels;  ///< the feature space; none: the image's colour
     StopParams stop;                      ///< of the finest level
@@ -86,7 +87,7 @@ struct BuildParams {
     double min_quality = RefineParams().min_quality;  ///< of every triangle, collapsed or refined; 0 to 0.8
 };
 
-/// Return the map and the weight that BuildParams::map and projection_color_weight mean.
+/// Return the map and the colour weight that a build uses for `params`, defaults filled in.
 MapKind map_kind(const BuildParams& params);
 double map_color_weight(const BuildParams& params);
 

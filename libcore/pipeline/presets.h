@@ -8,15 +8,17 @@
 
 namespace imgmesh {
 
+/// A set of parameters under a name.
 struct Preset {
     std::string_view name;
     std::string_view help;  ///< what it is good for
     BuildParams params;
 };
 
+/// Returns all presets: fast, default (what BuildParams holds), best, fem.
 const std::vector<Preset>& presets();
 
-/// Throws Error(kBadArgument) for an unknown name.
+/// Returns the parameters of the preset of that name. Throws Error(kBadArgument) for an unknown name.
 const BuildParams& preset_params(std::string_view name);
 
 }  // namespace imgmesh

@@ -1,4 +1,4 @@
-// What refine() is asked to do.
+// The parameters of refinement, which adjusts the vertices, edges and colours of a base mesh to the image.
 #pragma once
 
 #include <limits>

@@ -1,4 +1,4 @@
-// What simplify() is asked to do.
+// The parameters of the collapse, which simplifies the dense mesh of all pixels to a base mesh.
 #pragma once
 
 #include <limits>
