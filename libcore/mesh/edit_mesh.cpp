@@ -101,7 +101,7 @@ bool EditMesh::ring(Id v, OneRing& out) const {
         std::swap(out.vertex[k], out.vertex[m]);
         std::swap(to[k], to[m]);
     };
-    // Puts those that follow the first in order behind it; how many are in order then.
+    // Puts faces that follow the first one in order behind it; returns how many are in order then.
     const auto put_in_order = [&] {
         std::size_t k = 1;
         for (; k < n; ++k) {

@@ -27,7 +27,7 @@ Vec2d position(const Vec2d& center, std::span<const Vec2d> ring, const FanPoint&
     return point.weight[0] * center + point.weight[1] * ring[k] + point.weight[2] * ring[next];
 }
 
-// Where a point is in the image, y up as layouts have it.
+// Returns the place of a point in the image, with y up as in layouts.
 Vec2d plane(const float* point) {
     return {double(point[0]), -double(point[1])};
 }
@@ -51,7 +51,7 @@ double angle_at(const float* pivot, const float* a, const float* b, int dimensio
     return std::acos(std::clamp(ab / std::sqrt(aa * bb), -1.0, 1.0));
 }
 
-// The points of a star's ring.
+// Returns the points of a star's ring.
 std::array<const float*, kMaxFlatRing> ring_points(const OneRing& star, const float* points, int dimensions) {
     assert(star.vertices() <= kMaxFlatRing);
     std::array<const float*, kMaxFlatRing> out{};
@@ -104,7 +104,7 @@ bool CollapseFlattening::lay_out(const std::array<const OneRing*, 2>& stars, con
            lay_out_star(0, points, merged, dimensions) && lay_out_star(1, points, merged, dimensions);
 }
 
-// Whether m lies inside the shared faces, or between the ends of a border edge, in the plane.
+// Returns whether m lies inside the shared faces, or between the ends of a border edge, in the plane.
 bool CollapseFlattening::in_shared_region(const float* points, const float* merged, int dimensions) const {
     const OneRing& i = *stars_[0];
     const auto place = [&](Id v) { return plane(points + std::size_t{v} * index(dimensions)); };
@@ -146,7 +146,7 @@ bool CollapseFlattening::lay_out_move(const float* points, const float* merged, 
     const auto ring = ring_points(star, points, dimensions);
     if (!flatten_ring(merged, {ring.data(), star.vertices()}, dimensions, !star.closed, move_ring_))
         return false;
-    // The end lies between two ring vertices, as seen from m in the plane; on a border, along it.
+    // The end lies between two ring vertices as seen from m in the plane; on a border, along it.
     const float* end = center_point(star, points, dimensions);
     const Vec2d toward = plane(end) - plane(merged);
     const std::span<const Vec2d> flat = ring_of(move_ring_, size(star));
@@ -207,7 +207,7 @@ FanPoint CollapseFlattening::without_end(int s, const FanPoint& point) const {
     return found;
 }
 
-// A point of a shared face, seen from the other end. Face (i, j, a) of the one is (j, a, i) of the other.
+// A point of a shared face, seen from the other end: face (i, j, a) of one end is (j, a, i) of the other.
 StarPoint CollapseFlattening::in_other_star(const StarPoint& point) const {
     const int s = point.star, o = 1 - s;
     const auto& w = point.at.weight;
@@ -258,7 +258,7 @@ FanPoint CollapseFlattening::moved(const FanPoint& point) const {
 
 StarPoint CollapseFlattening::carry(StarPoint point) const {
     if (mode_ == Mode::kBetween) {
-        // An end itself has a triangle of its own star that may be a shared one, but its place is known.
+        // An end itself has a triangle of its own star, perhaps a shared one, but its place is known.
         if (point.at.weight[0] != 1 && is_shared(point.star, point.at.triangle)) point = across_shared(point);
     } else if (mode_ == Mode::kMove) {
         if (point.star != pivot_ && is_shared(point.star, point.at.triangle)) point = in_other_star(point);

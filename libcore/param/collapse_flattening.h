@@ -1,5 +1,5 @@
-// How a collapse carries points of the old triangles around its edge to the new ones (paper sec. 3.3, fig.
-// 3).
+// How a collapse carries points of the old triangles around its edge to the new triangles (paper sec. 3.3,
+// fig. 3).
 #pragma once
 
 #include <array>
@@ -15,38 +15,38 @@ struct StarPoint {
     FanPoint at;  ///< its triangle is a face of that star
 };
 
-/// The flat layouts of one collapse. An edge (i, j) whose ends merge at m, a point between them as a rule:
+/// The flat layouts of one collapse of an edge (i, j), whose ends merge at m. Usually m lies between
+/// them:
 ///
-/// 1. the region shared by both stars, laid out around m, is cut anew into a fan of m;
-/// 2. each star, now disjoint with m in the place of the other end, laid out around its own end, is cut anew
-///    into a fan of m, without the end.
+/// 1. The region shared by both stars is laid out around m and cut anew into a fan of m.
+/// 2. Each star, now disjoint with m in the place of the other end, is laid out around its own end and
+///    cut anew into a fan of m, without the end.
 ///
-/// Where m lies on one of the ends, its star keeps its triangles, and step 2 of the other star does
-/// everything.
+/// If m is one of the ends, its star keeps its triangles, and step 2 of the other star does everything.
 ///
-/// Where m is not inside the shared region, as in one collapse of twenty of a busy image, and always where
-/// only one end is on a border, no layout around m has the shared region. Instead of step 1 one end then
-/// moves to m: its star is laid out around m and cut anew from a fan of the end into a fan of m. Step 2 of
-/// the other star follows.
+/// Sometimes no layout around m contains the shared region: if m is not inside it (one collapse in twenty
+/// of a busy image), and always if only one end is on a border. Then, instead of step 1, one end moves to
+/// m: its star is laid out around m and cut anew from a fan of the end into a fan of m. Step 2 of the
+/// other star follows.
 class CollapseFlattening {
   public:
-    /// Lays out what is needed. Returns false where a layout does not exist or one of its two triangulations
-    /// is not positively oriented (FlatFan): the collapse must not happen.
+    /// Makes the layouts that are needed. Returns false if a layout does not exist or one of its two
+    /// triangulations is not positively oriented (FlatFan): the collapse must be rejected.
     ///
     /// stars   of both ends, before the collapse
     /// points  of all vertices, `dimensions` floats each: position [pixels], then weighted features
-    /// merged  the new vertex, likewise
-    /// shared  whether any point of the shared region will be asked for
+    /// merged  the new vertex, in the same form
+    /// shared  whether points of the shared region will be carried
     bool lay_out(const std::array<const OneRing*, 2>& stars, const float* points, const float* merged,
                  int dimensions, bool shared);
 
-    /// Whether the star stays as it is, but for its faces that go.
+    /// Returns whether the star stays unchanged, except for its removed faces.
     bool rests(int star) const { return mode_ == Mode::kOneEnd && star == pivot_; }
-    /// Where a point of an old triangle goes: a face of the star that survives, with the weights of the
-    /// merged vertex and of the other two. Not for points of the rest of a star that rests(), nor for its
+    /// Returns the new place of a point of an old triangle: a face of the star that stays, with the weights
+    /// of the merged vertex and of the other two. Not for other points of a star that rests(), nor for its
     /// center.
     StarPoint carry(StarPoint point) const;
-    /// Whether the face is one of the two, or the one, that both stars have.
+    /// Returns whether the face is one of those (two, or one) that both stars have.
     bool is_shared(int star, int face) const;
 
   private:
@@ -65,7 +65,7 @@ class CollapseFlattening {
     FanPoint moved(const FanPoint& point) const;
 
     std::array<const OneRing*, 2> stars_{};
-    std::array<int, 2> other_{};  // where each star's ring has the other end
+    std::array<int, 2> other_{};  // the place of the other end in each star's ring
     Mode mode_ = Mode::kBetween;
     int pivot_ = 0;
     FlatRing shared_ring_;  // around m: j, a, i, b; at the border j, a, i or i, a, j

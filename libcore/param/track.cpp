@@ -1,6 +1,6 @@
-// Steps of a collapse: (1) the layouts are made, and may forbid it; (2) the pixels around the edge, and its
-// ends where they are pixels, are carried to the faces that stay; (3) the mesh merges the ends; (4) the
-// pixels are filed under their new faces.
+// Steps of a collapse: (1) the layouts are made, and may reject it; (2) the pixels around the edge, and ends
+// that are pixels, are carried to the faces that stay; (3) the mesh merges the ends; (4) the pixels are put
+// into the lists of their new faces.
 #include "libcore/param/track.h"
 
 #include <algorithm>
@@ -45,7 +45,7 @@ PixelTracker::PixelTracker(TrackStart start, const TrackParams& params)
 }
 
 void PixelTracker::put(Id pixel, Id face, const std::array<double, 3>& weight) {
-    // On the grid weights sum to 1 exactly, and those that are 0 stay so: sides keep their pixels.
+    // On the grid weights sum to 1 exactly, and weights of 0 stay 0, so sides keep their pixels.
     const PixelCoord coord = on_weight_grid(face, weight, weight_steps(WeightPrecision::kFloat));
     pixels_[pixel] = {coord.u, coord.v, first_[face]};
     first_[face] = pixel;
@@ -93,7 +93,7 @@ bool PixelTracker::collapse(Id kept, Id removed, const Vec2f& position, std::spa
     assert(feature.size() + 2 >= index(dimensions_));
     std::array<OneRing, 2> rings;
     const bool both = mesh_.ring(kept, rings[0]) && mesh_.ring(removed, rings[1]);
-    assert(both && mesh_.may_collapse(rings[1], kept));  // as the simplifier has checked
+    assert(both && mesh_.may_collapse(rings[1], kept));  // the simplifier has checked this
     static_cast<void>(both);
     const auto scale = static_cast<float>(std::sqrt(params_.color_weight));
     merged_.assign({position.x(), position.y()});
@@ -154,7 +154,7 @@ void PixelTracker::put_at(const OneRing& ring, Id pixel) {
     put(pixel, ring.face[0], weight);
 }
 
-// The face and the weights of moved_ by where each pixel is in the image.
+// The face and the weights in moved_ by the pixel's place in the image.
 void PixelTracker::find_in_plane(const OneRing& ring) {
     const auto place = [&](Id v) {
         const float* p = points_.data() + std::ptrdiff_t{v} * dimensions_;

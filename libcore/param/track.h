@@ -34,27 +34,27 @@ enum class TrackSpace {
 
 struct TrackParams {
     TrackSpace space = TrackSpace::kConformal;
-    /// of squared distances of features against squared pixels, in angles and distances of rings; >= 0
+    /// Weight of squared distances of features against squared pixels, in angles and distances of rings; >= 0
     double color_weight = 0.1;
 };
 
-/// Follows a collapse. A pixel is at first the vertex that it is; when that vertex is the end of a collapse
-/// it is projected into a face, and projected anew whenever a collapse touches its face. The vertices that
-/// collapses make are no pixels. About 150 bytes a pixel, for three channels.
+/// Follows a collapse. At first a pixel is a vertex. When that vertex is the end of a collapse, the pixel is
+/// projected into a face, and projected anew whenever a collapse touches its face. Vertices made by collapses
+/// are no pixels. Takes about 150 bytes a pixel for three channels.
 class PixelTracker {
   public:
     PixelTracker(TrackStart start, const TrackParams& params);
 
     /// Carries the pixels through the collapse of `removed` into `kept`, which moves to `position`. Returns
-    /// false, with nothing changed, where a flattened triangle would degenerate.
+    /// false, with nothing changed, if a flattened triangle would degenerate.
     bool collapse(Id kept, Id removed, const Vec2f& position, std::span<const float> feature);
 
-    /// The pixels as they are now, as a map onto `mesh`, whose vertices are the live ones in the order of
-    /// their ids. Weights lie on the kFloatWeightStep grid.
+    /// Returns the pixels' present places as a map onto `mesh`, whose vertices are those not removed, in the
+    /// order of their ids. Weights lie on the kFloatWeightStep grid.
     PixelMap map(const BaseMesh& mesh) const;
 
-    /// How often each pixel's vertex was the end of a collapse or the pixel was projected anew (paper sec.
-    /// 3.2); width * height.
+    /// Returns how often each pixel's vertex was the end of a collapse or the pixel was projected anew (paper
+    /// sec. 3.2); width * height.
     const std::vector<Id>& visits() const { return visits_; }
     std::int64_t rejected() const { return rejected_; }
 
@@ -79,12 +79,12 @@ class PixelTracker {
     TrackParams params_;
     EditMesh mesh_;
     std::vector<float> points_;  // of each vertex: position, features times the root of their weight
-    std::vector<Id> pixel_;      // of each vertex that is still one
+    std::vector<Id> pixel_;      // of each vertex that is still a pixel
     std::vector<Id> first_;      // of each face's list
     std::vector<Pixel> pixels_;
     std::vector<Id> visits_;
     std::vector<float> merged_;  // the merged vertex's point
-    std::vector<Moved> moved_;   // by the collapse at hand
+    std::vector<Moved> moved_;   // by the present collapse
     std::int64_t rejected_ = 0;
 };
 

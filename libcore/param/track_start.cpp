@@ -20,7 +20,7 @@ TrackStart track_start(const GridMesh& grid, int width, int height) {
     for (Face& face : start.faces)
         for (Id& v : face) v = live[v];
 
-    // Pixels that are vertices; of a pixel that is several, the first. A strip's vertices lie beside theirs.
+    // Pixels that are vertices; if a pixel is several, the first. A strip's vertices lie beside its pixels.
     start.pixel.assign(rings.size(), kNone);
     const auto columns = static_cast<Id>(width);
     std::vector<bool> is_vertex(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), false);

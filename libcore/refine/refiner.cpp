@@ -44,7 +44,7 @@ Vec3f Refiner::allowed(const Vec3f& color) const {
 }
 
 bool Refiner::better(const Cost& now, const Cost& before) const {
-    // Gains within the rounding of the sums are none.
+    // Gains within the rounding of the sums do not count.
     const double slack = 1e-5 * before.error + 1e-9;
     if (!now.legal) return false;
     // A face below the floor may only become better.
@@ -80,7 +80,7 @@ void Refiner::fit_colors() {
     const std::vector<Vec3f> before = vertex_.color;
     std::vector<Vec3d> change(mesh_.vertices(), Vec3d::Zero());
     constexpr int kPasses = 6;
-    // A vertex that no pixel touches stays as it is.
+    // A vertex that no pixel touches stays unchanged.
     constexpr double kPull = 1e-3;
     // The corners around each vertex, 3 face + place, in the order of its ring: every pass needs them.
     std::vector<Id> corners, first{0};
@@ -185,7 +185,7 @@ Vec2f Refiner::newton_step(const OneRing& ring, Id v) const {
     hxy -= mx.dot(my) / ww;
     hyy -= my.squaredNorm() / ww;
     rhs -= Vec2d(mx.dot(we), my.dot(we)) / ww;
-    // A pull to the ring's centre: what shape weighs, and a little where the colours say nothing.
+    // A pull to the ring's centre: the weight of shape, and a little where colours give no direction.
     const double pull =
         1e-3 * (hxx + hyy) + 1e-6 + (ring.closed ? shape_unit_ / (1 + center.squaredNorm()) : 0);
     hxx += pull;
@@ -264,8 +264,8 @@ bool Refiner::flip_if_better(Id f, std::size_t i, Id g) {
 }
 
 std::int64_t Refiner::flip_edges() {
-    // What each flip would do is found on all threads, and holds for pairs of faces that no flip before has
-    // changed: the outcome is that of one edge after the other.
+    // All threads compute the effects of flips. They hold for pairs of faces that no earlier flip has
+    // changed, so the outcome is that of one edge after the other.
     const std::size_t faces = mesh_.faces().size();
     std::vector<Face> across(faces, {kNone, kNone, kNone});
     std::vector<std::array<bool, 3>> worthwhile(faces);

@@ -21,10 +21,10 @@ class Refiner {
     std::int64_t move_vertices();
     std::int64_t flip_edges();
     std::int64_t relocate();
-    /// More vertices where they gain most, all steps, then as many fewer where they cost least, and all steps
-    /// again: taken back as a whole unless the error has fallen.
+    /// Adds vertices where they gain most, runs all steps, removes as many where they cost least, and runs
+    /// all steps again. All of it is undone unless the error has fallen.
     bool exchange(double share);
-    /// The steps of an exchange inside the mesh: as many as `most`, none next to another; how many they were.
+    /// Exchanges vertices inside the mesh: at most `most`, none next to another. Returns how many.
     std::int64_t insert_best(std::int64_t most);
     std::int64_t remove_cheapest(std::int64_t most);
 
@@ -34,20 +34,20 @@ class Refiner {
         bool border;  ///< v is one of a side
         bool operator==(const Removal&) const = default;
     };
-    /// The best of each vertex that can go, in order of cost. Those near which nothing has changed since the
-    /// last call are remembered, until forget().
+    /// Finds the best removal of each vertex that can be removed, in order of cost. Results are remembered
+    /// while nothing near them has changed, until forget().
     std::vector<Removal> removals();
     void forget();
 
   private:
-    // What a ring or a pair of faces costs: squared error, and the worst and the summed shape.
+    // The cost of a ring or a pair of faces: squared error, and the worst and the summed shape.
     struct Cost {
         double error = 0;    // summed squared error
         double shape = 0;    // sum of 1/q - 1
         double least_q = 1;  // least q
-        bool legal = true;   // every area positive and no sliver
+        bool legal = true;   // whether every area is positive and there is no sliver
     };
-    // Vertex v somewhere, with its best colour there.
+    // Vertex v at some position, with its best colour there.
     struct Placement {
         Vec2f position;
         Vec3f color;
@@ -60,29 +60,31 @@ class Refiner {
     bool better(const Cost& now, const Cost& before) const;
     void add_shape(Cost& cost, const Vec2f& a, const Vec2f& b, const Vec2f& c) const;
     Cost cost_of(const OneRing& ring) const;
-    // The ring with v at `position`, without and with its best colour. False where that is not legal.
+    // Costs the ring with v at `position`, without and with its best colour. Returns false if that is not
+    // legal.
     bool place(const OneRing& ring, const Vec2f& position, const Vec3f& color, double least_q,
                Placement& out) const;
     Vec2f newton_step(const OneRing& ring, Id v) const;
     bool move_vertex(Id v);
-    // Of the edge opposite corner i of f, across which g lies; `first` and `second` are their errors then.
+    // Costs the edge opposite corner i of f, across which g lies; `first` and `second` are their present
+    // errors.
     bool flip_is_better(Id f, std::size_t i, Id g, double& first, double& second) const;
     bool flip_if_better(Id f, std::size_t i, Id g);
     void set(const OneRing& ring, Id v, const Placement& placement);
 
     struct Insertion {
         Id face;
-        int edge;  // opposite this corner, or -1 for the inside
+        int edge;  // on the edge opposite this corner, or -1 for the inside
         Vec2f position;
         Vec3f color;
         double gain;
-        bool border;  // on an edge of one face
+        bool border;  // whether it is on an edge of one face
     };
     Id across(const Insertion& insertion) const;  // the other face that it divides, or kNone
     void relocate(std::size_t most, const std::vector<Removal>& removals,
                   const std::vector<Insertion>& insertions, bool border, std::vector<bool>& touched,
                   std::vector<Id>& fresh);
-    void changed(const OneRing& ring);  // what was known of its vertices holds no more
+    void changed(const OneRing& ring);  // forgets what was remembered of its vertices
     void changed(Id f);
     std::vector<Insertion> insertions() const;
     Removal best_removal(Id v) const;
@@ -97,10 +99,10 @@ class Refiner {
     EditMesh mesh_;
     RefineVertices vertex_;
     std::vector<double> error_;  // of each face
-    // The best removal of each vertex, and whether nothing that it depends on has changed since.
+    // The best removal of each vertex, and whether nothing that it depends on has changed since then.
     std::vector<Removal> removal_;
     std::vector<std::uint8_t> removal_holds_;
-    double shape_unit_ = 0;  // squared error that a shape cost of 1 weighs as much as
+    double shape_unit_ = 0;  // the squared error that weighs as much as a shape cost of 1
 };
 
 }  // namespace imgmesh

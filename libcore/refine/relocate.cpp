@@ -1,4 +1,4 @@
-// Relocation: vertices go from where their loss costs least to where one more gains most.
+// Relocation: vertices move from where their loss costs least to where another one gains most.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -14,7 +14,7 @@ Refiner::Removal Refiner::best_removal(Id v) const {
     if (!mesh_.live_vertex(v) || vertex_.fixed[v] == RefineVertices::kFixed || !mesh_.ring(v, ring))
         return best;
     const Cost before = cost_of(ring);
-    // Those of the most similar colour first: what costs more than the best so far need not be summed up.
+    // Neighbours of the most similar colour come first: the sum stops when it exceeds the best so far.
     std::array<std::pair<float, Id>, OneRing::kMaxFaces> neighbors;
     std::size_t count = 0;
     const auto add = [&](Id u) {
@@ -23,7 +23,7 @@ Refiner::Removal Refiner::best_removal(Id v) const {
     if (ring.closed) {
         for (std::size_t k = 0; k < ring.faces; ++k) add(ring.vertex[k]);
     } else {
-        // A vertex of a side goes along its side only.
+        // A vertex on a side moves only along that side.
         for (const Id u : {ring.vertex[0], ring.vertex[ring.faces]})
             if ((vertex_.fixed[u] & vertex_.fixed[v]) == vertex_.fixed[v]) add(u);
     }
@@ -76,7 +76,7 @@ void Refiner::try_insertion(Id f, int edge, const Vec2f& position, Insertion& be
     for (std::size_t k = 0; k < count; ++k)
         add_shape(after, position, vertex_.position[faces[k][1]], vertex_.position[faces[k][2]]);
     if (!after.legal || after.least_q < std::min(before.least_q, params_.min_quality)) return;
-    // The colour that the drawing has there, then the best one.
+    // First with the drawing's colour there, then with the best one.
     const Vec2f &pa = vertex_.position[a], &pb = vertex_.position[b], &pc = vertex_.position[c];
     const double area2 = signed_area2(pa, pb, pc);
     const auto wb = static_cast<float>(signed_area2(pa, position, pc) / area2),
@@ -108,7 +108,7 @@ Refiner::Insertion Refiner::best_insertion(Id f) const {
     if (worst.x >= 0) try_insertion(f, -1, {static_cast<float>(worst.x), static_cast<float>(worst.y)}, best);
     for (std::size_t n = 0; n < 3; ++n) {
         const Id g = mesh_.across(f, n), p = mesh_.face(f)[(n + 1) % 3], q = mesh_.face(f)[(n + 2) % 3];
-        // Inner edges are tried once; a border edge only where it is a side's.
+        // Inner edges are tried once; a border edge only if it is on a side.
         if (g != kNone && g < f) continue;
         const std::uint8_t side = vertex_.fixed[p] & vertex_.fixed[q];
         if (g == kNone && side != RefineVertices::kFixedX && side != RefineVertices::kFixedY) continue;
@@ -137,7 +137,7 @@ void Refiner::remove(const Removal& removal) {
     mesh_.ring(removal.v, ring);
     changed(ring);
     mesh_.collapse(ring, removal.into);
-    // A face that is gone had one neighbour at v, with which the ring of their common vertex now begins.
+    // A removed face had one neighbour at v. The ring of their common vertex now begins with that neighbour.
     for (std::size_t k = 0; k < ring.faces; ++k) {
         const Id f = ring.face[k];
         error_[f] = mesh_.live_face(f) ? face_error(mesh_.face(f)) : 0;
@@ -203,7 +203,7 @@ std::vector<Refiner::Insertion> Refiner::insertions() const {
     return all;
 }
 
-// What is known of a face or a vertex holds only until something near it changes.
+// Remembered results for a face or a vertex hold only until something near it changes.
 std::int64_t Refiner::insert_best(std::int64_t most) {
     std::vector<bool> touched(mesh_.faces().size(), false);
     std::int64_t done = 0;
@@ -253,7 +253,7 @@ bool Refiner::exchange(double share) {
     settle();
     settle();
     std::int64_t left = extra;
-    // In parts, as each removal changes what the next ones cost.
+    // In parts, because each removal changes the costs of the next ones.
     while (left > 0) {
         const std::int64_t done = remove_cheapest(std::max<std::int64_t>(1, (left + 1) / 2));
         if (done == 0) break;
@@ -274,10 +274,10 @@ std::int64_t Refiner::relocate() {
         static_cast<std::size_t>(std::ceil(params_.relocations * static_cast<double>(mesh_.live_vertices())));
     const std::vector<Removal> removals = this->removals();
     const std::vector<Insertion> insertions = this->insertions();
-    // What is known of a face or a vertex holds only until something near it changes.
+    // Remembered results for a face or a vertex hold only until something near it changes.
     std::vector<bool> touched(mesh_.faces().size(), false);
     std::vector<Id> fresh;
-    // Inner vertices are exchanged for inner ones: the number of faces stays.
+    // Inner vertices are exchanged for inner ones, so the number of faces stays.
     for (const bool border : {false, true}) relocate(most, removals, insertions, border, touched, fresh);
     for (const Id v : fresh) move_vertex(v);
     return static_cast<std::int64_t>(fresh.size());
