@@ -62,8 +62,9 @@ TEST_CASE("vertex classes: every vertex that has a face is in one, and no face h
 
 // Grids whose vertices lie on pixel centres, lines through centres, slivers: each pixel counts exactly once.
 TEST_CASE("spans: the faces of a mesh share out all pixels") {
-    for (const auto& [w, h] : {std::pair{1, 1}, {1, 9}, {9, 1}, {2, 2}, {3, 3}, {17, 11}, {40, 30}})
+    for (const auto& size : {std::pair{1, 1}, {1, 9}, {9, 1}, {2, 2}, {3, 3}, {17, 11}, {40, 30}})
         for (std::uint32_t seed = 0; seed < 12; ++seed) {
+            const int w = size.first, h = size.second;
             INFO(w << " x " << h << " seed " << seed);
             BaseMesh mesh = colored_grid(w, h, w > 6 ? w / 3 : 1, h > 6 ? h / 3 : 1, seed);
             if (seed % 3 == 0)  // onto the centres
