@@ -243,7 +243,7 @@ class Compare(CliCase):
                             (["a.glb", "--color-space", "sRGB"], ["--color-space", "two"]),
                             (["a.png", "b.png", "--mode", "map"], ["--mode", "container"]),
                             (["a.png", "b.png", "--level", "0"], ["--level", "container"]),
-                            (["a.glb", "b.glb", "--color-space", "sRGB"], ["--color-space", "picture"]),
+                            (["a.glb", "b.glb", "--color-space", "sRGB"], ["--color-space", "an image"]),
                             (["a.png", "b.png", "--error-range", "5"], ["--error-range", "--error-image"]),
                             (["a.png", "b.png", "--error-image", "e.svg"], ["--error-image", "e.svg"]),
                             (["a.png", "b.png", "--error-image", ""], ["--error-image", "expected"]),
