@@ -7,6 +7,7 @@
 #include "formats/container/validate.h"
 #include "formats/exr/exr_layers.h"
 #include "formats/files/atomic_file.h"
+#include "formats/files/one_line.h"
 #include "formats/findings/findings.h"
 #include "formats/gltf/glb.h"
 #include "formats/gltf/gltf_asset.h"
@@ -199,11 +200,9 @@ Container read_container(const std::string& path, const ContainerLimits& limits)
         Findings findings = Findings::strict();
         return read(path, limits, findings);
     } catch (const FindingError& finding) {
-        std::string text = finding.what();
         // Names from the file are quoted unchanged; the message stays one line.
-        std::replace_if(
-            text.begin(), text.end(), [](unsigned char c) { return c < 32 || c == 127; }, ' ');
-        throw Error(finding.error_kind(), cat(path, ": [", finding.code(), "] ", text));
+        throw Error(finding.error_kind(),
+                    cat(path, ": [", finding.code(), "] ", printable(finding.what(), ' ')));
     }
 }
 

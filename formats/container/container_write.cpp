@@ -41,16 +41,6 @@ void check_writable(const MeshImage& image, const Texture& texture) {
         throw Error(ErrorKind::kInternal, "cannot store the mesh image: its parts do not fit each other");
 }
 
-// Appends values as they lie in memory, at a multiple of four.
-template <typename T>
-ByteRange append(std::vector<std::uint8_t>& buffer, const std::vector<T>& values) {
-    const auto* first = reinterpret_cast<const std::uint8_t*>(values.data());
-    const ByteRange range{buffer.size(), values.size() * sizeof(T)};
-    buffer.insert(buffer.end(), first, first + range.length);
-    buffer.resize((buffer.size() + 3) / 4 * 4, 0);
-    return range;
-}
-
 // Stores the mesh of `level` in `buffer` and rewrites `map` for the mesh that a reader will get. `coords` are
 // those of its texture; empty if there is none.
 AssetLevel store_level(const Level& level, const StoredLayout& layout, std::span<const Vec2f> coords,
@@ -60,17 +50,17 @@ AssetLevel store_level(const Level& level, const StoredLayout& layout, std::span
     AssetLevel out;
     out.has_texcoords = !coords.empty();
     if (mode == DracoMode::kOff) {
-        out.indices = append(buffer, mesh.faces);
-        out.positions = append(buffer, mesh.position);
-        if (layout.color) out.colors = append(buffer, mesh.color);
-        if (layout.hdr) out.hdr = append(buffer, mesh.hdr);
+        out.indices = append_values(buffer, mesh.faces);
+        out.positions = append_values(buffer, mesh.position);
+        if (layout.color) out.colors = append_values(buffer, mesh.color);
+        if (layout.hdr) out.hdr = append_values(buffer, mesh.hdr);
         for (const std::vector<float>& channel : mesh.channels)
-            out.channels.push_back(append(buffer, channel));
-        if (out.has_texcoords) out.texcoords = append(buffer, mesh.texcoord);
+            out.channels.push_back(append_values(buffer, channel));
+        if (out.has_texcoords) out.texcoords = append_values(buffer, mesh.texcoord);
     } else {
         DracoMesh draco = encode_draco_mesh(mesh, mode);
         out.is_draco = true;
-        out.draco = append(buffer, draco.bytes);
+        out.draco = append_values(buffer, draco.bytes);
         remap_pixels(match_faces(mesh, draco.decoded), map);
         mesh = std::move(draco.decoded);
     }
@@ -78,12 +68,7 @@ AssetLevel store_level(const Level& level, const StoredLayout& layout, std::span
     out.faces = mesh.faces.size();
     out.error = level.error;
     out.topology = topology_hash(mesh);
-    out.low = out.high = mesh.position.front();
-    for (const auto& p : mesh.position)
-        for (std::size_t i = 0; i < 3; ++i) {
-            out.low[i] = std::min(out.low[i], p[i]);
-            out.high[i] = std::max(out.high[i], p[i]);
-        }
+    out.bounds = bounds_of(mesh.position);
     return out;
 }
 
@@ -187,7 +172,7 @@ void write_container(const std::string& path, const MeshImage& mesh_image, const
     parts.front().visits = mesh_image.visits;
     if (!texture.picture.empty()) {
         asset.texture_type = picture_type(texture.picture);
-        asset.texture = append(buffer, texture.picture);
+        asset.texture = append_values(buffer, texture.picture);
     }
     asset.has_layers = options.layers;
     const std::vector<std::uint8_t> layers =

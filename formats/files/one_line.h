@@ -8,7 +8,7 @@ namespace imgmesh {
 /// Returns a library's message as one line without control characters.
 std::string one_line(const std::string& message);
 
-/// A name from a file as messages quote it: '?' for each control character.
-std::string printable(std::string name);
+/// A name from a file, or a text with such names, as messages quote it: `instead` for each control character.
+std::string printable(std::string text, char instead = '?');
 
 }  // namespace imgmesh

@@ -1,7 +1,6 @@
 #include "formats/findings/findings.h"
 
-#include <algorithm>
-
+#include "formats/files/one_line.h"
 #include "libcore/base/error.h"
 
 namespace imgmesh {
@@ -19,10 +18,7 @@ std::size_t Findings::add(FindingCode code, const std::string& text, Place place
     }
     errors_ += finding.severity == Severity::kError;
     // Names from the file are quoted unchanged; the message stays one line.
-    std::string line = text;
-    std::replace_if(
-        line.begin(), line.end(), [](unsigned char c) { return c < 32 || c == 127; }, ' ');
-    issues_.push_back({&finding, std::move(line), std::move(place), 1});
+    issues_.push_back({&finding, printable(text, ' '), std::move(place), 1});
     return issues_.size() - 1;
 }
 

@@ -35,12 +35,7 @@ int add_attribute(draco::Mesh& mesh, draco::GeometryAttribute::Type type, draco:
 // With range = (2^bits - 1) step Draco's step is exactly kPositionStep, and origin + q step has no rounding:
 // all are multiples of the step and below 2^23 of them (kMaxCoordinate).
 void quantize_positions(draco::ExpertEncoder& encoder, int attribute, const StoredMesh& mesh) {
-    std::array<float, 3> low = mesh.position.front(), high = low;
-    for (const auto& p : mesh.position)
-        for (std::size_t i = 0; i < 3; ++i) {
-            low[i] = std::min(low[i], p[i]);
-            high[i] = std::max(high[i], p[i]);
-        }
+    const auto [low, high] = bounds_of(mesh.position);
     const float extent = std::max(high[0] - low[0], high[1] - low[1]);
     const auto bits = static_cast<int>(std::bit_width(static_cast<std::uint32_t>(extent / kPositionStep)));
     const float range = static_cast<float>((1 << bits) - 1) * kPositionStep;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "formats/findings/limits.h"
+#include "formats/gltf/byte_range.h"
 #include "formats/gltf/draco_mesh.h"
 #include "libcore/mesh/mesh_image.h"
 
@@ -15,20 +16,13 @@ namespace imgmesh {
 
 class Findings;
 
-/// Bytes of the asset's one buffer.
-struct ByteRange {
-    std::uint64_t offset = 0;
-    std::uint64_t length = 0;
-    bool operator==(const ByteRange&) const = default;
-};
-
 /// One level: its node, mesh and accessors.
 struct AssetLevel {
     std::uint64_t vertices = 0;
     std::uint64_t faces = 0;
     double error = 0;
-    std::string topology;                ///< topology_hash()
-    std::array<float, 3> low{}, high{};  ///< bounds of the stored positions
+    std::string topology;  ///< topology_hash()
+    Bounds bounds;         ///< of the stored positions
     bool is_draco = false;
     ByteRange draco;  ///< is_draco: the bitstream and its attributes
     DracoAttributeIds ids;
@@ -78,6 +72,14 @@ std::vector<std::string> channel_attributes(const SourceInfo& source);
 
 /// Returns the name of level k's node and EXR part.
 std::string level_name(std::size_t k);
+
+/// Where level k's node stands: the image centred at the origin, its longer side one unit, coarser levels
+/// behind.
+struct NodePlace {
+    double scale;  ///< of all three axes
+    double x, y, z;
+};
+NodePlace node_place(const SourceInfo& source, std::size_t k);
 
 /// The glTF document. Throws Error(kUnsupported) for a buffer above 2 GiB, which many readers cannot address.
 std::string json_from_asset(const Asset& asset);

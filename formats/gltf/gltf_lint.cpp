@@ -75,12 +75,10 @@ bool is_near(const json& numbers, std::initializer_list<double> expected) {
 
 void lint_node(const json& node, const SourceInfo& source, std::size_t k, const std::string& pointer,
                Findings& findings) {
-    const double scale = 1.0 / std::max(source.width, source.height);
-    const bool centred =
-        !node.contains("matrix") && !node.contains("rotation") &&
-        is_near(child(node, "scale"), {scale, scale, scale}) &&
-        is_near(child(node, "translation"), {-scale * (source.width - 1) / 2, scale * (source.height - 1) / 2,
-                                             -0.01 * static_cast<double>(k)});
+    const auto [scale, x, y, z] = node_place(source, k);
+    const bool centred = !node.contains("matrix") && !node.contains("rotation") &&
+                         is_near(child(node, "scale"), {scale, scale, scale}) &&
+                         is_near(child(node, "translation"), {x, y, z});
     if (!centred)
         findings.add("gltf.transform", cat("level ", k, " is placed elsewhere"), at_pointer(pointer));
 }

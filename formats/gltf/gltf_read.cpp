@@ -209,8 +209,8 @@ void read_primitive(const json& document, const tinygltf::Model& model, int mesh
     if (positions.minValues.size() != 3 || positions.maxValues.size() != 3)
         refuse("mesh.accessor", "the accessor of POSITION has no bounds");
     for (std::size_t i = 0; i < 3; ++i) {
-        level.low[i] = static_cast<float>(positions.minValues[i]);
-        level.high[i] = static_cast<float>(positions.maxValues[i]);
+        level.bounds.low[i] = static_cast<float>(positions.minValues[i]);
+        level.bounds.high[i] = static_cast<float>(positions.maxValues[i]);
     }
     if (draco) {
         const json& attributes = member(*draco, "attributes", "gltf.structure");

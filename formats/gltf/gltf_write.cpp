@@ -21,9 +21,6 @@ using nlohmann::json;
 using tinygltf::Value;
 
 constexpr std::uint64_t kMaxBufferBytes = 0x7FFFFFFF;
-// Distance between levels in units of the image's longer side, so that a viewer that draws all of them does
-// not draw two at one depth.
-constexpr double kLevelDistance = 0.01;
 
 int add_view(tinygltf::Model& model, const ByteRange& range, int target) {
     tinygltf::BufferView view;
@@ -68,8 +65,10 @@ tinygltf::Mesh level_mesh(tinygltf::Model& model, const AssetLevel& level, const
     const int position = add_accessor(model, TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_VEC3,
                                       level.vertices, range(level.positions), TINYGLTF_TARGET_ARRAY_BUFFER);
     auto& accessors = model.accessors;
-    accessors[static_cast<std::size_t>(position)].minValues.assign(level.low.begin(), level.low.end());
-    accessors[static_cast<std::size_t>(position)].maxValues.assign(level.high.begin(), level.high.end());
+    accessors[static_cast<std::size_t>(position)].minValues.assign(level.bounds.low.begin(),
+                                                                   level.bounds.low.end());
+    accessors[static_cast<std::size_t>(position)].maxValues.assign(level.bounds.high.begin(),
+                                                                   level.bounds.high.end());
     primitive.attributes = {{"POSITION", position}};
     StoredLayout layout = layout_of(source);
     layout.texture = level.has_texcoords;
@@ -104,13 +103,11 @@ tinygltf::Mesh level_mesh(tinygltf::Model& model, const AssetLevel& level, const
     return mesh;
 }
 
-// Centres the image at the origin, its longer side one unit.
 tinygltf::Node level_node(const SourceInfo& source, std::size_t k) {
-    const double scale = 1.0 / std::max(source.width, source.height);
+    const NodePlace place = node_place(source, k);
     tinygltf::Node node;
-    node.scale = {scale, scale, scale};
-    node.translation = {-scale * (source.width - 1) / 2, scale * (source.height - 1) / 2,
-                        k == 0 ? 0.0 : -kLevelDistance * static_cast<double>(k)};
+    node.scale = {place.scale, place.scale, place.scale};
+    node.translation = {place.x, place.y, place.z};
     return node;
 }
 
@@ -180,6 +177,15 @@ json root_extension(const Asset& asset, int layers_view) {
 
 std::string level_name(std::size_t k) {
     return cat("lod", k);
+}
+
+NodePlace node_place(const SourceInfo& source, std::size_t k) {
+    // In units of the image's longer side, so that a viewer that draws all levels does not draw two at one
+    // depth.
+    constexpr double kLevelDistance = 0.01;
+    const double scale = 1.0 / std::max(source.width, source.height);
+    return {scale, -scale * (source.width - 1) / 2, scale * (source.height - 1) / 2,
+            k == 0 ? 0.0 : -kLevelDistance * static_cast<double>(k)};
 }
 
 std::string json_from_asset(const Asset& asset) {

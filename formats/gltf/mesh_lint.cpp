@@ -18,16 +18,11 @@ std::pair<float, float> span_of(int side, bool has_mask) {
 
 void lint_vertices(const StoredMesh& mesh, const AssetLevel& level, const SourceInfo& source,
                    Findings& findings) {
-    std::array<float, 3> low = mesh.position.front(), high = low;
     const auto [left, right] = span_of(source.width, source.has_mask);
     const auto [top, bottom] = span_of(source.height, source.has_mask);
     Repeated outside(findings, "mesh.outside");
     for (std::size_t v = 0; v < mesh.position.size(); ++v) {
         const auto& p = mesh.position[v];
-        for (std::size_t i = 0; i < 3; ++i) {
-            low[i] = std::min(low[i], p[i]);
-            high[i] = std::max(high[i], p[i]);
-        }
         if (p[0] < left || p[0] > right || -p[1] < top || -p[1] > bottom)
             outside.hit(
                 [&] { return std::pair(cat("vertex ", v, " is at (", p[0], ",", p[1], ")"), Place()); });
@@ -40,11 +35,14 @@ void lint_vertices(const StoredMesh& mesh, const AssetLevel& level, const Source
                 return std::pair(cat("vertex ", v, " is at (", x, ",", y, ") of the texture"), Place());
             });
     }
-    if (low != level.low || high != level.high)
-        findings.add("mesh.bounds",
-                     cat("x from ", low[0], " to ", high[0], " and y from ", low[1], " to ", high[1],
-                         " in the mesh, x from ", level.low[0], " to ", level.high[0], " and y from ",
-                         level.low[1], " to ", level.high[1], " in the accessor"));
+    const Bounds found = bounds_of(mesh.position);
+    if (found != level.bounds) {
+        const auto& [low, high] = found;
+        findings.add("mesh.bounds", cat("x from ", low[0], " to ", high[0], " and y from ", low[1], " to ",
+                                        high[1], " in the mesh, x from ", level.bounds.low[0], " to ",
+                                        level.bounds.high[0], " and y from ", level.bounds.low[1], " to ",
+                                        level.bounds.high[1], " in the accessor"));
+    }
     std::vector<bool> used(mesh.position.size());
     for (const Face& face : mesh.faces)
         for (const Id v : face) used[v] = true;

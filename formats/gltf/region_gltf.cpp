@@ -26,7 +26,7 @@ constexpr int kArrayBuffer = 34962, kElementArrayBuffer = 34963;
 struct Piece {
     Id region = kNone;
     std::size_t first_vertex = 0, vertices = 0, first_index = 0, indices = 0;
-    std::array<float, 3> low{}, high{};
+    Bounds bounds = {};
 };
 
 // The faces sorted by region, every region with its own copy of the vertices that it uses.
@@ -44,7 +44,7 @@ Pieces cut(const StoredMesh& mesh, std::span<const Id> region_of_face) {
     Pieces out;
     std::vector<Id> copy(mesh.position.size(), kNone);
     for (const auto& [region, members] : faces) {
-        Piece piece{region, out.position.size(), 0, out.index.size(), 3 * members.size(), {}, {}};
+        Piece piece{region, out.position.size(), 0, out.index.size(), 3 * members.size()};
         std::vector<Id> used;
         for (const Id f : members)
             for (const Id v : mesh.faces[f]) {
@@ -57,23 +57,11 @@ Pieces cut(const StoredMesh& mesh, std::span<const Id> region_of_face) {
                 out.index.push_back(copy[v]);
             }
         piece.vertices = used.size();
-        piece.low = piece.high = out.position[piece.first_vertex];
-        for (const Id v : used) {
-            for (std::size_t i = 0; i < 3; ++i) {
-                piece.low[i] = std::min(piece.low[i], mesh.position[v][i]);
-                piece.high[i] = std::max(piece.high[i], mesh.position[v][i]);
-            }
-            copy[v] = kNone;
-        }
+        piece.bounds = bounds_of(std::span(out.position).subspan(piece.first_vertex));
+        for (const Id v : used) copy[v] = kNone;
         out.pieces.push_back(piece);
     }
     return out;
-}
-
-template <typename T>
-void append(std::vector<std::uint8_t>& buffer, const std::vector<T>& values) {
-    const auto* first = reinterpret_cast<const std::uint8_t*>(values.data());
-    buffer.insert(buffer.end(), first, first + values.size() * sizeof(T));
 }
 
 json accessor(int view, std::size_t offset, int component, const char* type, std::size_t count) {
@@ -90,8 +78,8 @@ json document(const Pieces& pieces, const SourceInfo& source, const std::string&
     for (const Piece& piece : pieces.pieces) {
         const std::size_t at = accessors.size();
         accessors.push_back(accessor(0, 12 * piece.first_vertex, kFloat, "VEC3", piece.vertices));
-        accessors.back()["min"] = piece.low;
-        accessors.back()["max"] = piece.high;
+        accessors.back()["min"] = piece.bounds.low;
+        accessors.back()["max"] = piece.bounds.high;
         accessors.push_back(accessor(1, 8 * piece.first_vertex, kUnsignedShort, "VEC4", piece.vertices));
         accessors.back()["normalized"] = true;
         accessors.push_back(accessor(2, 4 * piece.first_index, kUnsignedInt, "SCALAR", piece.indices));
@@ -104,12 +92,11 @@ json document(const Pieces& pieces, const SourceInfo& source, const std::string&
                              {"pbrMetallicRoughness", {{"metallicFactor", 0}}},
                              {"extensions", {{kUnlit, json::object()}}}});
     }
-    const double scale = 1.0 / std::max(source.width, source.height);
-    const json node = {
-        {"name", "regions"},
-        {"mesh", 0},
-        {"scale", {scale, scale, scale}},
-        {"translation", {-scale * (source.width - 1) / 2, scale * (source.height - 1) / 2, 0}}};
+    const NodePlace place = node_place(source, 0);
+    const json node = {{"name", "regions"},
+                       {"mesh", 0},
+                       {"scale", {place.scale, place.scale, place.scale}},
+                       {"translation", {place.x, place.y, 0}}};
     const auto view = [](std::size_t offset, std::size_t length, int target) -> json {
         return {{"buffer", 0}, {"byteOffset", offset}, {"byteLength", length}, {"target", target}};
     };
@@ -144,9 +131,10 @@ void write_region_mesh(const std::string& path, const BaseMesh& mesh, std::span<
         throw Error(ErrorKind::kUnsupported,
                     cat(path, ": would have ", bytes, " bytes of vertices and faces"));
     std::vector<std::uint8_t> buffer;
-    append(buffer, pieces.position);
-    append(buffer, pieces.color);
-    append(buffer, pieces.index);
+    // Each is a multiple of four long, so that document() knows where they are.
+    append_values(buffer, pieces.position);
+    append_values(buffer, pieces.color);
+    append_values(buffer, pieces.index);
     file.write(pack_glb(document(pieces, source, generator).dump(), buffer));
     file.commit();
 }

@@ -101,6 +101,16 @@ bool is_hdr(const std::array<float, 3>& light) {
 
 }  // namespace
 
+Bounds bounds_of(std::span<const std::array<float, 3>> positions) {
+    Bounds bounds{positions.front(), positions.front()};
+    for (const auto& p : positions)
+        for (std::size_t i = 0; i < 3; ++i) {
+            bounds.low[i] = std::min(bounds.low[i], p[i]);
+            bounds.high[i] = std::max(bounds.high[i], p[i]);
+        }
+    return bounds;
+}
+
 StoredMesh stored_from_base(const BaseMesh& mesh, const StoredLayout& layout) {
     const auto fail = [](const std::string& what) {
         throw Error(ErrorKind::kInternal, "cannot store the mesh: " + what);

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -36,6 +37,13 @@ struct StoredMesh {
 
     bool operator==(const StoredMesh&) const = default;
 };
+
+/// The box around positions; there is at least one.
+struct Bounds {
+    std::array<float, 3> low{}, high{};
+    bool operator==(const Bounds&) const = default;
+};
+Bounds bounds_of(std::span<const std::array<float, 3>> positions);
 
 /// A position's coordinates lie strictly between - and + this [pixels]. An extent is then less than 2^23
 /// steps of kPositionStep, up to which Draco's quantisation, floor(x + 0.5) in floats, is exact.

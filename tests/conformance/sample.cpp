@@ -21,31 +21,22 @@ namespace {
 
 constexpr int kSide = 3;
 
-template <typename T>
-ByteRange append(Bytes& buffer, const std::vector<T>& values) {
-    const auto* first = reinterpret_cast<const std::uint8_t*>(values.data());
-    const ByteRange range{buffer.size(), values.size() * sizeof(T)};
-    buffer.insert(buffer.end(), first, first + range.length);
-    buffer.resize((buffer.size() + 3) / 4 * 4, 0);
-    return range;
-}
-
 AssetLevel store(const StoredMesh& mesh, DracoMode mode, double error, Bytes& buffer) {
     AssetLevel level;
     const StoredMesh* stored = &mesh;
     DracoMesh draco;
     if (mode == DracoMode::kOff) {
-        level.indices = append(buffer, mesh.faces);
-        level.positions = append(buffer, mesh.position);
-        level.colors = append(buffer, mesh.color);
-        level.hdr = append(buffer, mesh.hdr);
+        level.indices = append_values(buffer, mesh.faces);
+        level.positions = append_values(buffer, mesh.position);
+        level.colors = append_values(buffer, mesh.color);
+        level.hdr = append_values(buffer, mesh.hdr);
         for (const std::vector<float>& channel : mesh.channels)
-            level.channels.push_back(append(buffer, channel));
-        level.texcoords = append(buffer, mesh.texcoord);
+            level.channels.push_back(append_values(buffer, channel));
+        level.texcoords = append_values(buffer, mesh.texcoord);
     } else {
         draco = encode_draco_mesh(mesh, mode);
         level.is_draco = true;
-        level.draco = append(buffer, draco.bytes);
+        level.draco = append_values(buffer, draco.bytes);
         stored = &draco.decoded;
     }
     level.has_texcoords = !mesh.texcoord.empty();
@@ -53,12 +44,7 @@ AssetLevel store(const StoredMesh& mesh, DracoMode mode, double error, Bytes& bu
     level.faces = stored->faces.size();
     level.error = error;
     level.topology = topology_hash(*stored);
-    level.low = level.high = stored->position.front();
-    for (const auto& p : stored->position)
-        for (std::size_t i = 0; i < 3; ++i) {
-            level.low[i] = std::min(level.low[i], p[i]);
-            level.high[i] = std::max(level.high[i], p[i]);
-        }
+    level.bounds = bounds_of(stored->position);
     return level;
 }
 
@@ -149,7 +135,7 @@ void Sample::write(const std::filesystem::path& folder, bool glb) const {
     }
     if (!texture.empty()) {
         a.texture_type = "image/png";
-        a.texture = append(buffer, texture);
+        a.texture = append_values(buffer, texture);
     }
     Bytes exr_bytes;
     if (edit_exr) {
@@ -163,7 +149,7 @@ void Sample::write(const std::filesystem::path& folder, bool glb) const {
     if (edit_bin) edit_bin(buffer);
     a.buffer_length = buffer.size();
     if (glb) {
-        a.layers = append(buffer, exr_bytes);
+        a.layers = append_values(buffer, exr_bytes);
         a.buffer_length = buffer.size();
     } else {
         a.buffer_name = "x.bin";
