@@ -283,7 +283,7 @@ TEST_CASE("glTF JSON: read(write(x)) == x") {
     asset.levels.resize(2);
     for (std::size_t k = 0; k < 2; ++k) {
         AssetLevel& l = asset.levels[k];
-        l = {30, 40, 0.1 + double(k), std::string(64, 'a'), {0, -479, 0}, {639, 0, 0}, k == 0, {}, {}, {},
+        l = {30, 40, 0.1 + double(k), std::string(64, 'a'), {{0, -479, 0}, {639, 0, 0}}, k == 0, {}, {}, {},
              {}, {}};
         l.ids = draco_ids(layout_of(asset.source));
         l.channels.resize(1);
