@@ -1,0 +1,1 @@
+// Nothing: a source for the target whose precompiled headers all tests share.
