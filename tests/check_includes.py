@@ -4,6 +4,7 @@ header (cmake/public_headers.cmake) to one that is not installed; and on a messa
 the command line.
 
 check_includes.py [ROOT]     prints what is wrong in the tree, exit 1 if there is anything
+check_includes.py --table [ROOT]   prints how often each room includes each other one
 check_includes.py --self-test   plants lines, wrong and right, into small trees and expects each to be judged so
 """
 import re
@@ -254,9 +255,24 @@ def self_test():
     return failed
 
 
+def print_table(root):
+    """A row for each room, in the order of ranks: its files, lines and what it includes."""
+    for layer, ranks in RANKS.items():
+        for room in (room for rank in ranks for room in rank):
+            paths = sorted(p for p in (root / layer / room).rglob("*") if p.suffix in SOURCES)
+            found = Counter(Path(i).parts[1] for p in paths for i in includes(p)
+                            if i.startswith(f"{layer}/") and Path(i).parts[1] != room)
+            lines = sum(len(p.read_text(encoding="utf-8").splitlines()) for p in paths)
+            print(f"{layer}/{room:<10}{len(paths):4} files {lines:6} lines  -> "
+                  + ", ".join(f"{other} {found[other]}" for rank in ranks for other in rank if found[other]))
+
+
 def main():
     if sys.argv[1:] == ["--self-test"]:
         return 1 if self_test() else 0
+    if sys.argv[1:2] == ["--table"]:
+        print_table(Path(sys.argv[2]) if len(sys.argv) > 2 else Path(__file__).resolve().parent.parent)
+        return 0
     root = Path(sys.argv[1]) if len(sys.argv) > 1 else Path(__file__).resolve().parent.parent
     found = list(findings(root))
     print("\n".join(found))
