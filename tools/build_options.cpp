@@ -57,22 +57,25 @@ const char* type_of(const Kind&) {
     return "LIST";
 }
 
-CLI::Option* add_param(CLI::App& app, const Param& param, BuildParams& params) {
+CLI::Option* add_param(CLI::App& app, const Param& param, BuildOptions& o) {
     const std::string name = "--" + param.name;
     return std::visit(
         [&](const auto& kind) {
             using Kind = std::remove_cvref_t<decltype(kind)>;
             if constexpr (std::is_same_v<Kind, FlagParam>) {
                 return add_flag(
-                    app, name, [&params, set = kind.set] { set(params, true); }, param.help);
+                    app, name,
+                    [&o, set = kind.set] { o.given.emplace_back([set](BuildParams& p) { set(p, true); }); },
+                    param.help);
             } else {
                 Help help(param.help, default_text(param));
                 if constexpr (std::is_same_v<Kind, WordParam>)
                     help.text += ": " + choice_names(choices_of(kind));
                 return add_value(
                     app, name, type_of(kind),
-                    [&params, &kind, name](const std::string& text) {
-                        kind.set(params, parse(name, text, kind));
+                    [&o, &kind, name](const std::string& text) {
+                        o.given.emplace_back(
+                            [&kind, value = parse(name, text, kind)](BuildParams& p) { kind.set(p, value); });
                     },
                     help);
             }
@@ -80,18 +83,19 @@ CLI::Option* add_param(CLI::App& app, const Param& param, BuildParams& params) {
         param.kind);
 }
 
-void add_params(CLI::App& app, BuildParams& params) {
+void add_params(CLI::App& app, BuildOptions& o) {
     std::vector<std::pair<CLI::Option*, const Param*>> added;
     for (const Param& param : param_table()) {
-        CLI::Option* const option = in_group(add_param(app, param, params), param.group);
+        CLI::Option* const option = in_group(add_param(app, param, o), param.group);
         if (!param.everyday) advanced(app, option);
         added.emplace_back(option, &param);
         if (param.name != "projection-color-weight") continue;
         // The same weight by its reciprocal, as decision 2 has it.
         CLI::Option* const smoothness = add_value(
             app, "--map-smoothness", "X",
-            [&params](const std::string& text) {
-                params.projection_color_weight = 1 / parse_number("--map-smoothness", text, {1e-9, 1e12});
+            [&o](const std::string& text) {
+                const double weight = 1 / parse_number("--map-smoothness", text, {1e-9, 1e12});
+                o.given.emplace_back([weight](BuildParams& p) { p.projection_color_weight = weight; });
             },
             {"Smoothness of the pixel map against colour, 1 / projection-color-weight",
              cat(1 / map_color_weight(BuildParams()))});
@@ -107,7 +111,6 @@ void add_build_options(CLI::App& app, BuildOptions& o) {
     add_inputs(app, "IMAGE", o.inputs, "Images to read");
     add_output(app, o.output,
                "Container to write (.glb, .gltf), or a folder, ended by /, for NAME.glb of each image");
-    // First, so that other options count after it wherever they are on the command line.
     Choices<BuildParams> choices;
     std::string help = "Values for many options at once";
     for (const Preset& preset : presets()) {
@@ -116,7 +119,7 @@ void add_build_options(CLI::App& app, BuildOptions& o) {
     }
     add_value(
         app, "--preset", "NAME",
-        [&o, choices](const std::string& text) { o.params = parse_choice("--preset", text, choices); },
+        [&o, choices](const std::string& text) { o.preset = parse_choice("--preset", text, choices); },
         help + ": " + choice_names(choices));
 
     const std::string image = "Image";
@@ -136,14 +139,20 @@ void add_build_options(CLI::App& app, BuildOptions& o) {
                                           {"Colour space of the images, whatever their files say", ""});
     advanced(app, in_group(space, image));
 
-    add_params(app, o.params);
+    add_params(app, o);
 
     in_group(add_choice(app, "--draco", o.draco, draco_choices(), "Compression of the meshes"), "Container");
     add_texture_options(app, o.texture, "Put the image on the meshes, for engines and viewers", false);
     CLI::Option* const pixels =
         add_count(app, "--max-pixels", o.limits.max_pixels, {1}, "Refuse an image of more pixels");
     advanced(app, in_group(pixels, "Limits"));
-    after_parsing(app, [&] { check_contradictions(app, o.params); });
+    after_parsing(app, [&] {
+        // Other options count more than the preset, wherever either was given: on the command line or in a
+        // file.
+        o.params = o.preset;
+        for (const auto& set : o.given) set(o.params);
+        check_contradictions(app, o.params);
+    });
 }
 
 }  // namespace imgmesh

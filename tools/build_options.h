@@ -1,6 +1,7 @@
 // The options of imgmesh-build.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -15,7 +16,9 @@ namespace imgmesh {
 struct BuildOptions {
     std::vector<std::string> inputs;
     std::string output;
-    BuildParams params;
+    BuildParams params;  ///< what `preset` and then `given` make of it, when all options have been read
+    BuildParams preset;
+    std::vector<std::function<void(BuildParams&)>> given;  ///< the options that count more than the preset
     DracoMode draco = DracoMode::kEdgebreaker;
     std::optional<ColorSpace> color_space;
     bool cut = true;  ///< whether alpha masks the image

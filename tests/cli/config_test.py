@@ -35,6 +35,18 @@ class Config(CliCase):
             built = self.report("imgmesh-info", "out.glb")["build"]
             self.assertEqual((built["level-faces"], built["geometry-weight"], built["smoothing"]), ("80,20", 0.5, 1))
 
+    def test_other_options_count_more_than_the_preset(self):
+        """In whatever order the file has them, and for a preset of the command line too."""
+        for text in ('density = 5\npreset = "best"\n', 'preset = "best"\ndensity = 5\n'):
+            self.config(text)
+            self.build("in.png", "--config", "c.toml")
+            built = self.report("imgmesh-info", "out.glb")["build"]
+            self.assertEqual((built["density"], built["refine"]), (5, 6))
+        self.config("refine = 2\n")
+        self.build("in.png", "--config", "c.toml", "--preset", "fast")
+        built = self.report("imgmesh-info", "out.glb")["build"]
+        self.assertEqual((built["refine"], built["geometry-weight"]), (2, 1))
+
     def test_flags(self):
         self.config("quiet = true\noverwrite = false\n")
         self.assertEqual(self.run_ok("imgmesh-build", "in.png", "-o", "out.glb", "--config", "c.toml").stdout, "")
@@ -57,6 +69,10 @@ class Config(CliCase):
         self.refused("faces = 2026-01-01\n", "c.toml:1", "faces")
         self.refused("faces = [1, 2]\n", "c.toml:1", "faces", "list")
         self.refused("level-faces = [[8], 4]\n", "c.toml:1", "level-faces")
+        self.refused("level-faces = ['', 8]\n", "c.toml:1", "level-faces")
+        self.refused("channels = ['R,G', 'B']\n", "c.toml:1", "channels")
+        self.refused('output = "q\\u0000.glb"\n', "c.toml:1", "output", "control")
+        self.refused(".".join(["a"] * 40000) + " = 1\n", "c.toml:1", "dots")
 
     def test_what_is_no_option_and_value(self):
         for line in ("faces", "faces 40", "= 40", "faces =", "[build]", "[[x]]", "a.b = 1", "faces = 40 50",

@@ -3,11 +3,13 @@
 #include <toml++/toml.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
 #include <istream>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -42,15 +44,21 @@ class TomlConfig : public CLI::ConfigBase {
             if (const toml::array* list = value.as_array()) {
                 if (option->get_type_name() != "LIST")
                     refuse(cat("option '", name, "': expected one value, not a list"));
-                std::string text;
-                for (const toml::node& element : *list)
-                    if (!append(text, element)) refuse(cat("option '", name, "': expected a list of values"));
-                item.inputs = {text};
+                std::string joined;
+                for (const toml::node& element : *list) {
+                    const std::optional<std::string> text = text_of(element);
+                    if (!text || text->empty() || text->find(',') != std::string::npos)
+                        refuse(cat("option '", name, "': expected a list of values"));
+                    joined += (joined.empty() ? "" : ",") + *text;
+                }
+                item.inputs = {joined};
             } else {
-                std::string text;
-                if (!append(text, value))
-                    refuse(cat("option '", name, "': expected a string, a finite number, true or false"));
-                item.inputs = {text};
+                const std::optional<std::string> text = text_of(value);
+                if (!text)
+                    refuse(cat("option '", name,
+                               "': expected a string without control characters, a finite number, true or "
+                               "false"));
+                item.inputs = {*text};
             }
             options.push_back(std::move(item));
         }
@@ -66,6 +74,7 @@ class TomlConfig : public CLI::ConfigBase {
         text.resize(static_cast<std::size_t>(input.gcount()));
         if (text.size() > kMostBytes)
             throw Error(ErrorKind::kBadArgument, cat(file(), ": is longer than ", kMostBytes, " bytes"));
+        refuse_deep_keys(text);
         try {
             return toml::parse(text, file());
         } catch (const toml::parse_error& e) {
@@ -74,21 +83,32 @@ class TomlConfig : public CLI::ConfigBase {
         }
     }
 
-    // Adds a value to a list as the command line would have it; false where it is none.
-    static bool append(std::string& list, const toml::node& node) {
-        std::string text;
-        if (const auto* string = node.as_string())
-            text = string->get();
-        else if (const auto* flag = node.as_boolean())
-            text = flag->get() ? "true" : "false";
-        else if (const auto* integer = node.as_integer())
-            text = std::to_string(integer->get());
-        else if (const auto* number = node.as_floating_point(); number && std::isfinite(number->get()))
-            text = decimal(number->get());
-        else
-            return false;
-        list += (list.empty() ? "" : ",") + text;
-        return true;
+    // The parser calls itself once for each dot of a key, which has to stand in one line.
+    void refuse_deep_keys(const std::string& text) const {
+        constexpr int kMostDots = 1000;
+        int line = 1, dots = 0;
+        for (const char c : text) {
+            if (c == '\n') ++line;
+            dots = c == '\n' ? 0 : dots + (c == '.');
+            if (dots > kMostDots)
+                throw Error(ErrorKind::kBadArgument,
+                            cat(file(), ":", line, ": a line of more than ", kMostDots, " dots"));
+        }
+    }
+
+    // Returns a value as the command line would have it, where it could.
+    static std::optional<std::string> text_of(const toml::node& node) {
+        if (const auto* string = node.as_string()) {
+            // A zero byte would end a file's name before its extension.
+            const auto is_control = [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; };
+            if (std::any_of(string->get().begin(), string->get().end(), is_control)) return std::nullopt;
+            return string->get();
+        }
+        if (const auto* flag = node.as_boolean()) return flag->get() ? "true" : "false";
+        if (const auto* integer = node.as_integer()) return std::to_string(integer->get());
+        if (const auto* number = node.as_floating_point(); number && std::isfinite(number->get()))
+            return decimal(number->get());
+        return std::nullopt;
     }
 
     // The shortest text that gives the same number, always one that no whole number has.

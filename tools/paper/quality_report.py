@@ -83,7 +83,7 @@ def main(bin_folder, images, out):
     results |= peers
     names = [*METHODS, *dict.fromkeys(name for name, _ in peers)]
     text = ["# Error over size", "",
-            "    ./run quality FOLDER      # measures every preset on the PNG images of FOLDER and writes this page",
+            "    ./run quality FOLDER      # measures every preset on the PNG images of FOLDER; this page is its quality-out/quality.md",
             "    ./run bench peers         # installs the other simplifiers first", "",
             f"All figures are means over {len(paths)} images.", "",
             "| column | meaning |", "|---|---|",
