@@ -40,8 +40,8 @@ BuildParams fem() {
 const std::vector<Preset>& presets() {
     static const std::vector<Preset> all = {
         {"fast", "the shortest time, without refinement", fast()},
-        {"default", "the lowest error through the pixel map with triangles of good shape", {}},
-        {"best", "the lowest error of the mesh drawn alone, whatever the shape of its triangles", best()},
+        {"default", "a low error through the pixel map, with triangles of good shape", {}},
+        {"best", "the lowest error, whatever the shape of the triangles; slow", best()},
         {"fem", "no triangle of bad shape, for numerical simulation", fem()},
     };
     return all;
