@@ -1,3 +1,2 @@
 // The main function of every test program.
-#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include <doctest/doctest.h>

@@ -21,6 +21,11 @@ struct EagerText {
         out << doctest::toString(value).c_str();
         return *this;
     }
+    /// CAPTURE(x) is INFO(name, x).
+    template <typename T>
+    EagerText& operator,(const T& value) {
+        return *this << value;
+    }
 };
 
 }  // namespace imgmesh::test
