@@ -189,7 +189,8 @@ class RmsMeshes : public MeasuredMeshes {
         return {static_cast<std::int64_t>(level_.mesh.vertex_count()), figures_.map_rms};
     }
     void keep() override {
-        mesh_image_.levels.assign(1, std::move(level_));
+        mesh_image_.levels.clear();
+        mesh_image_.levels.push_back(std::move(level_));
         pipeline_.report.levels = {figures_};
         pipeline_.report.collapses = collapses_;
         limits_.smoothing = smoothing_;
