@@ -11,7 +11,7 @@ namespace imgmesh {
 void use_huge_pages() {}
 }  // namespace imgmesh
 
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+#ifndef IMGMESH_SANITIZED  // sanitizers have an operator new of their own
 namespace {
 
 constexpr std::size_t kPage = std::size_t{1} << 21;
