@@ -4,16 +4,18 @@
 Each builds containers of small images with every preset, metric, solver and kind of map. All are compared with those
 of the first program. Exit status 1 tells that one differs.
 """
+import os
 import pathlib
 import subprocess
 import sys
 import tempfile
+from concurrent.futures import ThreadPoolExecutor
 
 from PIL import Image, ImageDraw
 
 PHOTO = pathlib.Path(__file__).resolve().parents[1] / "data" / "kodim23.png"
 # Odd sides, so that rows end in lanes of vectors that are not full.
-SIZE = (203, 147)
+SIZE = (131, 97)
 CASES = {
     **{f"preset-{name}": ["photo.png", "--preset", name] for name in ("fast", "default", "best", "fem")},
     **{f"{metric}-{solver}": ["photo.png", "--metric", metric, "--solver", solver, "--refine", "0"]
@@ -36,16 +38,23 @@ def make_images(folder):
     photo.convert("L").save(folder / "gray.png")
     alpha = Image.new("L", SIZE, 0)
     draw = ImageDraw.Draw(alpha)
-    draw.ellipse((10, 8, 190, 138), fill=255)
-    draw.ellipse((60, 50, 110, 100), fill=0)
+    draw.ellipse((6, 5, 122, 91), fill=255)
+    draw.ellipse((39, 33, 71, 66), fill=0)
     photo.putalpha(alpha)
     photo.save(folder / "masked.png")
 
 
-def build(program, images, folder):
-    folder.mkdir()
-    for name, (image, *options) in CASES.items():
-        subprocess.run([program, "--quiet", images / image, *options, "-o", folder / f"{name}.glb"], check=True)
+def build_all(programs, root):
+    """root/I/NAME.glb of each program I and case, several at a time."""
+    def build(i, name):
+        image, *options = CASES[name]
+        subprocess.run([programs[i], "--quiet", root / image, *options, "-o", root / str(i) / f"{name}.glb"], check=True)
+
+    for i in range(len(programs)):
+        (root / str(i)).mkdir()
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        for done in [pool.submit(build, i, name) for i in range(len(programs)) for name in CASES]:
+            done.result()
 
 
 def first_difference(one, other):
@@ -62,8 +71,7 @@ def main(programs):
     with tempfile.TemporaryDirectory() as temporary:
         root = pathlib.Path(temporary)
         make_images(root)
-        for i, program in enumerate(programs):
-            build(program, root, root / str(i))
+        build_all(programs, root)
         for i, program in enumerate(programs[1:], 1):
             for name in CASES:
                 want, got = ((root / str(k) / f"{name}.glb").read_bytes() for k in (0, i))
