@@ -179,7 +179,7 @@ CASES = [
     ("libcore/a.cpp", "libcore/base/types.h", True),
     ("formats/gltf/a.cpp", "formats/findings/findings.h", False),
     ("formats/gltf/a.cpp", "formats/container/container.h", True),
-    ("formats/gltf/a.cpp", "formats/picture/exif.h", True),
+    ("formats/gltf/a.cpp", "formats/picture/decode/exif.h", True),
     ("formats/a.cpp", "tools/common/options.h", True),
     ("formats/a.cpp", "CLI/CLI.hpp", True),
     ("formats/gltf/a.cpp", "libcore/simplify/simplify.h", True),

@@ -7,6 +7,7 @@
 #include "tools/common/help.h"
 #include "tools/common/names.h"
 #include "tools/common/options.h"
+#include "tools/common/read_options.h"
 
 namespace imgmesh {
 namespace {
@@ -135,17 +136,12 @@ void add_build_options(CLI::App& app, BuildOptions& o) {
         add_number(app, "--alpha-threshold", o.alpha_threshold, {0, 1, true},
                    "Least alpha, or brightness of a mask, of the pixels that are meshed");
     advanced(app, in_group(threshold, image));
-    CLI::Option* const space = add_choice(app, "--color-space", o.color_space, color_space_choices(),
-                                          {"Colour space of the images, whatever their files say", ""});
-    advanced(app, in_group(space, image));
+    add_read_options(app, o.read);
 
     add_params(app, o);
 
     in_group(add_choice(app, "--draco", o.draco, draco_choices(), "Compression of the meshes"), "Container");
     add_texture_options(app, o.texture, "Put the image on the meshes, for engines and viewers", false);
-    CLI::Option* const pixels =
-        add_count(app, "--max-pixels", o.limits.max_pixels, {1}, "Refuse an image of more pixels");
-    advanced(app, in_group(pixels, "Limits"));
     after_parsing(app, [&] {
         // Other options count more than the preset, wherever either was given: on the command line or in a
         // file.

@@ -20,12 +20,11 @@ struct BuildOptions {
     BuildParams preset;
     std::vector<std::function<void(BuildParams&)>> given;  ///< the options that count more than the preset
     DracoMode draco = DracoMode::kEdgebreaker;
-    std::optional<ColorSpace> color_space;
+    ReadImageOptions read;
     bool cut = true;  ///< whether alpha masks the image
     std::string mask;
     double alpha_threshold = 0.5;
     TextureOptions texture;
-    ImageLimits limits;
 };
 
 /// Adds every option, those of BuildParams from param_table(). They are checked together when all have been

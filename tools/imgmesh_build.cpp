@@ -14,6 +14,7 @@
 #include "tools/common/in_file.h"
 #include "tools/common/joint_progress.h"
 #include "tools/common/output.h"
+#include "tools/common/read_options.h"
 #include "tools/common/tool_main.h"
 
 namespace fs = std::filesystem;
@@ -24,14 +25,15 @@ namespace {
 // Returns the mask of --mask; empty() without it.
 Mask read_mask(const BuildOptions& o) {
     if (o.mask.empty()) return {};
-    const Image picture = read_image(o.mask, {}, o.limits);
+    const Image picture = read_image(o.mask, {.limits = o.read.limits});
     return in_file(o.mask, [&] { return image_mask(picture, static_cast<float>(o.alpha_threshold)); });
 }
 
-Report build_one(const Job& job, const BuildOptions& o, const Context& context, const Progress& progress) {
+Report build_one(const Job& job, const BuildOptions& o, const Context& context, const Progress& progress,
+                 std::vector<std::string>& warnings) {
     Stopwatch whole, stage;
     check_output(job.output, context.overwrite);
-    const Image image = read_image(job.input, o.color_space, o.limits);
+    const Image image = read_with_warnings(job.input, o.read, warnings);
     const bool cut = o.cut && o.mask.empty();
     Mask mask = cut ? alpha_mask(image, static_cast<float>(o.alpha_threshold)) : read_mask(o);
     const double read_seconds = stage.lap();
@@ -68,13 +70,15 @@ Report run(const BuildOptions& o, Context& context) {
 
     std::vector<Report> images(jobs.size());
     std::vector<std::optional<Failure>> failures(jobs.size());
+    std::vector<std::vector<std::string>> warnings(jobs.size());
     JointProgress progress(jobs.size(), context.progress);
     parallel_blocks(0, static_cast<int>(jobs.size()), 1, [&](int begin, int) {
         const auto i = static_cast<std::size_t>(begin);
         try {
-            images[i] = build_one(jobs[i], o, context, [&](double fraction, std::string_view stage) {
+            const auto show = [&](double fraction, std::string_view stage) {
                 progress.show(i, fraction, stage);
-            });
+            };
+            images[i] = build_one(jobs[i], o, context, show, warnings[i]);
         } catch (...) {
             // A bad image does not stop the others.
             failures[i] = current_failure();
@@ -85,6 +89,8 @@ Report run(const BuildOptions& o, Context& context) {
         }
         progress.show(i, 1, "done");
     });
+    for (const auto& list : warnings)
+        context.warnings.insert(context.warnings.end(), list.begin(), list.end());
     for (const std::optional<Failure>& failure : failures) {
         if (failure) context.failures.push_back(*failure);
     }

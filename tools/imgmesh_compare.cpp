@@ -16,6 +16,7 @@
 #include "tools/common/names.h"
 #include "tools/common/options.h"
 #include "tools/common/output.h"
+#include "tools/common/read_options.h"
 #include "tools/common/text.h"
 #include "tools/compare_report.h"
 
@@ -33,7 +34,7 @@ struct Options {
     std::vector<std::string> inputs;
     std::optional<DrawMode> mode;
     std::optional<std::int64_t> level;
-    std::optional<ColorSpace> color_space;
+    ReadImageOptions read;
     std::optional<double> tolerance;
     std::string error_image;
     std::optional<double> error_range;
@@ -50,8 +51,7 @@ void add_options(CLI::App& app, Options& o) {
     add_choice(app, "--mode", o.mode, mode_choices(), {"How a container is drawn", "map"});
     add_count(app, "--level", o.level, {0, std::numeric_limits<int>::max()},
               {"Level of a container's pyramid, 0 the finest", "0"});
-    add_choice(app, "--color-space", o.color_space, color_space_choices(),
-               "Colour space of the images, whatever their files say");
+    add_read_options(app, o.read);
     add_number(app, "--tolerance", o.tolerance, {0},
                {"Exit with code 7 if the RMS error in L*u*v* is larger", "none"});
     add_file(app, "--error-image", o.error_image,
@@ -70,7 +70,7 @@ void check_options(const Options& o) {
     if (!pair && !is_container(o.inputs[0]))
         refuse(cat(o.inputs[0], ": expected a second file, or a container (.glb, .gltf) alone"));
     for (const auto& [name, given] :
-         {std::pair{"--mode", o.mode.has_value()}, std::pair{"--color-space", o.color_space.has_value()},
+         {std::pair{"--mode", o.mode.has_value()}, std::pair{"--color-space", o.read.color_space.has_value()},
           std::pair{"--tolerance", o.tolerance.has_value()},
           std::pair{"--error-image", !o.error_image.empty()}})
         if (given && !pair) refuse(cat(name, ": expected two files to compare"));
@@ -78,7 +78,7 @@ void check_options(const Options& o) {
     const bool pictures = !std::all_of(o.inputs.begin(), o.inputs.end(), is_container);
     if ((o.mode || o.level) && !containers)
         refuse(cat(o.mode ? "--mode" : "--level", ": expected a container (.glb, .gltf) among the files"));
-    if (o.color_space && !pictures) refuse("--color-space: expected an image among the files");
+    if (o.read.color_space && !pictures) refuse("--color-space: expected an image among the files");
     if (o.error_range && o.error_image.empty()) refuse("--error-range: expected --error-image as well");
     if (!o.error_image.empty() && !can_write_image(o.error_image))
         refuse(cat("--error-image ", o.error_image, ": expected the name of an image, as in .png"));
@@ -97,8 +97,8 @@ struct Input {
     Report report;
 };
 
-Input load_picture(const std::string& path, const Options& o) {
-    Input input{{path}, read_image(path, o.color_space), {}, {}};
+Input load_picture(const std::string& path, const Options& o, std::vector<std::string>& warnings) {
+    Input input{{path}, read_with_warnings(path, o.read, warnings), {}, {}};
     if (!has_color(input.image))
         throw Error(ErrorKind::kUnsupported,
                     cat(path, ": the image has no colour: neither channels R, G, B nor Y"));
@@ -187,7 +187,8 @@ Report run(const Options& o, Context& context) {
     Report reports = Report::array();
     for (const std::string& path : o.inputs) {
         context.progress(0.3 * static_cast<double>(inputs.size()), "read");
-        inputs.push_back(is_container(path) ? load_container(path, o) : load_picture(path, o));
+        inputs.push_back(is_container(path) ? load_container(path, o)
+                                            : load_picture(path, o, context.warnings));
         check_distinct(inputs.back().files, {o.error_image, o.plot});
         reports.push_back(inputs.back().report);
     }

@@ -130,7 +130,7 @@ void keep_levels(const Options& o, MeshImage& m, Texture& texture) {
 }
 
 // Returns the texture of the meshes; `kept` is the existing one.
-Texture chosen_texture(const Options& o, const MeshImage& m, Texture kept) {
+Texture chosen_texture(const Options& o, const MeshImage& m, Texture kept, Context& context) {
     if (!o.texture.wanted) return kept;
     if (!*o.texture.wanted) return {};
     const SourceInfo& source = m.source;
@@ -141,7 +141,7 @@ Texture chosen_texture(const Options& o, const MeshImage& m, Texture kept) {
                         cat("--texture: ", o.input, " has no colour; --image names an image that has"));
         image = draw(m, 0, {});
     } else {
-        image = read_source_image(o.image, source, o.input);
+        image = read_source_image(o.image, source, o.input, {}, context.warnings);
     }
     Mask mask;
     if (source.has_mask) {
@@ -208,7 +208,7 @@ Report run(const Options& o, Context& context) {
     context.progress(0.5, "write");
     ContainerOptions options;
     if (is_container(o.output)) {
-        options.texture = chosen_texture(o, m, std::move(container.texture));
+        options.texture = chosen_texture(o, m, std::move(container.texture), context);
         keep_levels(o, m, options.texture);
         options.draco = o.draco.value_or(container.facts.draco);
         options.overwrite = context.overwrite;

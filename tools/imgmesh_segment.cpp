@@ -118,9 +118,10 @@ void check_options(const Options& o) {
     check_separate(outputs_of(o));
 }
 
-FeatureImage picture_of(const Options& o, const MeshImage& mesh_image, const Level& level) {
+FeatureImage picture_of(const Options& o, const MeshImage& mesh_image, const Level& level, Context& context) {
     if (o.image.empty()) return reconstruct_luv(level);
-    return luv_image(read_source_image(o.image, mesh_image.source, o.input), Range::kClipped);
+    return luv_image(read_source_image(o.image, mesh_image.source, o.input, {}, context.warnings),
+                     Range::kClipped);
 }
 
 // Calls segment(). Requests that cannot be met are reported in the words of the command line.
@@ -156,7 +157,7 @@ Report run(const Options& o, Context& context) {
     params.threshold = o.threshold.value_or(params.threshold);
     params.compactness = o.compactness.value_or(params.compactness);
     params.distance = o.distance.value_or(params.distance);
-    const FeatureImage picture = picture_of(o, mesh_image, level);
+    const FeatureImage picture = picture_of(o, mesh_image, level, context);
     const Segmentation result =
         segment_named(o, level, picture, params,
                       [&](double f, std::string_view stage) { context.progress(0.3 + 0.4 * f, stage); });

@@ -183,7 +183,7 @@ Report run(const Options& o, Context& context) {
     check_distinct(read, written_files(o));
     check_separate(written_files(o));
     std::optional<Image> image;
-    if (!o.image.empty()) image = read_source_image(o.image, source, o.input);
+    if (!o.image.empty()) image = read_source_image(o.image, source, o.input, {}, context.warnings);
 
     context.progress(0.3, "solve");
     const std::vector<VertexMoves> moves = solve(mesh_image, edits, o);

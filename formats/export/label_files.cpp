@@ -11,7 +11,6 @@
 #include "formats/files/extension.h"
 #include "formats/files/library_error.h"
 #include "formats/picture/image_io.h"
-#include "formats/picture/picture_decoders.h"
 #include "libcore/base/error.h"
 
 namespace imgmesh {

@@ -18,22 +18,35 @@ struct ImageLimits {
     int max_channels = 64;
 };
 
+/// How read_image() reads.
+struct ReadImageOptions {
+    std::optional<ColorSpace> color_space = {};  ///< none: what the file says
+    ImageLimits limits = {};
+};
+
+/// An image, and what a person should know of how it was read.
+struct ReadImage {
+    Image image;
+    std::vector<std::string> warnings;  ///< each one sentence without the file's name
+};
+
 /// Reads the first image (frame, layer, part) of a PNG, JPEG, TIFF, EXR, WebP, GIF, BMP, PNM, TGA, Radiance
 /// HDR, JPEG 2000 or HEIF file at full resolution, all channels. The content decides, not the name.
 ///
 /// 8 and 16 bit integers are scaled to [0, 1], half and float kept; 1-bit, palette, CMYK and YCbCr become
 /// grey or RGB(A); associated alpha is divided out; EXIF orientation is applied (width and height as a viewer
-/// shows them). Channel names are R G B A Y where that is what they are. The colour space is `color_space`,
-/// else what the file says (an ICC profile by what it does to colours, else the format's own means), else
-/// sRGB for integers and linear for floats. An EXR's image is its display window; pixels outside the data
-/// window are 0.
+/// shows them). Channel names are R G B A Y where that is what they are. The colour space is that of
+/// the options, else what the file says (an ICC profile by what it does to colours, else the format's own
+/// means), else sRGB for integers and linear for floats. An EXR's image is its display window; pixels outside
+/// the data window are 0.
 ///
 /// Throws Error: kIo if the file cannot be read; kBadFile for content that is no image, broken or
 /// truncated, over the limits, or with samples that are not finite; kUnsupported for what imgmesh has no use
 /// for (deep and subsampled EXR, camera raw, CIELAB, signed integers, EXR primaries other than Rec.709's
-/// unless `color_space` is given). Never aborts, whatever the bytes.
-Image read_image(const std::string& path, std::optional<ColorSpace> color_space = {},
-                 const ImageLimits& limits = {});
+/// unless a colour space is given). Never aborts, whatever the bytes.
+ReadImage read_image_file(const std::string& path, const ReadImageOptions& options = {});
+/// The image of read_image_file() alone, for callers who need no warnings.
+Image read_image(const std::string& path, const ReadImageOptions& options = {});
 
 /// How write_image() writes.
 struct WriteImageOptions {

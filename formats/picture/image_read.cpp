@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "formats/files/atomic_file.h"
+#include "formats/picture/decode/picture_decoders.h"
 #include "formats/picture/image_io.h"
-#include "formats/picture/picture_decoders.h"
 #include "libcore/base/error.h"
 
 namespace imgmesh {
@@ -72,36 +72,43 @@ void check_finite(const std::string& path, const Image& image) {
                     pixel % width, ", ", pixel / width, ") is not a finite number"));
 }
 
-DecodedPicture decode(const std::string& path, bool any_primaries, const ImageLimits& limits) {
+DecodedPicture decode(const std::string& path, const ReadImageOptions& options) {
+    const ImageLimits& limits = options.limits;
     // A device or a pipe has no size to check beforehand. No more is read than the pixels could need.
     constexpr std::uint64_t kOther = std::uint64_t{64} << 20;  // profiles, previews, metadata
     const std::uint64_t most = kOther + static_cast<std::uint64_t>(limits.max_pixels) *
                                             static_cast<std::uint64_t>(limits.max_channels) * sizeof(float);
     std::vector<std::uint8_t> bytes = read_file(path, std::min(kMaxFileBytes, most));
-    const PictureClaim claim = probe_picture(path, bytes);
-    switch (claim.format) {
+    const PictureFile file{path, bytes, probe_picture(path, bytes), options};
+    switch (file.claim.format) {
         case PictureFormat::kExr:
-            return decode_exr(path, bytes, limits, any_primaries);
+            return decode_exr(file);
         case PictureFormat::kWebp:
-            return decode_webp(path, bytes, limits);
+            return decode_webp(file);
         case PictureFormat::kPng:
-            return decode_png(path, bytes, claim, limits);
+            return decode_png(file);
         default:
-            return decode_with_oiio(path, bytes, claim, limits);
+            return decode_with_oiio(file);
     }
 }
 
 }  // namespace
 
-Image read_image(const std::string& path, std::optional<ColorSpace> color_space, const ImageLimits& limits) {
-    DecodedPicture picture = decode(path, color_space.has_value(), limits);
+ReadImage read_image_file(const std::string& path, const ReadImageOptions& options) {
+    DecodedPicture picture = decode(path, options);
     if (picture.associated_alpha) divide_alpha_out(picture.image);
     check_finite(path, picture.image);
-    Image image = displayed(std::move(picture.image), picture.orientation);
-    const bool integers = image.sample_type == SampleType::kUint8 || image.sample_type == SampleType::kUint16;
+    const std::optional<ColorSpace> stated = stated_color_space(picture.color, picture.image);
+    ReadImage out{displayed(std::move(picture.image), picture.orientation), std::move(picture.warnings)};
+    const bool integers =
+        out.image.sample_type == SampleType::kUint8 || out.image.sample_type == SampleType::kUint16;
     const ColorSpace usual = integers ? ColorSpace::kSrgb : ColorSpace::kLinear;
-    image.color_space = color_space.value_or(picture.color_space.value_or(usual));
-    return image;
+    out.image.color_space = options.color_space.value_or(stated.value_or(usual));
+    return out;
+}
+
+Image read_image(const std::string& path, const ReadImageOptions& options) {
+    return read_image_file(path, options).image;
 }
 
 }  // namespace imgmesh

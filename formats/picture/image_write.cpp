@@ -8,10 +8,10 @@
 
 #include "formats/files/atomic_file.h"
 #include "formats/files/extension.h"
-#include "formats/picture/icc_profile.h"
+#include "formats/picture/color/icc_profile.h"
+#include "formats/picture/encode/picture_encoders.h"
 #include "formats/picture/image_io.h"
 #include "formats/picture/oiio_module.h"
-#include "formats/picture/picture_decoders.h"
 #include "formats/picture/sample_codes.h"
 #include "libcore/base/error.h"
 #include "libcore/image/color.h"

@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
+#include "formats/picture/decode/picture_probe.h"
 #include "formats/picture/image_io.h"
 #include "formats/picture/image_text.h"
-#include "formats/picture/picture_probe.h"
 
 namespace imgmesh {
 

@@ -107,7 +107,7 @@ bool feed(Target target, std::span<const std::uint8_t> bytes) {
     const MemoryFile file(bytes);
     ImageLimits limits;
     limits.max_pixels = 1 << 22;
-    return accepts([&] { read_image(file.path(), {}, limits); });
+    return accepts([&] { read_image(file.path(), {.limits = limits}); });
 }
 
 std::vector<Bytes> seeds(Target target) {

@@ -7,7 +7,7 @@
 #include <random>
 #include <vector>
 
-#include "formats/picture/icc_profile.h"
+#include "formats/picture/color/icc_profile.h"
 
 using namespace imgmesh;
 using Bytes = std::vector<std::uint8_t>;

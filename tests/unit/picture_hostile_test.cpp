@@ -7,8 +7,8 @@
 
 #include <cstring>
 
+#include "formats/picture/decode/picture_probe.h"
 #include "formats/picture/image_io.h"
-#include "formats/picture/picture_probe.h"
 #include "tests/support/picture_files.h"
 #include "tests/support/temporary_folder.h"
 
@@ -89,7 +89,7 @@ TEST_CASE("hostile: flipped bytes give an error or an image of a permitted size"
             save(folder / name, bytes);
             Image read;
             const std::optional<ErrorKind> code =
-                error_of([&] { read = read_image(folder / name, {}, limits); });
+                error_of([&] { read = read_image(folder / name, {.limits = limits}); });
             CHECK((code == std::nullopt || code == ErrorKind::kBadFile || code == ErrorKind::kUnsupported));
             if (code != std::nullopt) continue;
             CHECK(read.data.size() == read.pixel_count() * static_cast<std::size_t>(read.channels));
@@ -126,7 +126,7 @@ TEST_CASE("hostile: random bytes, alone and behind every signature, are no image
                 INFO(signature << " round " << round << " " << name);
                 save(folder / name, bytes);
                 const std::optional<ErrorKind> code =
-                    error_of([&] { read_image(folder / name, {}, limits); });
+                    error_of([&] { read_image(folder / name, {.limits = limits}); });
                 // Any bytes are a TGA; its sizes and types seldom are.
                 const bool may = name == "r.tga" && signature.empty();
                 CHECK((code == ErrorKind::kBadFile || code == ErrorKind::kUnsupported || may));
@@ -223,7 +223,7 @@ TEST_CASE("hostile: limits are the caller's") {
         INFO(name);
         sample_file(folder, name);  // 64x48 RGB
         const auto with = [&](std::int64_t pixels, int side, int channels) {
-            return error_of([&] { read_image(folder / name, {}, {pixels, side, channels}); });
+            return error_of([&] { read_image(folder / name, {.limits = {pixels, side, channels}}); });
         };
         // HEIF claims the size of its coding blocks, here 64x64.
         CHECK(with(name == "a.heic" ? 64 * 64 : 64 * 48, 64, 4) == std::nullopt);

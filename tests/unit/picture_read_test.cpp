@@ -10,7 +10,7 @@
 
 #include <limits>
 
-#include "formats/picture/icc_profile.h"
+#include "formats/picture/color/icc_profile.h"
 #include "formats/picture/image_io.h"
 #include "tests/support/picture_files.h"
 #include "tests/support/temporary_folder.h"
@@ -164,7 +164,8 @@ TEST_CASE("read: the colour space is the caller's, else the profile's, else the 
                                icc.data());
             });
             CHECK(read_image(folder / name).color_space == space);
-            CHECK(read_image(folder / name, ColorSpace::kRec709).color_space == ColorSpace::kRec709);
+            CHECK(read_image(folder / name, {.color_space = ColorSpace::kRec709}).color_space ==
+                  ColorSpace::kRec709);
         }
     }
     const auto with_gamma = [&](float gamma) {
@@ -362,7 +363,7 @@ TEST_CASE("read: what an EXR can hold and an image cannot") {
     CHECK(error_of([&] { read_image(folder / "u.exr"); }) == ErrorKind::kUnsupported);
     write(Imf::Channel(Imf::FLOAT), true);
     CHECK(error_of([&] { read_image(folder / "u.exr"); }) == ErrorKind::kUnsupported);
-    CHECK(read_image(folder / "u.exr", ColorSpace::kLinear).data[0] == 1);
+    CHECK(read_image(folder / "u.exr", {.color_space = ColorSpace::kLinear}).data[0] == 1);
 }
 
 TEST_CASE("read: the first sample that is no number is named") {

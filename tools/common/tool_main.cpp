@@ -105,6 +105,10 @@ void print_error(const std::string& tool, const std::string& message) {
     std::cerr << tool << ": error: " << printable_line(message) << std::endl;
 }
 
+void print_warning(const std::string& tool, const std::string& message) {
+    std::cerr << tool << ": warning: " << printable_line(message) << std::endl;
+}
+
 // The exit code of failures that did not stop the run.
 ExitCode joint_code(const std::vector<Failure>& failures) {
     if (failures.empty()) return ExitCode::kOk;
@@ -124,8 +128,10 @@ ExitCode run_parsed(const Tool& tool, const CommonOptions& common) {
     const ThreadLimit limit(common.threads.value_or(hardware_threads()));
     Report report = {{"$schema", tool.name + ".report.schema.json"}, {"generator", context.generator}};
     report.update(tool.run(context));
+    if (!context.warnings.empty()) report["warnings"] = context.warnings;
     bar.clear();
 
+    for (const std::string& warning : context.warnings) print_warning(tool.name, warning);
     for (const Failure& f : context.failures) print_error(tool.name, f.message);
     std::ostringstream text;
     if (common.json) {

@@ -34,6 +34,9 @@ struct Context {
     std::string generator;  ///< "imgmesh-build 0.1.0"
     bool overwrite = true;  ///< of --overwrite, --no-overwrite
     Progress progress;      ///< never empty; may be called from any thread
+    /// What did not stop the run, but what its user should know, with the file's name. Each becomes a warning
+    /// line and an element of the report's "warnings".
+    std::vector<std::string> warnings;
     /// Mistakes that did not stop the run. Each becomes an error line, in this order. They decide the exit
     /// code: their common code, or kBadFile if they differ.
     std::vector<Failure> failures;

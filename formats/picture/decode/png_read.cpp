@@ -7,10 +7,9 @@
 #include <cstring>
 #include <memory>
 
-#include "formats/picture/exif.h"
-#include "formats/picture/picture_decoders.h"
+#include "formats/picture/decode/exif.h"
+#include "formats/picture/decode/picture_decoders.h"
 #include "formats/picture/sample_codes.h"
-#include "formats/picture/stated_color.h"
 #include "libcore/base/error.h"
 
 namespace imgmesh {
@@ -89,7 +88,8 @@ StatedColor stated_color(const State& s) {
     int method = 0;
     png_bytep profile = nullptr;
     png_uint_32 length = 0;
-    if (png_get_iCCP(s.png, s.info, &name, &method, &profile, &length)) stated.icc = {profile, length};
+    if (png_get_iCCP(s.png, s.info, &name, &method, &profile, &length))
+        stated.icc.assign(profile, profile + length);
     double encoding = 0;
     int intent = 0;
     if (png_get_sRGB(s.png, s.info, &intent))
@@ -101,14 +101,15 @@ StatedColor stated_color(const State& s) {
 
 }  // namespace
 
-DecodedPicture decode_png(const std::string& path, std::span<const std::uint8_t> bytes,
-                          const PictureClaim& claim, const ImageLimits& limits) {
-    check_size(path, claim.width, claim.height, 1, limits);
+DecodedPicture decode_png(const PictureFile& file) {
+    const std::string& path = file.path;
+    const ImageLimits& limits = file.options.limits;
+    check_size(path, file.claim.width, file.claim.height, 1, limits);
     State s;
     const auto broken = [&] {
         return Error(ErrorKind::kBadFile, cat(path, ": cannot read the image: ", one_line(s.error)));
     };
-    s.left = bytes;
+    s.left = file.bytes;
     s.png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &s, on_error, on_warning);
     if (s.png) s.info = png_create_info_struct(s.png);
     if (!s.info) throw std::bad_alloc();
@@ -128,7 +129,7 @@ DecodedPicture decode_png(const std::string& path, std::span<const std::uint8_t>
     png_bytep exif = nullptr;
     png_uint_32 length = 0;
     if (png_get_eXIf_1(s.png, s.info, &length, &exif)) out.orientation = exif_orientation({exif, length});
-    out.color_space = stated_color_space(stated_color(s), out.image);
+    out.color = stated_color(s);
     return out;
 }
 

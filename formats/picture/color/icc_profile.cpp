@@ -1,5 +1,5 @@
 // ICC profiles through Little CMS. Source of the header's layout: ICC.1:2010 (4.3), section 7.2.
-#include "formats/picture/icc_profile.h"
+#include "formats/picture/color/icc_profile.h"
 
 #include <lcms2.h>
 

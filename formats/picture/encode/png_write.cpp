@@ -11,8 +11,8 @@
 #include <string_view>
 
 #include "formats/files/byte_writer.h"
-#include "formats/picture/icc_profile.h"
-#include "formats/picture/picture_decoders.h"
+#include "formats/picture/color/icc_profile.h"
+#include "formats/picture/encode/picture_encoders.h"
 #include "formats/picture/sample_codes.h"
 #include "libcore/base/error.h"
 #include "libcore/base/parallel.h"

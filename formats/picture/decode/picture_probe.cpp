@@ -1,7 +1,7 @@
 // Sources: the formats' specifications - PNG (ISO/IEC 15948, 5 and 11), JPEG (ITU T.81, annex B), GIF89a
 // (18), BMP (BITMAPCOREHEADER, BITMAPINFOHEADER), Truevision TGA 2.0, JPEG 2000
 // (T.800, A.5.1), HEIF (ISO/IEC 23008-12, `ispe`).
-#include "formats/picture/picture_probe.h"
+#include "formats/picture/decode/picture_probe.h"
 
 #include <libdeflate.h>
 

@@ -1,4 +1,4 @@
-#include "formats/picture/exif.h"
+#include "formats/picture/decode/exif.h"
 
 #include <string_view>
 

@@ -3,17 +3,17 @@
 
 #include <cstdint>
 #include <optional>
-#include <span>
-#include <string_view>
+#include <string>
+#include <vector>
 
 #include "libcore/image/image.h"
 
 namespace imgmesh {
 
 struct StatedColor {
-    std::span<const std::uint8_t> icc = {};  ///< a profile; empty for none
-    float gamma = 0;                         ///< linear = value^gamma; 0 if not stated
-    std::string_view name = {};              ///< of a colour space; empty for none
+    std::vector<std::uint8_t> icc;  ///< a profile; empty for none
+    float gamma = 0;                ///< linear = value^gamma; 0 if not stated
+    std::string name;               ///< of a colour space; empty for none
 };
 
 /// Returns the profile's colour space, else the gamma's, else that of the name; nothing if none of them is

@@ -5,42 +5,21 @@
 #include <OpenEXR/ImfHeader.h>
 #include <OpenEXR/ImfInputPart.h>
 #include <OpenEXR/ImfMultiPartInputFile.h>
-#include <OpenEXR/ImfOutputFile.h>
 #include <OpenEXR/ImfPartType.h>
 #include <OpenEXR/ImfStandardAttributes.h>
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <string_view>
 
 #include "formats/exr/exr_opaque.h"
 #include "formats/exr/memory_input.h"
 #include "formats/files/library_error.h"
-#include "formats/picture/picture_decoders.h"
+#include "formats/picture/decode/picture_decoders.h"
 #include "libcore/base/error.h"
 
 namespace imgmesh {
 namespace {
-
-using Bytes = std::span<const std::uint8_t>;
-
-class MemoryOutput : public Imf::OStream {
-  public:
-    MemoryOutput() : OStream("memory") {}
-    void write(const char* in, int count) override {
-        const auto n = static_cast<std::size_t>(count);
-        if (at_ + n > bytes.size()) bytes.resize(at_ + n);
-        std::memcpy(bytes.data() + at_, in, n);
-        at_ += n;
-    }
-    std::uint64_t tellp() override { return at_; }
-    void seekp(std::uint64_t at) override { at_ = at; }
-    std::vector<std::uint8_t> bytes;
-
-  private:
-    std::uint64_t at_ = 0;
-};
 
 std::int64_t length(int first, int last) {
     return std::int64_t{last} - first + 1;
@@ -105,15 +84,15 @@ void check_part(const std::string& path, const Imf::Header& header, const ImageL
 
 }  // namespace
 
-DecodedPicture decode_exr(const std::string& path, std::span<std::uint8_t> bytes, const ImageLimits& limits,
-                          bool any_primaries) {
-    make_attributes_opaque(path, bytes);
+DecodedPicture decode_exr(const PictureFile& picture) {
+    const std::string& path = picture.path;
+    make_attributes_opaque(path, picture.bytes);
     return translate_errors(ErrorKind::kBadFile, cat(path, ": cannot read the EXR"), [&] {
-        MemoryInput stream(path.c_str(), bytes);
+        MemoryInput stream(path.c_str(), picture.bytes);
         Imf::MultiPartInputFile file(stream, /*numThreads=*/0, /*reconstructChunkOffsetTable=*/false);
         const Imf::Header& header = file.header(0);
-        check_part(path, header, limits);
-        if (!any_primaries) check_primaries(path, header);
+        check_part(path, header, picture.options.limits);
+        if (!picture.options.color_space) check_primaries(path, header);
 
         const Imath::Box2i &shown = header.displayWindow(), &stored = header.dataWindow();
         DecodedPicture out;
@@ -149,40 +128,6 @@ DecodedPicture decode_exr(const std::string& path, std::span<std::uint8_t> bytes
         }
         return out;
     });
-}
-
-std::vector<std::uint8_t> encode_exr(const Image& image, SampleType type) {
-    const auto channels = static_cast<std::size_t>(image.channels);
-    const auto width = static_cast<std::size_t>(image.width);
-    std::vector<Imath::half> halves;
-    if (type == SampleType::kHalf) {
-        halves.reserve(image.data.size());
-        // A half holds no number above 65504 except infinity, which nothing reads.
-        for (const float value : image.data) halves.emplace_back(std::clamp(value, -65504.0f, 65504.0f));
-    }
-
-    Imf::Header header(image.width, image.height, 1, {0, 0}, 1, Imf::INCREASING_Y, Imf::ZIP_COMPRESSION);
-    Imf::FrameBuffer buffer;
-    const auto insert = [&](std::size_t c, Imf::PixelType pixel_type, const auto* data) {
-        const std::size_t stride = channels * sizeof(*data);
-        header.channels().insert(image.channel_names[c], Imf::Channel(pixel_type));
-        buffer.insert(image.channel_names[c], Imf::Slice::Make(pixel_type, data + c, {0, 0}, image.width,
-                                                               image.height, stride, stride * width));
-    };
-    for (std::size_t c = 0; c < channels; ++c) {
-        if (halves.empty())
-            insert(c, Imf::FLOAT, image.data.data());
-        else
-            insert(c, Imf::HALF, halves.data());
-    }
-
-    MemoryOutput stream;
-    {
-        Imf::OutputFile file(stream, header, /*numThreads=*/0);
-        file.setFrameBuffer(buffer);
-        file.writePixels(image.height);
-    }  // writes the table of offsets
-    return std::move(stream.bytes);
 }
 
 }  // namespace imgmesh

@@ -1,8 +1,8 @@
-#include "formats/picture/stated_color.h"
+#include "formats/picture/color/stated_color.h"
 
 #include <cmath>
 
-#include "formats/picture/icc_profile.h"
+#include "formats/picture/color/icc_profile.h"
 #include "libcore/image/color.h"
 
 namespace imgmesh {

@@ -1,0 +1,41 @@
+// Shared by read_image()'s decoders. A decoder turns the bytes of a file into samples; read_image() does the
+// rest (alpha, colour, orientation, finite samples) for all of them.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "formats/files/one_line.h"
+#include "formats/picture/color/stated_color.h"
+#include "formats/picture/decode/picture_probe.h"
+#include "libcore/image/image.h"
+
+namespace imgmesh {
+
+/// A file to decode. What it refers to must outlive it.
+struct PictureFile {
+    const std::string& path;
+    std::span<std::uint8_t> bytes;  ///< decode_exr() changes them (see exr_opaque.h)
+    PictureClaim claim;
+    const ReadImageOptions& options;
+};
+
+struct DecodedPicture {
+    Image image;  ///< as stored; its color_space is not set
+    bool associated_alpha = false;
+    int orientation = 1;  ///< of EXIF, 1 to 8
+    StatedColor color;    ///< what the file says about its colours
+    std::vector<std::string> warnings;
+};
+
+/// Each throws Error(kBadFile) for broken or truncated content and sizes over the limits, before memory is
+/// taken for the pixels, and kUnsupported for kinds of images that imgmesh does not use.
+DecodedPicture decode_with_oiio(const PictureFile& file);
+DecodedPicture decode_png(const PictureFile& file);
+DecodedPicture decode_webp(const PictureFile& file);
+/// If the options name a colour space, chromaticities other than Rec.709's are no error.
+DecodedPicture decode_exr(const PictureFile& file);
+
+}  // namespace imgmesh

@@ -1,0 +1,18 @@
+// Shared by write_image()'s encoders.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "libcore/image/image.h"
+
+namespace imgmesh {
+
+/// Each returns the bytes of a file of an image that is ready for it. EXR: `image` is linear with associated
+/// alpha, `type` kHalf or kFloat. WebP: sRGB, 8 bit, lossless, at most 16383 pixels a side. PNG: one to four
+/// channels, RGB in any colour space, `type` kUint8 or kUint16.
+std::vector<std::uint8_t> encode_exr(const Image& image, SampleType type);
+std::vector<std::uint8_t> encode_webp(const Image& image);
+std::vector<std::uint8_t> encode_png(const Image& image, SampleType type);
+
+}  // namespace imgmesh
