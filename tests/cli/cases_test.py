@@ -1,0 +1,83 @@
+"""Small images with traits that programs are known to get wrong, and the right outcome of each.
+
+They lie beside the checkout, in shared/cases/pictures; without that folder nothing is tested here. READ says what an
+image looks like, REFUSED which one line refuses it. A new kind is a new row."""
+import pathlib
+from typing import Callable, NamedTuple
+
+import numpy as np
+
+import picture_files
+from support import ROOT, CliCase, main
+
+FOLDER = next((p for p in (parent / "shared/cases/pictures" for parent in ROOT.parents) if p.is_dir()), None)
+
+
+def rgba(path):
+    """The image as RGBA with 8 bits, by another reader."""
+    samples = np.round(picture_files.read(path) * 255).astype(int)
+    if samples.shape[2] < 3:
+        samples = np.concatenate([np.repeat(samples[..., :1], 3, axis=-1), samples[..., 1:]], axis=-1)
+    if samples.shape[2] < 4:
+        samples = np.concatenate([samples, np.full_like(samples[..., :1], 255)], axis=-1)
+    return samples
+
+
+def truth():
+    return rgba(FOLDER / "truth.png")
+
+
+def truth_alpha():
+    return rgba(FOLDER / "truth-alpha.png")
+
+
+class Read(NamedTuple):
+    """A file, the RGBA codes that it must give, how far they may be off, and options of imgmesh-build."""
+    name: str
+    expected: Callable = truth
+    tolerance: int = 0
+    args: tuple = ()
+
+
+class Refused(NamedTuple):
+    """A file, the exit code, words of the one error line, and options of imgmesh-build."""
+    name: str
+    code: int
+    words: tuple
+    args: tuple = ()
+
+
+READ = (
+    Read("truth.png"),
+    Read("truth-alpha.png", truth_alpha),
+    Read("F13-picture.png"),
+)
+
+REFUSED = ()
+
+
+class Cases(CliCase):
+    def read_back(self, name, *args):
+        """The image as imgmesh has read it: with every vertex kept, the container draws it back exactly."""
+        self.build(FOLDER / name, "--faces", "100000", *args)
+        self.run_ok("imgmesh-reconstruct", "out.glb", "-o", "back.png", "--overwrite")
+        return rgba(self.folder / "back.png")
+
+    def test_read(self):
+        for case in READ if FOLDER else ():
+            with self.subTest(case.name):
+                expected, back = case.expected(), self.read_back(case.name, *case.args)
+                self.assertEqual(back.shape, expected.shape)
+                visible = expected[..., 3] > 0  # a container keeps no colour where nothing is seen
+                off = np.abs(back - expected)
+                self.assertLessEqual(off[..., 3].max(), case.tolerance, "alpha")
+                self.assertLessEqual(off[visible].max(), case.tolerance, "colour")
+
+    def test_refused(self):
+        for case in REFUSED if FOLDER else ():
+            self.assert_error("imgmesh-build", (FOLDER / case.name, "-o", "out.glb", *case.args), case.code,
+                              pathlib.Path(case.name).name, *case.words)
+
+
+if __name__ == "__main__":
+    main()
