@@ -78,6 +78,14 @@ void print_difference(const Report& d, std::ostream& out) {
     if (d["in_one_only"] != 0) pixels += cat("; ", d["in_one_only"], " are transparent in one of the two");
     table.add("pixels", pixels);
     table.add("L*u*v*", cat("RMS ", number(d["rms_luv"]), ", largest ", number(d["max_luv"])));
+    if (d["max_alpha"] != 0) {
+        table.add("alpha",
+                  cat("RMS ", number(d["rms_alpha"]), ", largest ", number(d["max_alpha"]), " of 1"));
+    }
+    if (d["rms_visible"] != d["rms_luv"]) {
+        table.add("visible", cat("RMS ", number(d["rms_visible"]), ", largest ", number(d["max_visible"]),
+                                 " in L*u*v* over black or white"));
+    }
     table.add("RGB", cat("RMS ", number(d["rms_rgb"]), ", largest ", number(d["max_rgb"]), " of 1, in ",
                          d["color_space"].get<std::string>()));
     table.add("PSNR",
@@ -131,6 +139,10 @@ Report difference_report(const ImageDifference& difference, const Distribution& 
             {"color_space", color_space_name(difference.color_space)},
             {"rms_luv", difference.rms_luv},
             {"max_luv", difference.max_luv},
+            {"rms_visible", difference.rms_visible},
+            {"max_visible", difference.max_visible},
+            {"rms_alpha", difference.rms_alpha},
+            {"max_alpha", difference.max_alpha},
             {"rms_rgb", difference.rms_rgb},
             {"max_rgb", difference.max_rgb},
             {"psnr", difference.psnr},

@@ -52,10 +52,12 @@ void add_options(CLI::App& app, Options& o) {
     add_count(app, "--level", o.level, {0, std::numeric_limits<int>::max()},
               {"Level of a container's pyramid, 0 the finest", "0"});
     add_read_options(app, o.read);
-    add_number(app, "--tolerance", o.tolerance, {0},
-               {"Exit with code 7 if the RMS error in L*u*v* is larger", "none"});
+    add_number(
+        app, "--tolerance", o.tolerance, {0},
+        {"Exit with code 7 if the RMS error in L*u*v* of what one sees, alpha included, is larger", "none"});
     add_file(app, "--error-image", o.error_image,
-             "Image to write of the errors in L*u*v*, from black for none over blue, red and orange to "
+             "Image to write of the errors in L*u*v*, alpha included, from black for none over blue, red and "
+             "orange to "
              "white");
     add_number(app, "--error-range", o.error_range, {0, kNoLimit, true},
                {"Error that the error image shows as white", cat(kErrorRange)});
@@ -143,11 +145,7 @@ ImageDifference compare_inputs(const Input& a, const Input& b, const Options& o)
     if (size(a.image) != size(b.image))
         throw Error(ErrorKind::kBadFile, cat(o.inputs[0], " has ", size(a.image), " pixels, ", o.inputs[1],
                                              " has ", size(b.image), "; expected the same size"));
-    ImageDifference difference = compare_images(a.image, b.image);
-    if (difference.pixels == 0)
-        throw Error(ErrorKind::kBadFile,
-                    cat(o.inputs[0], " and ", o.inputs[1], ": no pixel is visible in both"));
-    return difference;
+    return compare_images(a.image, b.image);
 }
 
 // panels: those of the errors of two files, or empty; the containers' measures are added.
@@ -207,14 +205,14 @@ Report run(const Options& o, Context& context) {
             report["difference"]["channels"][name] = {{"rms", rms}, {"max", max}};
     }
     if (o.tolerance) {
-        const bool within = difference->rms_luv <= *o.tolerance;
+        const bool within = difference->rms_visible <= *o.tolerance;
         report["tolerance"] = *o.tolerance;
         report["within_tolerance"] = within;
         if (!within)
             context.failures.push_back(
-                {ExitCode::kDifferent,
-                 cat(o.inputs[0], " and ", o.inputs[1], " differ: RMS ", format_number(difference->rms_luv),
-                     " in L*u*v*, more than --tolerance ", *o.tolerance)});
+                {ExitCode::kDifferent, cat(o.inputs[0], " and ", o.inputs[1], " differ: RMS ",
+                                           format_number(difference->rms_visible),
+                                           " in L*u*v*, more than --tolerance ", *o.tolerance)});
     }
 
     context.progress(0.9, "write");
@@ -225,7 +223,7 @@ Report run(const Options& o, Context& context) {
     if (!o.error_image.empty()) {
         const double range = o.error_range.value_or(kErrorRange);
         write_image(o.error_image,
-                    error_image(difference->luv, inputs[0].image.width, inputs[0].image.height, range),
+                    error_image(difference->visible, inputs[0].image.width, inputs[0].image.height, range),
                     {context.overwrite, {}});
         report["error_image"] = o.error_image;
         report["error_range"] = range;

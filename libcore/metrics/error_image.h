@@ -13,7 +13,7 @@ Vec3f error_color(double share);
 
 /// Draws one value a pixel (width * height, rows from top to bottom) as an 8-bit sRGB image. 0 is black,
 /// `range` and more is white. NaN (no value) is a dull green, which the scale does not have. range > 0.
-/// ImageDifference::luv holds such values.
+/// ImageDifference::visible holds such values.
 Image error_image(std::span<const float> error, int width, int height, double range);
 
 }  // namespace imgmesh

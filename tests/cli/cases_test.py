@@ -47,6 +47,13 @@ class Refused(NamedTuple):
     args: tuple = ()
 
 
+class Compared(NamedTuple):
+    """A file against another, and whether imgmesh-compare must find it different at a tolerance of 0."""
+    name: str
+    other: str
+    differs: bool
+
+
 READ = (
     Read("truth.png"),
     Read("truth-alpha.png", truth_alpha),
@@ -54,6 +61,13 @@ READ = (
 )
 
 REFUSED = ()
+
+COMPARED = (
+    Compared("truth-alpha.png", "F07-no-hole.png", True),
+    Compared("truth-alpha.png", "F07-opaque.png", False),
+    Compared("F07-opaque.png", "F07-alpha1of255.png", True),
+    Compared("F07-no-hole.png", "truth.png", False),
+)
 
 
 class Cases(CliCase):
@@ -77,6 +91,14 @@ class Cases(CliCase):
         for case in REFUSED if FOLDER else ():
             self.assert_error("imgmesh-build", (FOLDER / case.name, "-o", "out.glb", *case.args), case.code,
                               pathlib.Path(case.name).name, *case.words)
+
+    def test_compared(self):
+        for case in COMPARED if FOLDER else ():
+            for pair in ((case.name, case.other), (case.other, case.name)):
+                with self.subTest(pair):
+                    files = [FOLDER / name for name in pair]
+                    found = self.report("imgmesh-compare", *files, "--tolerance", "0", code=7 if case.differs else 0)
+                    self.assertEqual(found["difference"]["max_alpha"] > 0, case.differs)
 
 
 if __name__ == "__main__":

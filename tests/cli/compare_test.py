@@ -152,21 +152,50 @@ class Compare(CliCase):
         picture_files.png(self.folder / "rgb.png", np.repeat(grey, 3, axis=-1))
         self.assertEqual(self.compare("grey.png", "rgb.png")["rms_luv"], 0)
 
-    def test_transparent_pixels_do_not_count(self):
+    def test_colour_figures_leave_out_transparent_pixels_and_the_tolerance_does_not(self):
         rgba = np.concatenate([picture_files.ramp(48, 32), np.ones((32, 48, 1))], axis=-1)
         rgba[:, :8, 3] = 0
         rgba[:, :8, :3] = 0.5
         picture_files.png(self.folder / "cut.png", rgba)
-        found = self.compare("a.png", "cut.png", "--tolerance", "0")
+        found = self.compare("a.png", "cut.png", "--tolerance", "0", code=7)
         self.assertEqual((found["pixels"], found["in_one_only"]), (40 * 32, 8 * 32))
-        self.assertIn("transparent", self.run_ok(TOOL, "a.png", "cut.png").stdout)
-        self.run_ok(TOOL, "a.png", "cut.png", "--error-image", "e.png")
+        self.assertEqual((found["rms_luv"], found["max_alpha"]), (0, 1))
+        self.assertAlmostEqual(found["rms_alpha"], np.sqrt(8 / 48))
+        over = [luv_of(picture_files.read(self.folder / "cut.png")[..., :3] * rgba[..., 3:] + ground * (1 - rgba[..., 3:]))
+                - luv_of(self.a) for ground in (0, 1)]
+        self.assertAlmostEqual(found["rms_visible"], max(np.sqrt(np.mean((o ** 2).sum(-1))) for o in over), delta=0.02)
+        text = self.run_ok(TOOL, "a.png", "cut.png").stdout
+        for word in ("transparent", "alpha", "visible"):
+            self.assertIn(word, text)
+        self.run_ok(TOOL, "cut.png", "cut.png", "--error-image", "e.png")
         image = picture_files.read(self.folder / "e.png")
         self.assertTrue((image[:, :8, 1] > image[:, :8, 0]).all())
         self.assertEqual(image[:, 8:].max(), 0)
         rgba[..., 3] = 0
         picture_files.png(self.folder / "nothing.png", rgba)
-        self.assert_error(TOOL, ["a.png", "nothing.png"], 4, "a.png", "nothing.png", "visible")
+        found = self.compare("a.png", "nothing.png", "--tolerance", "0", code=7)
+        self.assertEqual((found["pixels"], found["rms_luv"]), (0, None))
+        self.run_ok(TOOL, "a.png", "nothing.png")
+        rgba[..., :3] = 0.25
+        picture_files.png(self.folder / "nothing2.png", rgba)
+        self.compare("nothing.png", "nothing2.png", "--tolerance", "0")
+
+    def test_one_step_of_alpha_counts(self):
+        """Whatever the colour below: grey differs over both grounds, black over white, white over black."""
+        for grey in (0, 0.5, 1):
+            rgba = np.full((4, 5, 4), float(grey))
+            rgba[..., 3] = 1
+            picture_files.png(self.folder / "full.png", rgba)
+            picture_files.png(self.folder / "rgb.png", rgba[..., :3])
+            self.compare("full.png", "rgb.png", "--tolerance", "0")
+            for was, step in ((1, 254 / 255), (0.2, 50 / 255), (0, 1 / 255)):
+                rgba[1, 2, 3] = was
+                picture_files.png(self.folder / "was.png", rgba)
+                rgba[1, 2, 3] = step
+                picture_files.png(self.folder / "step.png", rgba)
+                found = self.compare("was.png", "step.png", "--tolerance", "0", code=7)
+                self.assertAlmostEqual(found["max_alpha"], 1 / 255, places=6)
+                self.assertLess(found["rms_visible"], 0.2)
 
     def test_error_image(self):
         """Its lightness is the error: L* = 100 error / range."""

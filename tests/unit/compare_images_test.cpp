@@ -45,7 +45,7 @@ TEST_CASE("compare_images: hand-made differences") {
     CHECK(d.psnr == Approx(20 * std::log10(std::sqrt(6.0) / 0.6)));
     CHECK(d.max_rgb == Approx(0.6));
 
-    Image grey = make_image(2, 1, 2);  // alpha does not count
+    Image grey = make_image(2, 1, 2);  // colours do not depend on alpha
     grey.pixel(0, 0)[1] = 1;
     CHECK(compare_images(a, grey).rms_rgb == 0);
     CHECK_THROWS_AS(compare_images(a, make_image(1, 2, 3)), Error);
@@ -113,6 +113,51 @@ TEST_CASE("compare_images: wholly transparent pixels do not count, others do") {
     CHECK(std::isnan(d.ciede2000[1]));
     CHECK(d.luv[2] > 0);
     CHECK(d.luv[3] == 0);
+}
+
+// White at alpha 1/2 over black is the encoded grey 1/2, over white it is white: the black ground counts.
+TEST_CASE("compare_images: alpha counts by what one sees over black or white") {
+    Image a = make_image(2, 1, 4), b;
+    a.data = {1, 1, 1, 1, 1, 1, 1, 1};
+    b = a;
+    b.pixel(1, 0)[3] = 0.5f;
+    const double grey = luv_from_linear(linear_from_encoded(ColorSpace::kSrgb, Vec3f(0.5f, 0.5f, 0.5f)))[0];
+    ImageDifference d = compare_images(a, b);
+    CHECK(d.rms_luv == 0);
+    CHECK(d.max_visible == Approx(100 - grey));
+    CHECK(d.rms_visible == Approx((100 - grey) / std::sqrt(2.0)));
+    CHECK(d.max_alpha == Approx(0.5));
+    CHECK(d.rms_alpha == Approx(0.5 / std::sqrt(2.0)));
+    CHECK(compare_images(b, a).rms_visible == d.rms_visible);
+    CHECK(compare_images(make_image(2, 1, 3), a).max_alpha == 0);  // no alpha is opaque
+
+    for (int c = 0; c < 3; ++c) a.pixel(1, 0)[c] = b.pixel(1, 0)[c] = 0;  // black shows over white
+    d = compare_images(a, b);
+    CHECK(d.max_visible == Approx(grey));
+    b.pixel(1, 0)[3] = 254.0f / 255;  // one step
+    CHECK(compare_images(a, b).rms_visible > 0);
+
+    // A colour that nobody sees is none; a pixel in one only differs by all of what is seen.
+    a.pixel(1, 0)[3] = b.pixel(1, 0)[3] = 0;
+    b.pixel(1, 0)[0] = 1;
+    d = compare_images(a, b);
+    CHECK(d.rms_visible == 0);
+    CHECK(d.visible[0] == 0);
+    CHECK(std::isnan(d.visible[1]));
+    b.pixel(0, 0)[3] = 0;
+    d = compare_images(a, b);
+    CHECK(d.pixels == 0);
+    CHECK(std::isnan(d.rms_luv));
+    CHECK(d.max_visible == Approx(100));
+    CHECK(d.rms_visible == Approx(100));  // of the one pixel that is seen at all
+}
+
+TEST_CASE("compare_images: opaque pixels are seen as they are") {
+    const Image a = random_image(9, 7, 3, 7), b = random_image(9, 7, 3, 8);
+    const ImageDifference d = compare_images(a, b);
+    CHECK(d.rms_visible == d.rms_luv);
+    CHECK(d.max_visible == d.max_luv);
+    CHECK(d.visible == d.luv);
 }
 
 TEST_CASE("compare_images: an image without colour is refused") {
