@@ -178,7 +178,7 @@ json parse(std::string_view text, const std::string& name, const EditLimits& lim
     json document;
     std::string refusal;
     try {
-        document = parse_json(text, limits.max_json_depth, findings);
+        document = parse_json(text, {limits.max_json_depth, limits.max_json_values}, findings);
         // In a container a duplicate member is a warning; here one of the two would be lost.
         for (const Issue& issue : findings.issues())
             if (issue.finding->code == std::string_view("json.duplicate")) refusal = issue.text;

@@ -13,6 +13,7 @@ namespace imgmesh {
 struct EditLimits {
     std::uint64_t max_bytes = std::uint64_t{16} << 20;
     int max_json_depth = 16;
+    std::size_t max_json_values = std::size_t{1} << 21;  ///< objects, arrays, numbers, ...
 };
 
 /// Reads a file of edits. Every `where` becomes the path and a JSON pointer: "edits.json: /edits/0/pins/1".

@@ -295,7 +295,7 @@ void read_buffer(const json& document, Asset& asset) {
 }  // namespace
 
 Asset asset_from_json(std::string_view text, const ContainerLimits& limits, Findings& findings) {
-    const json document = parse_json(text, limits.max_json_depth, findings);
+    const json document = parse_json(text, {.max_depth = limits.max_json_depth}, findings);
     if (!document.is_object()) refuse("gltf.structure", "the document is not a JSON object");
     findings.attempt("/asset", [&] { check_version(document); });
     check_required(document, findings);

@@ -239,6 +239,11 @@ TEST_CASE("refusals: bytes, chunks, depth and limits") {
 
     write_text(path, "{\"asset\": " + std::string(100000, '[') + std::string(100000, ']') + "}");
     CHECK(refusal(path) == "json.depth");
+    // Empty objects are the smallest JSON that takes the most memory.
+    std::string objects = "{\"nodes\": [{}";
+    for (int n = 0; n < 300000; ++n) objects += ",{}";
+    write_text(path, objects + "]}");
+    CHECK(refusal(path) == "limits.json");
     write_text(path, "{\"asset\": {\"version\": \"2.0\xFF\"}}");
     CHECK(refusal(path) == "json.syntax");
     // Some readers stop at a zero, others continue.
