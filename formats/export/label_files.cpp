@@ -7,6 +7,7 @@
 
 #include <algorithm>
 
+#include "formats/exr/memory_output.h"
 #include "formats/files/atomic_file.h"
 #include "formats/files/extension.h"
 #include "formats/files/library_error.h"
@@ -22,15 +23,17 @@ template <typename Value>
 void write_layer(const std::string& path, const std::string& channel, Imf::PixelType type, int width,
                  int height, std::span<const Value> values, bool overwrite) {
     AtomicFile target(path, overwrite);
+    MemoryOutput memory;
     translate_errors(ErrorKind::kIo, cat(path, ": cannot write the EXR"), [&] {
         Imf::Header header(width, height, 1, {0, 0}, 1, Imf::INCREASING_Y, Imf::ZIP_COMPRESSION);
         header.channels().insert(channel, Imf::Channel(type));
         Imf::FrameBuffer buffer;
         buffer.insert(channel, Imf::Slice::Make(type, values.data(), {0, 0}, width, height));
-        Imf::OutputFile file(target.temporary_path().c_str(), header, /*numThreads=*/0);
+        Imf::OutputFile file(memory, header, /*numThreads=*/0);
         file.setFrameBuffer(buffer);
         file.writePixels(height);
     });
+    target.write(memory.bytes);
     target.commit();
 }
 

@@ -7,6 +7,7 @@
 #include <OpenEXR/ImfOutputPart.h>
 #include <OpenEXR/ImfPartType.h>
 
+#include "formats/exr/memory_output.h"
 #include "formats/files/atomic_file.h"
 #include "formats/files/library_error.h"
 #include "libcore/base/error.h"
@@ -44,13 +45,15 @@ void write_part(Imf::MultiPartOutputFile& file, int number, const Image& image) 
 
 void write_exr_parts(const std::string& path, const std::vector<NamedImage>& parts, bool overwrite) {
     AtomicFile target(path, overwrite);
+    MemoryOutput memory;
     translate_errors(ErrorKind::kIo, cat(path, ": cannot write"), [&] {
         std::vector<Imf::Header> headers;
         for (const NamedImage& part : parts) headers.push_back(header_of(part, parts.front().image));
-        Imf::MultiPartOutputFile file(target.temporary_path().c_str(), headers.data(),
-                                      static_cast<int>(headers.size()), false, /*numThreads=*/0);
+        Imf::MultiPartOutputFile file(memory, headers.data(), static_cast<int>(headers.size()), false,
+                                      /*numThreads=*/0);
         for (std::size_t i = 0; i < parts.size(); ++i) write_part(file, static_cast<int>(i), parts[i].image);
     });
+    target.write(memory.bytes);
     target.commit();
 }
 

@@ -5,32 +5,11 @@
 #include <OpenEXR/ImfOutputFile.h>
 
 #include <algorithm>
-#include <cstring>
 
+#include "formats/exr/memory_output.h"
 #include "formats/picture/encode/picture_encoders.h"
 
 namespace imgmesh {
-namespace {
-
-class MemoryOutput : public Imf::OStream {
-  public:
-    MemoryOutput() : OStream("memory") {}
-    void write(const char* in, int count) override {
-        const auto n = static_cast<std::size_t>(count);
-        if (at_ + n > bytes.size()) bytes.resize(at_ + n);
-        std::memcpy(bytes.data() + at_, in, n);
-        at_ += n;
-    }
-    std::uint64_t tellp() override { return at_; }
-    void seekp(std::uint64_t at) override { at_ = at; }
-    std::vector<std::uint8_t> bytes;
-
-  private:
-    std::uint64_t at_ = 0;
-};
-
-}  // namespace
-
 std::vector<std::uint8_t> encode_exr(const Image& image, SampleType type) {
     const auto channels = static_cast<std::size_t>(image.channels);
     const auto width = static_cast<std::size_t>(image.width);
