@@ -1,6 +1,7 @@
 #include "formats/files/atomic_file.h"
 
 #include <fcntl.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -9,6 +10,7 @@
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
+#include <ctime>
 #include <filesystem>
 #include <system_error>
 #include <utility>
@@ -136,6 +138,21 @@ AtomicFile::AtomicFile(std::string path, bool overwrite)
     remove_stale_temporaries(std::filesystem::path(target_).parent_path().string());
     claim_ = create_temporary(target_, temporary_path_);
     if (claim_ < 0) fail(path_, "cannot write", errno);
+    if (overwrite_) share_as(target_);
+}
+
+void AtomicFile::share_as(const std::string& path) {
+    struct stat info = {}, own = {};
+    if (::stat(path.c_str(), &info) != 0 || ::fstat(claim_, &own) != 0) return;
+    mode_t mode = info.st_mode & 0777;
+    if (info.st_uid != own.st_uid || info.st_gid != own.st_gid) {
+        // Only root can give a file away; everybody can share it with the groups that he is in.
+        const bool is_shared =
+            ::fchown(claim_, info.st_uid, info.st_gid) == 0 || ::fchown(claim_, uid_t(-1), info.st_gid) == 0;
+        const mode_t others = mode & 07;
+        if (!is_shared) mode = (mode & ~mode_t{070}) | ((mode & 070) & (others << 3));
+    }
+    ::fchmod(claim_, mode);  // a file system without permissions refuses, and needs none
 }
 
 AtomicFile::~AtomicFile() {
@@ -147,11 +164,10 @@ AtomicFile::~AtomicFile() {
 }
 
 void AtomicFile::write_parts(std::span<const std::span<const std::uint8_t>> parts) {
-    const Descriptor file(::open(temporary_path_.c_str(), O_WRONLY | O_TRUNC | O_CLOEXEC));
-    if (file.fd < 0) fail(path_, "cannot write", errno);
+    if (::ftruncate(claim_, 0) != 0 || ::lseek(claim_, 0, SEEK_SET) != 0) fail(path_, "cannot write", errno);
     for (std::span<const std::uint8_t> bytes : parts)
         while (!bytes.empty()) {
-            const ssize_t n = ::write(file.fd, bytes.data(), bytes.size());
+            const ssize_t n = ::write(claim_, bytes.data(), bytes.size());
             if (n < 0 && errno == EINTR) continue;
             if (n < 0) fail(path_, "cannot write", errno);
             bytes = bytes.subspan(static_cast<std::size_t>(n));
@@ -175,10 +191,10 @@ void AtomicFile::keep() {
 }
 
 void AtomicFile::flush_and_rename() {
-    {
-        const Descriptor file(::open(temporary_path_.c_str(), O_WRONLY | O_CLOEXEC));
-        if (file.fd < 0 || ::fsync(file.fd) != 0) fail(path_, "cannot write", errno);
-    }
+    if (::fsync(claim_) != 0) fail(path_, "cannot write", errno);
+    if (!is_named(claim_, temporary_path_))
+        throw Error(ErrorKind::kIo,
+                    cat(path_, ": cannot write: somebody has exchanged the file ", temporary_path_));
     int status = 0;
     if (overwrite_) {
         status = ::rename(temporary_path_.c_str(), target_.c_str());
@@ -219,14 +235,35 @@ void remove_temporaries_on_signals() {
     }
 }
 
-std::vector<std::uint8_t> read_file(const std::string& path, std::uint64_t max_bytes) {
+FolderLock::FolderLock(const std::string& folder)
+    : fd_(::open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
+    constexpr timespec kStep = {0, 10'000'000};  // 10 ms
+    constexpr int kSteps = 3000;
+    // Who holds a lock forever may delay others, but not stop them.
+    for (int n = 0; fd_ >= 0 && n < kSteps && ::flock(fd_, LOCK_EX | LOCK_NB) != 0; ++n) {
+        if (errno != EWOULDBLOCK && errno != EINTR) return;
+        ::nanosleep(&kStep, nullptr);
+    }
+}
+
+FolderLock::~FolderLock() {
+    if (fd_ >= 0) ::close(fd_);
+}
+
+std::vector<std::uint8_t> read_file(const std::string& path, std::uint64_t max_bytes, FileKind kind) {
     const auto too_long = [&] {
         return Error(ErrorKind::kBadFile, cat(path, ": longer than the limit of ", max_bytes, " bytes"));
     };
-    const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+    // Opening a named pipe waits for its writer, unless it is not to block.
+    const int wait = kind == FileKind::kRegular ? O_NONBLOCK : 0;
+    const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOCTTY | wait));
     struct stat info = {};
     if (file.fd < 0 || ::fstat(file.fd, &info) != 0) fail(path, "cannot read", errno);
     if (S_ISDIR(info.st_mode)) fail(path, "cannot read", EISDIR);
+    const bool is_pipe = S_ISFIFO(info.st_mode) && kind == FileKind::kStream;
+    if (!S_ISREG(info.st_mode) && !is_pipe)
+        throw Error(ErrorKind::kIo, cat(path, ": cannot read: it is not a regular file",
+                                        kind == FileKind::kStream ? " or a pipe" : ""));
     if (S_ISREG(info.st_mode) && static_cast<std::uint64_t>(info.st_size) > max_bytes) throw too_long();
 
     // With one byte more than the size, the last read() sees the end without another call; pipes have size 0.

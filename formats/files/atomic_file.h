@@ -23,9 +23,11 @@ class AtomicFile {
     AtomicFile(const AtomicFile&) = delete;
     AtomicFile& operator=(const AtomicFile&) = delete;
 
-    /// The file to write, for libraries that want a file name; it ends with the extension of `path`.
-    const std::string& temporary_path() const { return temporary_path_; }
-    /// Replaces the temporary file's content.
+    /// Gives the file the permissions and the group of `path`, if there is such a file: a replaced file keeps
+    /// its own without this call. A group that this process cannot give gets no more than everybody has.
+    void share_as(const std::string& path);
+    /// Replaces the temporary file's content, through the descriptor that has created it: who exchanges the
+    /// file under its name gets nothing, and commit() throws Error(kIo).
     void write(std::span<const std::uint8_t> bytes) { write_parts({&bytes, 1}); }
     /// The same for several parts, one after the other.
     void write_parts(std::span<const std::span<const std::uint8_t>> parts);
@@ -41,7 +43,7 @@ class AtomicFile {
     std::string path_;    ///< as given: for messages
     std::string target_;  ///< the target of the rename: `path_` with symbolic links followed
     std::string temporary_path_;
-    int claim_ = -1;  ///< a descriptor that holds the claim to the temporary file
+    int claim_ = -1;  ///< the descriptor of the temporary file, which also holds the claim to its name
     bool overwrite_;
     bool kept_ = false;
 };
@@ -63,7 +65,29 @@ class SignalBlocker {
 /// process as usual. Signals that the process already ignores or handles are left alone.
 void remove_temporaries_on_signals();
 
-/// Reads a whole file. Throws Error(kIo) if it cannot be read, Error(kBadFile) if longer than `max_bytes`.
-std::vector<std::uint8_t> read_file(const std::string& path, std::uint64_t max_bytes);
+/// While one lives, the other FolderLocks of the folder wait, of this process and of others, half a minute at
+/// most: for changes of several files that belong together. Where a file system has no locks, it does
+/// nothing.
+class FolderLock {
+  public:
+    explicit FolderLock(const std::string& folder);
+    ~FolderLock();
+    FolderLock(const FolderLock&) = delete;
+    FolderLock& operator=(const FolderLock&) = delete;
+
+  private:
+    int fd_;
+};
+
+/// What read_file() opens.
+enum class FileKind {
+    kStream,  ///< a regular file, a pipe or a named pipe
+    kRegular  ///< a regular file alone: a name that comes from another file must not block or never end
+};
+
+/// Reads a whole file. Throws Error(kIo) if it cannot be read or is of another kind, such as a device;
+/// Error(kBadFile) if longer than `max_bytes`.
+std::vector<std::uint8_t> read_file(const std::string& path, std::uint64_t max_bytes,
+                                    FileKind kind = FileKind::kStream);
 
 }  // namespace imgmesh

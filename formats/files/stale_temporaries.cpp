@@ -66,6 +66,10 @@ bool is_new(const struct stat& folder) {
 bool claim_temporary(int fd, const std::string& path) {
     while (::flock(fd, LOCK_EX) != 0)
         if (errno != EINTR) return true;  // there are no locks here, so nobody else gets one either
+    return is_named(fd, path);
+}
+
+bool is_named(int fd, const std::string& path) {
     struct stat opened = {}, named = {};
     return ::fstat(fd, &opened) == 0 && ::lstat(path.c_str(), &named) == 0 && same_file(opened, named);
 }

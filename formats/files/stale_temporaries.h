@@ -14,6 +14,9 @@ inline constexpr const char* kTemporaryPrefix = ".imgmesh-";
 /// name.
 bool claim_temporary(int fd, const std::string& path);
 
+/// Returns whether `path` still names the open file, itself and not through a link.
+bool is_named(int fd, const std::string& path);
+
 /// Removes from `folder` what killed runs have left: regular files of this user, untouched for an hour, with
 /// the name of a temporary file that no living run has claimed. The claim is a lock (flock). The process
 /// number in the name would mean nothing where containers or machines share the folder. The hour is for file

@@ -1,6 +1,7 @@
 #include "formats/files/atomic_file.h"
 
 #include <doctest/doctest.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 #include <optional>
@@ -41,8 +42,6 @@ TEST_CASE("atomic file: appears with commit, and without it nothing stays") {
         file.write(Bytes{1, 2, 3, 4});
         file.write(Bytes{5, 6});  // replaces
         CHECK_FALSE(fs::exists(path));
-        CHECK(fs::path(file.temporary_path()).extension() == ".txt");
-        CHECK(fs::path(file.temporary_path()).parent_path() == folder.path());
         file.commit();
     }
     CHECK(read_file(path, 100) == Bytes{5, 6});
@@ -82,6 +81,45 @@ TEST_CASE("atomic file: devices, folders and missing folders are refused, links 
     CHECK(read_file(target, 1) == Bytes{9});
 }
 
+TEST_CASE("atomic file: a replaced file keeps its permissions, a new one may be shared like another") {
+    const TemporaryFolder folder;
+    const std::string path = folder / "x", other = folder / "y";
+    const auto mode = [](const std::string& file) { return fs::status(file).permissions(); };
+    AtomicFile(path, true).commit();
+    for (const auto wanted : {fs::perms(0640), fs::perms(0600), fs::perms(0444), fs::perms(0666)}) {
+        fs::permissions(path, wanted);
+        AtomicFile(path, true).commit();
+        CHECK(mode(path) == wanted);
+        AtomicFile file(other, true);
+        file.share_as(path);
+        file.commit();
+        CHECK(mode(other) == wanted);
+        fs::remove(other);
+    }
+    struct stat info = {};
+    if (::geteuid() == 0 && ::chown(path.c_str(), 0, 33) == 0) {
+        AtomicFile(path, true).commit();
+        REQUIRE(::stat(path.c_str(), &info) == 0);
+        CHECK(info.st_gid == 33);
+    }
+}
+
+TEST_CASE("atomic file: a temporary that somebody exchanges is neither written nor kept") {
+    const TemporaryFolder folder;
+    const std::string path = folder / "x", target = folder / "target";
+    AtomicFile(target, true).commit();
+    AtomicFile file(path, true);
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder.path()))
+        if (entry.path() != target) {
+            fs::remove(entry.path());
+            fs::create_symlink(target, entry.path());
+        }
+    file.write(Bytes{1, 2, 3});
+    CHECK(code_of([&] { file.commit(); }) == ErrorKind::kIo);
+    CHECK(read_file(target, 10).empty());
+    CHECK_FALSE(fs::exists(path));
+}
+
 TEST_CASE("atomic file: a killed process leaves nothing behind") {
     for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
         const TemporaryFolder folder;
@@ -111,5 +149,9 @@ TEST_CASE("read_file: limits and errors") {
     file.commit();
     CHECK(code_of([&] { read_file(folder / "x", 10); }) == ErrorKind::kBadFile);
     CHECK(read_file(folder / "x", 11).size() == 11);
-    CHECK(code_of([&] { read_file("/dev/zero", 1000); }) == ErrorKind::kBadFile);
+    CHECK(code_of([&] { read_file("/dev/zero", 1000); }) == ErrorKind::kIo);
+    // Opening a named pipe without a writer would wait.
+    const std::string pipe = folder / "pipe";
+    REQUIRE(::mkfifo(pipe.c_str(), 0600) == 0);
+    CHECK(code_of([&] { read_file(pipe, 1000, FileKind::kRegular); }) == ErrorKind::kIo);
 }
