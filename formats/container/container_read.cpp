@@ -27,9 +27,9 @@ class FileReader {
   public:
     explicit FileReader(std::uint64_t max_bytes) : left_(max_bytes) {}
 
-    Bytes read(const std::string& path) {
+    Bytes read(const std::string& path, FileKind kind) {
         try {
-            Bytes bytes = read_file(path, left_);
+            Bytes bytes = read_file(path, left_, kind);
             left_ -= bytes.size();
             total_ += bytes.size();
             names_.push_back(path);
@@ -145,14 +145,15 @@ void read_texture(const Asset& asset, View buffer, Findings& findings, Container
 Container read(const std::string& path, const ContainerLimits& limits, Findings& findings) {
     const std::filesystem::path folder = std::filesystem::path(path).parent_path();
     FileReader files(limits.max_bytes);
-    const Bytes main = files.read(path);
+    const Bytes main = files.read(path, FileKind::kStream);
     GlbView glb{{reinterpret_cast<const char*>(main.data()), main.size()}, {}};
     if (is_glb(main)) glb = unpack_glb(main, findings);
     Asset asset = asset_from_json(glb.json, limits, findings);
 
     Bytes buffer_file, layer_file;
     View buffer = glb.binary, layers;
-    if (!asset.buffer_name.empty()) buffer = buffer_file = files.read((folder / asset.buffer_name).string());
+    if (!asset.buffer_name.empty())
+        buffer = buffer_file = files.read((folder / asset.buffer_name).string(), FileKind::kRegular);
     const bool is_whole = asset.has_buffer && findings.attempt("/buffers/0", [&] {
         if (asset.buffer_length > buffer.size())
             refuse("gltf.buffer",
@@ -164,7 +165,7 @@ Container read(const std::string& path, const ContainerLimits& limits, Findings&
                      cat("the buffer has ", buffer.size(), " bytes, its byteLength is ", asset.buffer_length),
                      at_pointer("/buffers/0/byteLength"));
     if (!asset.layers_name.empty())
-        layers = layer_file = files.read((folder / asset.layers_name).string());
+        layers = layer_file = files.read((folder / asset.layers_name).string(), FileKind::kRegular);
     else if (is_whole && asset.has_layers)
         layers = cut(buffer, asset.layers);
 

@@ -101,6 +101,8 @@ void write_glb(const std::string& path, Asset& asset, const std::vector<std::uin
 // done.
 void write_gltf(const std::string& path, Asset& asset, const std::vector<std::uint8_t>& buffer,
                 const std::vector<std::uint8_t>& layers, const ContainerOptions& options) {
+    // Another writer of the same name waits: each finds the other's files whole, and leaves none behind.
+    const FolderLock lock(std::filesystem::path(path).parent_path().string());
     const std::vector<std::string> old_files = sidecars_of(path);
     // Declared first, so it ends after the files below: a useless one must be removed before a signal.
     std::optional<SignalBlocker> switch_over;

@@ -4,8 +4,8 @@
 #include <filesystem>
 #include <system_error>
 
+#include "formats/container/container.h"
 #include "formats/files/sha256.h"
-#include "formats/gltf/gltf_asset.h"
 #include "libcore/base/error.h"
 
 namespace fs = std::filesystem;
@@ -25,7 +25,7 @@ bool has_content(const fs::path& path, std::span<const std::uint8_t> bytes) {
     if (!fs::is_regular_file(path, error) || fs::file_size(path, error) != bytes.size() || error)
         return false;
     try {
-        const std::vector<std::uint8_t> found = read_file(path.string(), bytes.size());
+        const std::vector<std::uint8_t> found = read_file(path.string(), bytes.size(), FileKind::kRegular);
         return std::equal(found.begin(), found.end(), bytes.begin(), bytes.end());
     } catch (const Error&) {
         return false;  // it cannot be read, or is growing: somebody else's
@@ -56,6 +56,7 @@ SidecarFile::SidecarFile(const std::string& path, const std::string& extension,
     name_ = target.filename().string();
     if (stands) return;
     file_ = std::make_unique<AtomicFile>(target.string(), /*overwrite=*/false);
+    file_->share_as(path);
     file_->write(bytes);
 }
 
@@ -70,12 +71,9 @@ void SidecarFile::keep() {
 std::vector<std::string> sidecars_of(const std::string& path) {
     std::vector<std::string> files;
     try {
-        constexpr std::uint64_t kMaxJsonBytes = 1 << 24;  // ours have a few kilobytes
-        const std::vector<std::uint8_t> bytes = read_file(path, kMaxJsonBytes);
-        const Asset asset = asset_from_json({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, {});
-        for (const std::string& name : {asset.buffer_name, asset.layers_name})
-            if (!name.empty() && is_sidecar_name(path, name))
-                files.push_back((fs::path(path).parent_path() / name).string());
+        // Reads the meshes and the layers: a reader accepts them only with the hashes that belong together.
+        files = read_container(path).facts.files;
+        std::erase_if(files, [&](const std::string& file) { return !is_sidecar_name(path, file); });
     } catch (const std::exception&) {
         // There is no file, or no container that a reader accepts.
     }

@@ -15,7 +15,7 @@ namespace imgmesh {
 /// another file has that name, so it replaces nothing. An existing file with the same content is used again.
 class SidecarFile {
   public:
-    /// Writes the content under a temporary name. Throws Error(kIo).
+    /// Writes the content under a temporary name, for those who may read `path`. Throws Error(kIo).
     SidecarFile(const std::string& path, const std::string& extension, std::span<const std::uint8_t> bytes);
 
     const std::string& name() const { return name_; }  ///< without the folder
@@ -28,8 +28,10 @@ class SidecarFile {
     std::unique_ptr<AtomicFile> file_;  ///< null if a file with the content exists already
 };
 
-/// Returns the files, with the folder, that the container `path` (a .gltf) refers to and that a SidecarFile
-/// of it may have written. Returns none if there is no container that a reader accepts.
+/// Returns the files, with the folder, that belong to the container `path` (a .gltf) alone: they have names
+/// that a SidecarFile may have given them, and they are its buffer and its layers by the hashes of all their
+/// meshes. Returns none if there is no container that a reader accepts: what a .gltf merely names may be
+/// anybody's.
 std::vector<std::string> sidecars_of(const std::string& path);
 
 }  // namespace imgmesh

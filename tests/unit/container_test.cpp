@@ -3,8 +3,10 @@
 #include <doctest/doctest.h>
 #include <optional>
 
+#include <atomic>
 #include <filesystem>
 #include <map>
+#include <thread>
 
 #include "formats/container/validate.h"
 #include "formats/files/atomic_file.h"
@@ -308,6 +310,65 @@ TEST_CASE("container: usage and files that are there already") {
     for (const std::string& file : {files[1], files[2]}) CHECK_FALSE(fs::exists(file));
     CHECK(bytes_of(folder / "photo.exr").empty());
     CHECK_THROWS_AS(read_container(folder / "missing.glb"), Error);
+}
+
+TEST_CASE("container: files that a .gltf merely names are not removed") {
+    const TemporaryFolder folder;
+    const MeshImage image = random_mesh_image(9, 9, 1, WeightPrecision::kHalf, false, 3);
+    const auto put = [&](const char* name, const std::vector<std::uint8_t>& bytes) {
+        AtomicFile file(folder / name, true);
+        file.write(bytes);
+        file.commit();
+    };
+    // The container's own .bin and .exr are exchanged for a person's files, and for those of another
+    // container.
+    write_container(folder / "photo.gltf", image, {});
+    write_container(folder / "other.gltf", random_mesh_image(9, 9, 1, WeightPrecision::kHalf, false, 4), {});
+    put("photo.bin", {1, 2, 3});
+    write_container(folder / "photo.gltf", image, {});
+    CHECK(bytes_of(folder / "photo.bin") == std::vector<std::uint8_t>{1, 2, 3});
+    put("photo.bin", bytes_of(folder / "other.bin"));
+    put("photo.exr", bytes_of(folder / "other.exr"));
+    const auto others = bytes_of(folder / "photo.exr");
+    write_container(folder / "photo.gltf", image, {});
+    CHECK(bytes_of(folder / "photo.exr") == others);
+    CHECK(read_container(folder / "photo.gltf").mesh_image.levels.size() == image.levels.size());
+}
+
+TEST_CASE("container: writers of one .gltf at the same time all succeed and leave one container") {
+    const TemporaryFolder folder;
+    std::vector<std::thread> writers;
+    std::atomic<int> failed = 0;
+    for (std::uint32_t seed = 3; seed < 9; ++seed)
+        writers.emplace_back([&, seed] {
+            const MeshImage image = random_mesh_image(9, 9, 1, WeightPrecision::kHalf, false, seed);
+            for (int n = 0; n < 5; ++n) {
+                try {
+                    write_container(folder / "x.gltf", image, {});
+                } catch (const Error&) {
+                    ++failed;
+                }
+            }
+        });
+    for (std::thread& writer : writers) writer.join();
+    CHECK(failed == 0);
+    CHECK_NOTHROW(read_container(folder / "x.gltf"));
+    CHECK(std::distance(fs::directory_iterator(folder.path()), fs::directory_iterator()) == 3);
+}
+
+TEST_CASE("container: a channel's name without a byte of value 0") {
+    const TemporaryFolder folder;
+    MeshImage image = random_mesh_image(9, 9, 1, WeightPrecision::kHalf, false, 3);
+    write_container(folder / "x.gltf", image, {});
+    const auto bytes = bytes_of(folder / "x.gltf");
+    std::string json(bytes.begin(), bytes.end());
+    const std::size_t at = json.find("\"R\"");
+    REQUIRE(at != std::string::npos);
+    json.replace(at, 3, "\"R\\u0000\"");
+    AtomicFile file(folder / "x.gltf", true);
+    file.write({reinterpret_cast<const std::uint8_t*>(json.data()), json.size()});
+    file.commit();
+    CHECK_THROWS_AS(read_container(folder / "x.gltf"), Error);
 }
 
 TEST_CASE("container: the writer refuses parts that do not fit each other") {
