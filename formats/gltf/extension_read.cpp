@@ -22,6 +22,7 @@ void check_channels(const std::vector<std::string>& names) {
     for (const std::string& name : names) {
         if (name.empty() || name.size() > kMaxName)
             refuse_names(cat("a channel's name has ", name.size(), " bytes, expected 1 to ", kMaxName));
+        if (name.find('\0') != std::string::npos) refuse_names("a channel's name holds a byte of value 0");
         if (std::ranges::count(names, name) > 1) refuse_names(cat("two channels have the name ", name));
     }
     const int features = split_names(names).features();

@@ -46,7 +46,11 @@ std::string uri_from_name(const std::string& name) {
 
 std::string name_from_uri(const std::string& uri) {
     const auto fail = [&] {
-        refuse("uri.name", cat("the URI \"", uri, "\" is not the bare name of a file beside"));
+        constexpr std::size_t kShown = 60;  // a data URI holds a whole file
+        refuse("uri.name", uri.size() <= kShown
+                               ? cat("the URI \"", uri, "\" is not the bare name of a file beside")
+                               : cat("a URI of ", uri.size(), " bytes, \"", uri.substr(0, kShown),
+                                     "...\", is not the bare name of a file beside"));
     };
     std::string name;
     for (std::size_t i = 0; i < uri.size(); ++i) {
