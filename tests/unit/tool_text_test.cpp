@@ -16,6 +16,20 @@ TEST_CASE("printable_line: printable text stays, everything else is escaped byte
     CHECK(printable_line("\u0085\u2028\u2029") == "\\xc2\\x85\\xe2\\x80\\xa8\\xe2\\x80\\xa9");
 }
 
+TEST_CASE("printable_line: no name turns the direction of text or looks like another") {
+    CHECK(printable_line("a\u202Egnp.exe") == "a\\xe2\\x80\\xaegnp.exe");
+    for (const char* mark : {"\u061C", "\u200E", "\u202A", "\u2066", "\u2069", "\uFEFF", "\U000E0041"})
+        CHECK(printable_line(mark).starts_with("\\x"));
+    CHECK(printable_line("👩\u200D🚀") == "👩\u200D🚀");
+}
+
+TEST_CASE("printable_text and printable_json: lines stay, JSON means the same") {
+    CHECK(printable_text("a\x1b\n\nb\x07") == "a\\x1b\n\nb\\x07");
+    CHECK(printable_text("a\n") == "a\n");
+    CHECK(printable_json("{\n\"\u009B\": \"\u202E\U000E0041ü\"}") ==
+          "{\n\"\\u009b\": \"\\u202e\\udb40\\udc41ü\"}");
+}
+
 // Each of these is refused by the table of well-formed UTF-8 for another reason.
 TEST_CASE("printable_line: ill-formed UTF-8") {
     CHECK(printable_line("\xff!") == "\\xff!");

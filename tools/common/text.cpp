@@ -6,6 +6,7 @@
 #include <iomanip>
 #include <ostream>
 #include <sstream>
+#include <string_view>
 
 namespace imgmesh {
 namespace {
@@ -33,38 +34,78 @@ std::size_t utf8_length(const std::string& text, std::size_t i, std::uint32_t& c
                                                                                                    : length;
 }
 
+// Controls of terminals, and what changes the direction or the lines of the text around it (Unicode Standard
+// Annex 9): a name could look like another one.
 bool is_printable(std::uint32_t code) {
-    return code >= 0x20 && !(code >= 0x7F && code < 0xA0) && code != 0x2028 && code != 0x2029;
+    const auto among = [code](std::uint32_t first, std::uint32_t last) {
+        return code >= first && code <= last;
+    };
+    return !(among(0, 0x1F) || among(0x7F, 0x9F) || code == 0x61C || among(0x200E, 0x200F) ||
+             among(0x2028, 0x202E) || among(0x2066, 0x2069) || among(0xFFF9, 0xFFFB) || code == 0xFEFF ||
+             among(0xE0000, 0xE007F));
+}
+
+std::string escape(const char* format, std::uint32_t number) {
+    std::array<char, 8> text{};
+    std::snprintf(text.data(), text.size(), format, number);
+    return text.data();
+}
+
+// Replaces what is not printable by what `replace` makes of its code point (0 if it is not UTF-8) and its
+// bytes.
+template <typename Replace>
+std::string escaped(const std::string& text, Replace&& replace) {
+    std::string out;
+    for (std::size_t i = 0; i < text.size();) {
+        std::uint32_t code = 0;
+        const std::size_t length = utf8_length(text, i, code);
+        const std::size_t step = std::max<std::size_t>(length, 1);
+        if (length > 0 && is_printable(code))
+            out.append(text, i, length);
+        else
+            out += replace(length > 0 ? code : 0, std::string_view(text).substr(i, step));
+        i += step;
+    }
+    return out;
 }
 
 }  // namespace
 
 std::string printable_line(const std::string& text) {
-    std::string line;
+    return escaped(text, [](std::uint32_t, std::string_view bytes) {
+        std::string line;
+        for (const char byte : bytes) line += escape("\\x%02x", static_cast<std::uint8_t>(byte));
+        return line;
+    });
+}
+
+std::string printable_text(const std::string& text) {
+    std::string lines;
     for (std::size_t i = 0; i < text.size();) {
-        std::uint32_t code = 0;
-        const std::size_t length = utf8_length(text, i, code);
-        const std::size_t step = std::max<std::size_t>(length, 1);
-        if (length > 0 && is_printable(code)) {
-            line.append(text, i, length);
-        } else {
-            for (std::size_t k = i; k < i + step; ++k) {
-                std::array<char, 5> escape{};
-                std::snprintf(escape.data(), escape.size(), "\\x%02x", static_cast<std::uint8_t>(text[k]));
-                line += escape.data();
-            }
-        }
-        i += step;
+        const std::size_t end = std::min(text.find('\n', i), text.size());
+        lines += printable_line(text.substr(i, end - i));
+        if (end < text.size()) lines += '\n';
+        i = end + 1;
     }
-    return line;
+    return lines;
+}
+
+std::string printable_json(const std::string& json) {
+    return escaped(json, [](std::uint32_t code, std::string_view bytes) {
+        if (code == '\n') return std::string(bytes);
+        if (code < 0x10000) return escape("\\u%04x", code);
+        constexpr std::uint32_t kLead = 0xD800 - (0x10000 >> 10), kTrail = 0xDC00;
+        return escape("\\u%04x", kLead + (code >> 10)) + escape("\\u%04x", kTrail + (code & 0x3FF));
+    });
 }
 
 void TextTable::print(std::ostream& out, int indent) const {
     std::size_t width = 0;
-    for (const auto& [name, value] : rows_) width = std::max(width, name.size());
+    for (const auto& [name, value] : rows_) width = std::max(width, printable_line(name).size());
     for (const auto& [name, value] : rows_) {
-        out << std::string(static_cast<std::size_t>(indent), ' ') << name
-            << std::string(width - name.size() + 2, ' ') << printable_line(value) << '\n';
+        const std::string printed = printable_line(name);
+        out << std::string(static_cast<std::size_t>(indent), ' ') << printed
+            << std::string(width - printed.size() + 2, ' ') << printable_line(value) << '\n';
     }
 }
 

@@ -9,9 +9,16 @@
 
 namespace imgmesh {
 
-/// Returns `text` as one line that a terminal shows unchanged: control characters, line and paragraph
-/// separators and bytes that are not UTF-8 become \xNN.
+/// Returns `text` as one line that a terminal shows unchanged: control characters, what changes the direction
+/// of text or ends lines, and bytes that are not UTF-8 become \xNN.
 std::string printable_line(const std::string& text);
+
+/// The same for a text of many lines: its line feeds stay.
+std::string printable_text(const std::string& text);
+
+/// The same for JSON in UTF-8, where these characters occur in strings alone: they become \uNNNN, so the
+/// JSON stays the same to whoever parses it.
+std::string printable_json(const std::string& json);
 
 /// Rows of a name and a value, printed with the values aligned.
 class TextTable {

@@ -101,12 +101,19 @@ void write_stdout(const std::string& text) {
     }
 }
 
+// A message quotes names, and those from files may be of any length.
+std::string message_line(const std::string& message) {
+    constexpr std::size_t kLongest = 1000;
+    const std::string line = printable_line(message);
+    return line.size() <= kLongest ? line : line.substr(0, kLongest) + "...";
+}
+
 void print_error(const std::string& tool, const std::string& message) {
-    std::cerr << tool << ": error: " << printable_line(message) << std::endl;
+    std::cerr << tool << ": error: " << message_line(message) << std::endl;
 }
 
 void print_warning(const std::string& tool, const std::string& message) {
-    std::cerr << tool << ": warning: " << printable_line(message) << std::endl;
+    std::cerr << tool << ": warning: " << message_line(message) << std::endl;
 }
 
 // The exit code of failures that did not stop the run.
@@ -136,9 +143,11 @@ ExitCode run_parsed(const Tool& tool, const CommonOptions& common) {
     std::ostringstream text;
     if (common.json) {
         // File names may not be UTF-8, which JSON requires.
-        text << report.dump(2, ' ', false, Report::error_handler_t::replace) << '\n';
+        text << printable_json(report.dump(2, ' ', false, Report::error_handler_t::replace)) << '\n';
     } else if (!common.quiet) {
-        tool.print(report, text);
+        std::ostringstream lines;
+        tool.print(report, lines);
+        text << printable_text(lines.str());
     }
     write_stdout(text.str());
     return joint_code(context.failures);
