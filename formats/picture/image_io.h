@@ -36,9 +36,9 @@ struct ReadImage {
 /// 8 and 16 bit integers are scaled to [0, 1], half and float kept; 1-bit, palette, CMYK and YCbCr become
 /// grey or RGB(A); associated alpha is divided out; EXIF orientation is applied (width and height as a viewer
 /// shows them). Channel names are R G B A Y where that is what they are. The colour space is that of
-/// the options, else what the file says (an ICC profile by what it does to colours, else the format's own
-/// means), else sRGB for integers and linear for floats. An EXR's image is its display window; pixels outside
-/// the data window are 0.
+/// the options, else one that holds the colours that the file states by profile, primaries or code points, to
+/// which they are converted unless they are in one of ours (docs/images.md), else sRGB for integers and
+/// linear for floats. An EXR's image is its display window; pixels outside the data window are 0.
 ///
 /// Throws Error: kIo if the file cannot be read; kBadFile for content that is no image, broken or
 /// truncated, over the limits, or with samples that are not finite; kUnsupported for what imgmesh has no use

@@ -49,7 +49,7 @@ Image displayed(Image stored, int orientation) {
 void divide_alpha_out(Image& image) {
     const int alpha = image.channel("A");
     if (alpha < 0) return;
-    for (const char* name : {"R", "G", "B", "Y"}) {
+    for (const char* name : {"R", "G", "B", "Y", "C", "M", "K"}) {
         const int color = image.channel(name);
         if (color < 0) continue;
         for (std::size_t i = 0; i < image.data.size(); i += static_cast<std::size_t>(image.channels)) {
@@ -98,13 +98,8 @@ ReadImage read_image_file(const std::string& path, const ReadImageOptions& optio
     DecodedPicture picture = decode(path, options);
     if (picture.associated_alpha) divide_alpha_out(picture.image);
     check_finite(path, picture.image);
-    const std::optional<ColorSpace> stated = stated_color_space(picture.color, picture.image);
-    ReadImage out{displayed(std::move(picture.image), picture.orientation), std::move(picture.warnings)};
-    const bool integers =
-        out.image.sample_type == SampleType::kUint8 || out.image.sample_type == SampleType::kUint16;
-    const ColorSpace usual = integers ? ColorSpace::kSrgb : ColorSpace::kLinear;
-    out.image.color_space = options.color_space.value_or(stated.value_or(usual));
-    return out;
+    settle_color(picture.color, options.color_space, picture.image, picture.warnings);
+    return {displayed(std::move(picture.image), picture.orientation), std::move(picture.warnings)};
 }
 
 Image read_image(const std::string& path, const ReadImageOptions& options) {

@@ -57,6 +57,9 @@ class Compared(NamedTuple):
 READ = (
     Read("truth.png"),
     Read("truth-alpha.png", truth_alpha),
+    Read("F05-icc_applergb18.png", tolerance=3),  # stored in 8 bits of another curve
+    Read("F05-icc_p3_g22.png", tolerance=3),
+    Read("F05-icc_rec2020_g24.png", tolerance=10),
     Read("F13-picture.png"),
 )
 

@@ -10,9 +10,8 @@
 
 namespace imgmesh {
 
-/// Returns the colour space of an RGB matrix profile (any ICC version), within the tolerance by which
-/// profiles differ. Returns nothing for other profiles and for bytes that are no profile. If a profile also
-/// has tables, the matrix counts. Safe for any bytes.
+/// Returns the colour space of an RGB matrix profile or a grey profile (any ICC version), as color_space_of()
+/// does. Returns nothing for other profiles and for bytes that are no profile. Safe for any bytes.
 std::optional<ColorSpace> color_space_from_icc(std::span<const std::uint8_t> profile);
 
 /// Returns a version 4 matrix profile of `space`, always the same bytes; color_space_from_icc() recognises

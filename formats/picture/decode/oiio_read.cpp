@@ -16,7 +16,9 @@ DecodedPicture decode_with_oiio(const PictureFile& file) {
     out.image.data = std::move(picture.data);
     out.associated_alpha = picture.associated_alpha;
     out.orientation = picture.orientation;
-    out.color = {std::move(picture.icc), picture.gamma, std::move(picture.color_name)};
+    out.color.icc = std::move(picture.icc);
+    out.color.gamma = picture.gamma;
+    out.color.name = std::move(picture.color_name);
     return out;
 }
 
