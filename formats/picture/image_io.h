@@ -1,5 +1,5 @@
-// Images from and to files: PNG, EXR and WebP through their own libraries, the rest through OpenImageIO,
-// which is loaded when it is first needed. Target imgmesh::pictures.
+// Images from and to files: PNG, TIFF, EXR and WebP through their own libraries, the rest through
+// OpenImageIO, which is loaded when it is first needed. Target imgmesh::pictures.
 #pragma once
 
 #include <cstdint>

@@ -87,6 +87,8 @@ DecodedPicture decode(const std::string& path, const ReadImageOptions& options) 
             return decode_webp(file);
         case PictureFormat::kPng:
             return decode_png(file);
+        case PictureFormat::kTiff:
+            return decode_tiff(file);
         default:
             return decode_with_oiio(file);
     }

@@ -22,8 +22,6 @@ const char* reader_name(PictureFormat format) {
     switch (format) {
         case PictureFormat::kJpeg:
             return "jpeg";
-        case PictureFormat::kTiff:
-            return "tiff";
         case PictureFormat::kGif:
             return "gif";
         case PictureFormat::kBmp:
@@ -39,6 +37,7 @@ const char* reader_name(PictureFormat format) {
         case PictureFormat::kHeif:
             return "heif";
         case PictureFormat::kPng:
+        case PictureFormat::kTiff:
         case PictureFormat::kExr:
         case PictureFormat::kWebp:
             break;
@@ -71,11 +70,6 @@ void check_spec(const std::string& path, const OIIO::ImageSpec& spec, const Imag
     check(path, spec.width, spec.height, spec.nchannels, limits);
     // One tile is held at a time.
     if (spec.tile_width > 0) check(path, spec.tile_width, spec.tile_height, spec.nchannels, limits);
-    // CMYK and YCbCr arrive as RGB; CIELAB and similar spaces arrive unchanged.
-    const std::string photometric = spec.get_string_attribute("tiff:ColorSpace");
-    if (!photometric.empty() && photometric != "CMYK" && photometric != "YCbCr")
-        throw Error(ErrorKind::kUnsupported,
-                    cat(path, ": TIFF colours as ", photometric, " are not supported"));
 }
 
 // Some readers call the fourth channel alpha by name only, and GIF's counts it wrongly.
@@ -184,10 +178,6 @@ OiioPicture decode(const std::string& path, std::span<const std::uint8_t> bytes,
         // libjpeg and others only warn about a truncated file: a reported error counts.
         if (!read_samples(*input, out.sample_type, out.data) || input->has_error())
             throw broken(input->geterror());
-        // TIFF's reader reports unassociated alpha only when asked for alpha as stored; the others never
-        // multiply.
-        out.associated_alpha =
-            claim.format == PictureFormat::kTiff && spec.get_int_attribute("oiio:UnassociatedAlpha") == 0;
         out.orientation = spec.get_int_attribute("Orientation", 1);
         state_color(spec, claim.format, out);
         return out;

@@ -20,7 +20,6 @@ struct OiioPicture {
     std::vector<std::string> channel_names;
     SampleType sample_type = SampleType::kUint8;
     std::vector<float> data;  ///< integers as code / maximum
-    bool associated_alpha = false;
     int orientation = 1;
     std::vector<std::uint8_t> icc;
     float gamma = 0;         ///< 0 for none

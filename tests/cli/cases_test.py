@@ -31,6 +31,13 @@ def truth_alpha():
     return rgba(FOLDER / "truth-alpha.png")
 
 
+def truth_grey():
+    """The green of it, which is what the grey file holds."""
+    samples = truth()
+    samples[..., :3] = samples[..., 1:2]
+    return samples
+
+
 class Read(NamedTuple):
     """A file, the RGBA codes that it must give, how far they may be off, and options of imgmesh-build."""
     name: str
@@ -57,9 +64,17 @@ class Compared(NamedTuple):
 READ = (
     Read("truth.png"),
     Read("truth-alpha.png", truth_alpha),
+    Read("F01-cmyk-tiled8.tif"),
+    Read("F01-cmyk-tiled16bit.tif"),
+    Read("F02-cmyk-24bit-tiles.tif"),
+    Read("F02-cmyk-4bit-strips.tif", tolerance=17),  # 16 shades of each ink
+    Read("F02-grey-24bit-tiles.tif", truth_grey),
     Read("F05-icc_applergb18.png", tolerance=3),  # stored in 8 bits of another curve
     Read("F05-icc_p3_g22.png", tolerance=3),
     Read("F05-icc_rec2020_g24.png", tolerance=10),
+    Read("F10-palette8.tif"),
+    Read("F10-cmyka.tif", truth_alpha),
+    Read("F11-thumbnail-first.tif"),
     Read("F13-picture.png"),
 )
 

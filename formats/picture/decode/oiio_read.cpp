@@ -14,7 +14,6 @@ DecodedPicture decode_with_oiio(const PictureFile& file) {
     out.image.channel_names = std::move(picture.channel_names);
     out.image.sample_type = picture.sample_type;
     out.image.data = std::move(picture.data);
-    out.associated_alpha = picture.associated_alpha;
     out.orientation = picture.orientation;
     out.color.icc = std::move(picture.icc);
     out.color.gamma = picture.gamma;

@@ -34,6 +34,7 @@ struct DecodedPicture {
 /// taken for the pixels, and kUnsupported for kinds of images that imgmesh does not use.
 DecodedPicture decode_with_oiio(const PictureFile& file);
 DecodedPicture decode_png(const PictureFile& file);
+DecodedPicture decode_tiff(const PictureFile& file);
 DecodedPicture decode_webp(const PictureFile& file);
 /// If the options name a colour space, chromaticities other than Rec.709's are no error.
 DecodedPicture decode_exr(const PictureFile& file);

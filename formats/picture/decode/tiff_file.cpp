@@ -1,0 +1,94 @@
+#include "formats/picture/decode/tiff_file.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdarg>
+#include <cstdio>
+#include <cstring>
+
+#include "formats/files/one_line.h"
+
+namespace imgmesh {
+namespace {
+
+// The bytes are in memory already, and a block is at most as large as our own buffer for it. No table of a
+// sound file comes near this.
+constexpr tmsize_t kMostAtOnce = tmsize_t{1} << 30;
+constexpr std::size_t kMostWarnings = 20;
+
+std::string text_of_message(const char* format, std::va_list values) {
+    std::array<char, 400> text{};
+    std::vsnprintf(text.data(), text.size(), format, values);
+    return one_line(text.data());
+}
+
+}  // namespace
+
+struct TiffFile::Callbacks {
+    static TiffFile& self(void* file) { return *static_cast<TiffFile*>(file); }
+
+    static tmsize_t read(thandle_t file, void* out, tmsize_t count) {
+        TiffFile& f = self(file);
+        if (count <= 0 || f.at_ >= f.bytes_.size()) return 0;
+        const std::size_t n = std::min<std::size_t>(static_cast<std::size_t>(count), f.bytes_.size() - f.at_);
+        std::memcpy(out, f.bytes_.data() + f.at_, n);
+        f.at_ += n;
+        return static_cast<tmsize_t>(n);
+    }
+    static tmsize_t write(thandle_t, void*, tmsize_t) { return 0; }
+    static toff_t seek(thandle_t file, toff_t to, int whence) {
+        TiffFile& f = self(file);
+        const toff_t from = whence == SEEK_CUR ? f.at_ : whence == SEEK_END ? f.bytes_.size() : 0;
+        return f.at_ = from + to;  // a place beyond the end gives no bytes
+    }
+    static int close(thandle_t) { return 0; }
+    static toff_t size(thandle_t file) { return self(file).bytes_.size(); }
+    // libtiff only reads what it is given here, and checks each place against the size.
+    static int map(thandle_t file, void** base, toff_t* count) {
+        const TiffFile& f = self(file);
+        *base = const_cast<std::uint8_t*>(f.bytes_.data());
+        *count = f.bytes_.size();
+        return 1;
+    }
+    static void unmap(thandle_t, void*, toff_t) {}
+
+    static int on_error(TIFF*, void* file, const char*, const char* format, std::va_list values) {
+        TiffFile& f = self(file);
+        if (f.error_.empty()) f.error_ = text_of_message(format, values);
+        return 1;
+    }
+    static int on_warning(TIFF*, void* file, const char*, const char* format, std::va_list values) {
+        TiffFile& f = self(file);
+        if (f.warnings_.size() < kMostWarnings) f.warnings_.push_back(text_of_message(format, values));
+        return 1;
+    }
+};
+
+TiffFile::TiffFile(const std::string& path, std::span<const std::uint8_t> bytes)
+    : path_(path), bytes_(bytes) {
+    const std::unique_ptr<TIFFOpenOptions, void (*)(TIFFOpenOptions*)> options(TIFFOpenOptionsAlloc(),
+                                                                               TIFFOpenOptionsFree);
+    if (!options) throw std::bad_alloc();
+    TIFFOpenOptionsSetMaxSingleMemAlloc(options.get(), kMostAtOnce);
+    TIFFOpenOptionsSetErrorHandlerExtR(options.get(), Callbacks::on_error, this);
+    TIFFOpenOptionsSetWarningHandlerExtR(options.get(), Callbacks::on_warning, this);
+    tiff_.reset(TIFFClientOpenExt("image", "r", this, Callbacks::read, Callbacks::write, Callbacks::seek,
+                                  Callbacks::close, Callbacks::size, Callbacks::map, Callbacks::unmap,
+                                  options.get()));
+    if (!tiff_) throw broken("cannot read the TIFF");
+}
+
+void TiffFile::forget_messages() {
+    error_.clear();
+    warnings_.clear();
+}
+
+Error TiffFile::broken(const std::string& what) const {
+    return Error(ErrorKind::kBadFile, cat(path_, ": ", what, error_.empty() ? "" : ": ", error_));
+}
+
+Error TiffFile::unsupported(const std::string& what) const {
+    return Error(ErrorKind::kUnsupported, cat(path_, ": ", what));
+}
+
+}  // namespace imgmesh

@@ -1,0 +1,88 @@
+// TIFF through libtiff, which only undoes the compression: what its own conversion to RGBA does not know
+// would come back wrong without a word.
+#include <cmath>
+#include <cstdlib>
+#include <string_view>
+
+#include "formats/files/one_line.h"
+#include "formats/picture/decode/tiff_color.h"
+#include "formats/picture/decode/tiff_samples.h"
+
+namespace imgmesh {
+namespace {
+
+constexpr ttag_t kGdalNoData = 42113;
+
+// GDAL writes the number as text; "nan" is one of them. Other texts name none.
+std::optional<double> nodata_of(const TiffFile& file) {
+    // The library does not know the tag, and gives the length of such.
+    if (!TIFFFindField(file.get(), kGdalNoData, TIFF_ASCII)) return {};
+    std::uint32_t count = 0;
+    const char* stored = nullptr;
+    if (TIFFGetField(file.get(), kGdalNoData, &count, &stored) != 1 || !stored) return {};
+    const std::string text(stored, count);
+    char* end = nullptr;
+    const double value = std::strtod(text.c_str(), &end);
+    return end == text.c_str() ? std::optional<double>() : value;
+}
+
+// A curve has no place in StatedColor; the usual ones need no word.
+void warn_of_curve(const TiffFile& file, const TiffLayout& layout, std::vector<std::string>& warnings) {
+    const std::uint16_t *red = nullptr, *green = nullptr, *blue = nullptr;
+    if (layout.kind != TiffSamples::kUnsigned || layout.bits > 16 ||
+        TIFFGetField(file.get(), TIFFTAG_TRANSFERFUNCTION, &red, &green, &blue) != 1 || !red)
+        return;
+    constexpr float kMiddle = 0.2155f,
+                    kTolerance = 0.02f;  // of code 1/2 by sRGB's curve and by a gamma of 2.2
+    const float middle = static_cast<float>(red[std::size_t{1} << (layout.bits - 1)]) / 65535;
+    if (!(std::abs(middle - kMiddle) < kTolerance))
+        warnings.emplace_back("the file states a transfer function of its own, which is not applied");
+}
+
+void state_color(const TiffFile& file, const TiffLayout& layout, DecodedPicture& out) {
+    // L*a*b* and LogLuv are converted already.
+    if (layout.photometric == PHOTOMETRIC_CIELAB || layout.photometric == PHOTOMETRIC_ICCLAB ||
+        layout.photometric == PHOTOMETRIC_LOGL || layout.photometric == PHOTOMETRIC_LOGLUV)
+        return;
+    std::uint32_t length = 0;
+    const void* profile = nullptr;
+    if (TIFFGetField(file.get(), TIFFTAG_ICCPROFILE, &length, &profile) == 1 && profile && length > 0) {
+        const auto* bytes = static_cast<const std::uint8_t*>(profile);
+        out.color.icc.assign(bytes, bytes + length);
+        return;
+    }
+    if (out.image.channel("R") < 0) return;
+    const float *white = nullptr, *p = nullptr;
+    if (TIFFGetField(file.get(), TIFFTAG_PRIMARYCHROMATICITIES, &p) == 1 && p &&
+        TIFFGetField(file.get(), TIFFTAG_WHITEPOINT, &white) == 1 && white) {
+        out.color.chromaticities = {white[0], white[1], p[0], p[1], p[2], p[3], p[4], p[5]};
+        if (layout.kind == TiffSamples::kFloat) out.color.gamma = 1;
+    }
+    warn_of_curve(file, layout, out.warnings);
+}
+
+}  // namespace
+
+DecodedPicture decode_tiff(const PictureFile& picture) {
+    TiffFile file(picture.path, picture.bytes);
+    DecodedPicture out;
+    const bool thumbnail = choose_page(file);
+    if (thumbnail && TIFFCurrentDirectory(file.get()) == 0)
+        out.warnings.emplace_back(
+            "every image of the TIFF is flagged as a thumbnail or a mask; the first is read");
+    const TiffLayout layout = tiff_layout(file, picture.options.limits);
+    const std::optional<double> nodata = nodata_of(file);
+    std::optional<float> fill;
+    if (nodata) fill = static_cast<float>(*nodata);
+    std::vector<float> samples = read_samples(file, layout, fill);
+    if (layout.kind == TiffSamples::kSigned)
+        out.warnings.push_back(cat("the samples are signed integers, which are values rather than colours; ",
+                                   "as colours, the largest, ", std::ldexp(1.0, layout.bits - 1) - 1,
+                                   ", is 1"));
+    image_from_samples(file, layout, std::move(samples), out);
+    out.orientation = file.defaulted_tag<std::uint16_t>(TIFFTAG_ORIENTATION, ORIENTATION_TOPLEFT);
+    state_color(file, layout, out);
+    return out;
+}
+
+}  // namespace imgmesh

@@ -1,0 +1,25 @@
+// The samples of a TIFF: unpacked from bits, and from blocks into the whole image.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "formats/picture/decode/tiff_layout.h"
+
+namespace imgmesh {
+
+/// Writes `count` samples, which lie one after another in `row`, to out[0], out[step], ... Integers become
+/// their own numbers, rounded to floats. `row` is as libtiff gives it: samples of 16, 24, 32 and 64 bits in
+/// the machine's byte order, others as a stream of bits, the most significant first. It must hold them all.
+/// Source of the 24-bit float: TIFF Technical Note 3.
+void unpack_samples(std::span<const std::uint8_t> row, std::size_t count, TiffSamples kind, int bits,
+                    float* out, std::size_t step);
+
+/// Returns all samples of the current page, interleaved, as their own numbers; the chroma of subsampled YCbCr
+/// is repeated. Blocks that the file leaves out (offset and length 0) are `fill`, or an error without one.
+/// Throws Error(kBadFile) for blocks that are broken or not complete.
+std::vector<float> read_samples(TiffFile& file, const TiffLayout& layout, std::optional<float> fill);
+
+}  // namespace imgmesh
