@@ -9,7 +9,7 @@
 #include "libcore/base/error.h"
 #include "libcore/base/parallel.h"
 #include "libcore/image/luv_encoder.h"
-#include "libcore/mesh/raster.h"
+#include "libcore/recon/bounded_raster.h"
 #include "libcore/recon/level_colors.h"
 #include "libcore/recon/patch_colors.h"
 #include "libcore/recon/visit_lightness.h"
@@ -159,7 +159,7 @@ Image draw(const MeshImage& mesh_image, int level_index, const DrawParams& param
 
     PixelMap raster;
     if (may_scale(params.mode))
-        raster = rasterize(mesh, sample_grid(source.width, source.height, params.scale));
+        raster = bounded_raster(mesh, sample_grid(source.width, source.height, params.scale));
     const PixelMap& map = may_scale(params.mode) ? raster : level.map;
     switch (params.mode) {
         case DrawMode::kMap:

@@ -7,7 +7,7 @@
 #include "libcore/base/error.h"
 #include "libcore/base/parallel.h"
 #include "libcore/image/feature_space.h"
-#include "libcore/mesh/raster.h"
+#include "libcore/recon/bounded_raster.h"
 #include "libcore/recon/level_colors.h"
 
 namespace imgmesh {
@@ -49,7 +49,7 @@ Image draw_channels(const MeshImage& mesh_image, int level_index, const DrawPara
     if (!names.color.empty()) drawn = draw(mesh_image, level_index, params);
     PixelMap raster;
     if (params.mode == DrawMode::kGouraud)
-        raster = rasterize(mesh, sample_grid(source.width, source.height, scale));
+        raster = bounded_raster(mesh, sample_grid(source.width, source.height, scale));
     const PixelMap& map = params.mode == DrawMode::kGouraud ? raster : level.map;
 
     const std::vector<Origin> from = origins(names, drawn);

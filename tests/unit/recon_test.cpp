@@ -273,6 +273,29 @@ TEST_CASE("draw: levels and scales that are not there") {
 }
 
 // Of 100 pixels with 1, 2, ... 100 visits the two ends are cut off; the rest goes evenly from white to black.
+TEST_CASE("draw: faces all over one another are refused before work") {
+    MeshImage m = random_mesh_image(40, 30, 4, 3, 5);
+    BaseMesh& mesh = m.levels[0].mesh;
+    const std::vector<std::array<Id, 3>> once = mesh.faces;
+    const auto refused = [&](DrawMode mode, double scale) {
+        try {
+            draw(m, 0, {mode, scale});
+        } catch (const Error& error) {
+            CHECK(error.kind() == ErrorKind::kUnsupported);
+            return true;
+        }
+        return false;
+    };
+    for (int n = 0; n < 20; ++n) mesh.faces.insert(mesh.faces.end(), once.begin(), once.end());
+    CHECK_FALSE(refused(DrawMode::kGouraud, 8));
+    for (int n = 0; n < 3000; ++n) mesh.faces.insert(mesh.faces.end(), once.begin(), once.end());
+    for (const DrawMode mode : {DrawMode::kGouraud, DrawMode::kWire, DrawMode::kFlat})
+        for (const double scale : {1.0, 8.0}) CHECK(refused(mode, scale));
+    // Slivers have no area, but each row of each costs time.
+    mesh.faces.assign(200'000, {0, as_id(mesh.vertex_count() - 1), 0});
+    CHECK(refused(DrawMode::kFlat, 8));
+}
+
 TEST_CASE("draw: visits, the less the brighter") {
     MeshImage m = random_mesh_image(10, 10, 2, 2, 9);
     CHECK_THROWS_AS(draw(m, 0, {DrawMode::kVisits}), Error);
