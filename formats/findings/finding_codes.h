@@ -30,7 +30,7 @@ constexpr Finding info(std::string_view code, std::string_view meaning) {
 /// All findings: first the errors, from the outside of a file inwards, then the warnings and infos.
 inline constexpr Finding kFindings[] = {
     {"limits.bytes", "the files are larger than the limit"},
-    {"limits.pixels", "the image is larger than the limit"},
+    {"limits.pixels", "the image, or all levels together, are larger than the limit"},
     {"limits.faces", "a mesh has more faces than the limit, or than its image can have"},
     {"limits.levels", "more levels than the limit, or none"},
     {"limits.json", "the JSON is longer than 64 MiB, or has more than 262,144 values"},

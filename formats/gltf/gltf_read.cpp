@@ -245,6 +245,10 @@ void read_levels(const json& document, const tinygltf::Model& model, const Conta
             parts.emplace_back(string_member(*found, "part", "ext.member"), node);
     if (parts.empty() || parts.size() > static_cast<std::size_t>(limits.max_levels))
         refuse("limits.levels", cat(parts.size(), " levels, expected 1 to ", limits.max_levels));
+    const std::uint64_t pixels = std::uint64_t(asset.source.width) * std::uint64_t(asset.source.height);
+    if (pixels * parts.size() > static_cast<std::uint64_t>(limits.max_pixels))
+        refuse("limits.pixels", cat(parts.size(), " levels of ", asset.source.width, "x", asset.source.height,
+                                    " pixels, at most ", limits.max_pixels, " in all"));
     for (std::size_t k = 0; k < parts.size(); ++k) {
         const auto part =
             std::find_if(parts.begin(), parts.end(), [&](const auto& p) { return p.first == level_name(k); });

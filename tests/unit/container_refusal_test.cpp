@@ -219,6 +219,8 @@ TEST_CASE("refusals: bytes, chunks, depth and limits") {
     };
     CHECK(limits([&](ContainerLimits& l) { l.max_bytes = good.size(); }) == "");
     CHECK(limits([&](ContainerLimits& l) { l.max_bytes = good.size() - 1; }) == "limits.bytes");
+    CHECK(limits([](ContainerLimits& l) { l.max_pixels = 600; }) == "");
+    CHECK(limits([](ContainerLimits& l) { l.max_pixels = 599; }) == "limits.pixels");  // of two levels
     CHECK(limits([](ContainerLimits& l) { l.max_pixels = 299; }) == "limits.pixels");
     CHECK(limits([](ContainerLimits& l) { l.max_faces = 20; }) == "limits.faces");
     CHECK(limits([](ContainerLimits& l) { l.max_levels = 1; }) == "limits.levels");

@@ -13,7 +13,7 @@ void add_container_limits(CLI::App& app, ContainerLimits& limits) {
     };
     const std::int64_t any = std::numeric_limits<std::int64_t>::max();
     add("--max-bytes", limits.max_bytes, any, "Refuse a container of more bytes, all files together");
-    add("--max-pixels", limits.max_pixels, any, "Refuse an image of more pixels");
+    add("--max-pixels", limits.max_pixels, any, "Refuse more pixels, counted once for each level");
     add("--max-faces", limits.max_faces, any, "Refuse a mesh of more faces");
     add("--max-levels", limits.max_levels, 1000, "Refuse more levels");
     // The parser's result is destroyed level by level on the stack.
