@@ -22,8 +22,6 @@ void rename_attributes(const std::string& path, std::span<std::uint8_t> bytes) {
     const std::uint32_t field = in.number(4), version = field & kExrVersionMask;
     if (version != kExrVersion)
         throw Error(ErrorKind::kBadFile, cat(path, ": EXR version ", version, ", expected ", kExrVersion));
-    if (field & kExrDeep)
-        throw Error(ErrorKind::kUnsupported, cat(path, ": deep EXR images are not supported"));
     // An empty name ends a header, and an empty header those of a file with many parts.
     do {
         while (!in.take_if(0)) {

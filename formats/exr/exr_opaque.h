@@ -12,7 +12,7 @@ namespace imgmesh {
 /// file. Types that an image does not need (previews, id manifests, ...) are renamed, in `bytes`, to types
 /// unknown to OpenEXR, which it skips by the checked size.
 ///
-/// Throws Error: kBadFile for a broken header, kUnsupported for deep images.
+/// Throws Error(kBadFile) for a broken header.
 void make_attributes_opaque(const std::string& path, std::span<std::uint8_t> bytes);
 
 }  // namespace imgmesh

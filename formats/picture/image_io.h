@@ -18,32 +18,59 @@ struct ImageLimits {
     int max_channels = 64;
 };
 
+/// What becomes of samples that are infinite or no number.
+enum class NonFinite {
+    kRefuse,   ///< Error(kBadFile)
+    kZero,     ///< 0
+    kNearest,  ///< the channel's value at the nearest pixel where it is finite, else as kRefuse
+};
+
 /// How read_image() reads.
 struct ReadImageOptions {
     std::optional<ColorSpace> color_space = {};  ///< none: what the file says
     ImageLimits limits = {};
+    /// Of an EXR: a part's name, or its number from 0; none: the first part with colour.
+    std::optional<std::string> part = {};
+    /// Of an EXR: all before the last dot of its channels' names, which the image's names lack; none: the
+    /// unnamed layer if it has colour, else the first that has.
+    std::optional<std::string> layer = {};
+    /// Channels that must be there, by their names in the layer or else in the part; alpha is read with them.
+    /// Empty: the colour and alpha. None: all channels; those beside colour and alpha that cannot be read are
+    /// left out, with a warning.
+    std::optional<std::vector<std::string>> channels = {};
+    NonFinite non_finite = NonFinite::kRefuse;
+};
+
+/// Where the image of an EXR was found.
+struct ImagePlace {
+    std::string part;   ///< its name, or else its number
+    std::string layer;  ///< empty for channels without a prefix
 };
 
 /// An image, and what a person should know of how it was read.
 struct ReadImage {
     Image image;
     std::vector<std::string> warnings;  ///< each one sentence without the file's name
+    std::optional<ImagePlace> place;    ///< of an EXR that left a choice
+    std::int64_t non_finite = 0;        ///< samples that ReadImageOptions::non_finite replaced
 };
 
-/// Reads the first image (frame, layer, part) of a PNG, JPEG, TIFF, EXR, WebP, GIF, BMP, PNM, TGA, Radiance
-/// HDR, JPEG 2000 or HEIF file at full resolution, all channels. The content decides, not the name.
+/// Reads the first image (frame, layer, part with colour) of a PNG, JPEG, TIFF, EXR, WebP, GIF, BMP, PNM,
+/// TGA, Radiance HDR, JPEG 2000 or HEIF file at full resolution, all channels. The content decides, not the
+/// name.
 ///
 /// 8 and 16 bit integers are scaled to [0, 1], half and float kept; 1-bit, palette, CMYK and YCbCr become
 /// grey or RGB(A); associated alpha is divided out; EXIF orientation is applied (width and height as a viewer
 /// shows them). Channel names are R G B A Y where that is what they are. The colour space is that of
 /// the options, else one that holds the colours that the file states by profile, primaries or code points, to
 /// which they are converted unless they are in one of ours (docs/images.md), else sRGB for integers and
-/// linear for floats. An EXR's image is its display window; pixels outside the data window are 0.
+/// linear for floats. An EXR's image is its display window; pixels outside the data window are 0. Luminance
+/// and chroma become RGB, and integers of an EXR are numbers.
 ///
 /// Throws Error: kIo if the file cannot be read; kBadFile for content that is no image, broken or
-/// truncated, over the limits, or with samples that are not finite; kUnsupported for what imgmesh has no use
-/// for (deep and subsampled EXR, camera raw, CIELAB, signed integers, EXR primaries other than Rec.709's
-/// unless a colour space is given). Never aborts, whatever the bytes.
+/// truncated, over the limits, with samples that are not finite, or without the part, layer or channel asked
+/// for; kUnsupported for what imgmesh has no use for (deep EXR, subsampled channels other than chroma, EXR
+/// integers of 2^24 and more, camera raw, CIELAB, signed integers). Never aborts, whatever the bytes.
 ReadImage read_image_file(const std::string& path, const ReadImageOptions& options = {});
 /// The image of read_image_file() alone, for callers who need no warnings.
 Image read_image(const std::string& path, const ReadImageOptions& options = {});

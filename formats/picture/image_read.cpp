@@ -4,9 +4,13 @@
 #include <cmath>
 
 #include "formats/files/atomic_file.h"
+#include "formats/picture/color/primaries.h"
+#include "formats/picture/decode/keep_channels.h"
+#include "formats/picture/decode/non_finite.h"
 #include "formats/picture/decode/picture_decoders.h"
 #include "formats/picture/image_io.h"
 #include "libcore/base/error.h"
+#include "libcore/image/feature_space.h"
 
 namespace imgmesh {
 namespace {
@@ -59,17 +63,81 @@ void divide_alpha_out(Image& image) {
     }
 }
 
-void check_finite(const std::string& path, const Image& image) {
-    const auto bad =
-        std::find_if(image.data.begin(), image.data.end(), [](float x) { return !std::isfinite(x); });
-    if (bad == image.data.end()) return;
-    const auto index = static_cast<std::size_t>(bad - image.data.begin());
-    const auto channels = static_cast<std::size_t>(image.channels),
-               width = static_cast<std::size_t>(image.width);
-    const std::size_t pixel = index / channels;
+// Whether the caller needs the channel: it was named, or it is colour or alpha and none was.
+bool is_required(const std::string& name, const std::vector<std::string>& color,
+                 const ReadImageOptions& options) {
+    if (name == "A") return true;
+    const bool listed = options.channels && !options.channels->empty();
+    return std::ranges::count(listed ? *options.channels : color, name) > 0;
+}
+
+// Leaves out what the options do not ask for, which decode_exr() does not even read. An image without all of
+// it stays whole: who asks for its channels then can say what it has.
+void select_channels(Image& image, const ReadImageOptions& options) {
+    const std::vector<std::string> color = split_names(image.channel_names).color;
+    if (!options.channels) return;
+    const std::vector<std::string>& wanted = options.channels->empty() ? color : *options.channels;
+    if (wanted.empty() ||
+        std::ranges::any_of(wanted, [&](const std::string& name) { return image.channel(name) < 0; }))
+        return;
+    std::vector<char> keep;
+    for (const std::string& name : image.channel_names) keep.push_back(is_required(name, color, options));
+    keep_channels(image, keep);
+}
+
+// Throws Error(kBadFile) for the first pixel of the required channels that is not finite.
+void check_finite(const std::string& path, const Image& image, const std::vector<char>& required) {
+    std::size_t pixel = image.pixel_count(), channel = 0;
+    for (std::size_t c = 0; c < required.size(); ++c) {
+        const std::size_t at = required[c] ? first_non_finite(image, static_cast<int>(c)) : pixel;
+        if (at >= pixel) continue;
+        pixel = at;
+        channel = c;
+    }
+    if (pixel == image.pixel_count()) return;
     throw Error(ErrorKind::kBadFile,
-                cat(path, ": channel ", printable(image.channel_names[index % channels]), " of pixel (",
-                    pixel % width, ", ", pixel / width, ") is not a finite number"));
+                cat(path, ": channel ", printable(image.channel_names[channel]), " of pixel (",
+                    image.x_of(pixel), ", ", image.y_of(pixel), ") is not a finite number"));
+}
+
+// Makes samples of a channel finite. Returns false for a channel to leave out.
+bool make_finite(const std::string& path, int channel, NonFinite how, ReadImage& out) {
+    Image& image = out.image;
+    if (first_non_finite(image, channel) == image.pixel_count()) return true;
+    const std::string name = printable(image.channel_names[static_cast<std::size_t>(channel)]);
+    if (how == NonFinite::kRefuse) {
+        out.warnings.push_back(cat("channel ", name, " is left out: it holds numbers that are not finite"));
+        return false;
+    }
+    const std::int64_t count =
+        how == NonFinite::kZero ? zero_non_finite(image, channel) : fill_non_finite(image, channel);
+    if (count < 0) throw Error(ErrorKind::kBadFile, cat(path, ": channel ", name, " has no finite number"));
+    out.non_finite += count;
+    return true;
+}
+
+// Alpha is first, as colours are divided by it.
+void finish_samples(const std::string& path, bool associated_alpha, bool all_required,
+                    const ReadImageOptions& options, ReadImage& out) {
+    const std::vector<std::string> color = split_names(out.image.channel_names).color;
+    std::vector<char> required;
+    for (const std::string& name : out.image.channel_names)
+        required.push_back(all_required || is_required(name, color, options));
+    const bool refuse = options.non_finite == NonFinite::kRefuse;
+    const int alpha = out.image.channel("A");
+    if (alpha >= 0 && !refuse) make_finite(path, alpha, options.non_finite, out);
+    if (associated_alpha) divide_alpha_out(out.image);
+    if (refuse) check_finite(path, out.image, required);
+    std::vector<char> keep;
+    for (int c = 0; c < out.image.channels; ++c)
+        keep.push_back(make_finite(path, c, options.non_finite, out));
+    if (std::ranges::count(keep, char{1}) == 0)
+        throw Error(ErrorKind::kBadFile, cat(path, ": no channel is finite"));
+    keep_channels(out.image, keep);
+    if (out.non_finite > 0)
+        out.warnings.push_back(cat("samples that were not finite and became ",
+                                   options.non_finite == NonFinite::kZero ? "0" : "those of pixels nearby",
+                                   ": ", out.non_finite));
 }
 
 DecodedPicture decode(const std::string& path, const ReadImageOptions& options) {
@@ -98,10 +166,18 @@ DecodedPicture decode(const std::string& path, const ReadImageOptions& options) 
 
 ReadImage read_image_file(const std::string& path, const ReadImageOptions& options) {
     DecodedPicture picture = decode(path, options);
-    if (picture.associated_alpha) divide_alpha_out(picture.image);
-    check_finite(path, picture.image);
-    settle_color(picture.color, options.color_space, picture.image, picture.warnings);
-    return {displayed(std::move(picture.image), picture.orientation), std::move(picture.warnings)};
+    if (!picture.has_layers && (options.part || options.layer))
+        picture.warnings.emplace_back("it has neither parts nor layers, which only EXR images have");
+    ReadImage out{std::move(picture.image), std::move(picture.warnings), std::move(picture.place)};
+    const bool inks = picture.color.inks;  // yellow is no luminance
+    if (!inks) select_channels(out.image, options);
+    finish_samples(path, picture.associated_alpha, inks, options, out);
+    if (picture.primaries && !options.color_space)
+        convert_primaries(path, *picture.primaries, kRec709Primaries, out.image);
+    settle_color(picture.color, options.color_space, out.image, out.warnings);
+    if (inks) select_channels(out.image, options);
+    out.image = displayed(std::move(out.image), picture.orientation);
+    return out;
 }
 
 Image read_image(const std::string& path, const ReadImageOptions& options) {

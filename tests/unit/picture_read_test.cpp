@@ -342,32 +342,6 @@ TEST_CASE("read: an EXR with a preview and unusual attributes") {
     CHECK(read_image(folder / "p.exr").data == samples);
 }
 
-TEST_CASE("read: what an EXR can hold and an image cannot") {
-    const TemporaryFolder folder;
-    const auto write = [&](const Imf::Channel& channel, bool other_primaries) {
-        Imf::Header header(4, 4);
-        header.channels().insert("Y", channel);
-        if (other_primaries) Imf::addChromaticities(header, Imf::Chromaticities({0.7347f, 0.2653f}));
-        std::vector<float> samples(16, 1.0f);
-        Imf::FrameBuffer buffer;
-        buffer.insert("Y", Imf::Slice(channel.type, reinterpret_cast<char*>(samples.data()),
-                                      4 / static_cast<std::size_t>(channel.xSampling), 16, channel.xSampling,
-                                      channel.ySampling));
-        Imf::OutputFile file((folder / "u.exr").c_str(), header);
-        file.setFrameBuffer(buffer);
-        file.writePixels(4);
-    };
-    std::string text;
-    write(Imf::Channel(Imf::UINT), false);
-    CHECK(error_of([&] { read_image(folder / "u.exr"); }, &text) == ErrorKind::kUnsupported);
-    CHECK(text.find("holds integers") != std::string::npos);
-    write(Imf::Channel(Imf::HALF, 2, 2), false);
-    CHECK(error_of([&] { read_image(folder / "u.exr"); }) == ErrorKind::kUnsupported);
-    write(Imf::Channel(Imf::FLOAT), true);
-    CHECK(error_of([&] { read_image(folder / "u.exr"); }) == ErrorKind::kUnsupported);
-    CHECK(read_image(folder / "u.exr", {.color_space = ColorSpace::kLinear}).data[0] == 1);
-}
-
 TEST_CASE("read: the first sample that is no number is named") {
     const TemporaryFolder folder;
     for (const std::string name : {"n.exr", "n.tif"}) {

@@ -3,11 +3,13 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "formats/files/one_line.h"
+#include "formats/picture/color/primaries.h"
 #include "formats/picture/color/stated_color.h"
 #include "formats/picture/decode/picture_probe.h"
 #include "libcore/image/image.h"
@@ -28,6 +30,9 @@ struct DecodedPicture {
     int orientation = 1;  ///< of EXIF, 1 to 8
     StatedColor color;    ///< what the file says about its colours
     std::vector<std::string> warnings;
+    bool has_layers = false;                  ///< of an EXR
+    std::optional<Primaries> primaries = {};  ///< of linear RGB, if they are not Rec.709's
+    std::optional<ImagePlace> place = {};     ///< in an EXR that left a choice
 };
 
 /// Each throws Error(kBadFile) for broken or truncated content and sizes over the limits, before memory is
@@ -36,7 +41,7 @@ DecodedPicture decode_with_oiio(const PictureFile& file);
 DecodedPicture decode_png(const PictureFile& file);
 DecodedPicture decode_tiff(const PictureFile& file);
 DecodedPicture decode_webp(const PictureFile& file);
-/// If the options name a colour space, chromaticities other than Rec.709's are no error.
+/// Reads the part, layer and channels of the options. The others leave that to read_image().
 DecodedPicture decode_exr(const PictureFile& file);
 
 }  // namespace imgmesh
