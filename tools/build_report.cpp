@@ -55,6 +55,11 @@ void print_build(const Report& report, std::ostream& out) {
         const auto number = [&](const char* key) { return format_number(image[key].get<double>()); };
         TextTable table;
         table.add("size", cat(image["width"], " x ", image["height"], " pixels"));
+        if (image.contains("layer")) {
+            const std::string part = printable_line(image["part"].get<std::string>()),
+                              layer = printable_line(image["layer"].get<std::string>());
+            table.add("read", cat("part ", part, layer.empty() ? ", unnamed layer" : ", layer ", layer));
+        }
         if (image["alpha"] != "none") table.add("alpha", image["alpha"].get<std::string>());
         if (image["pixels"] != image["width"].get<std::int64_t>() * image["height"].get<std::int64_t>())
             table.add("masked image", cat(image["pixels"], " pixels"));

@@ -29,11 +29,22 @@ Mask read_mask(const BuildOptions& o) {
     return in_file(o.mask, [&] { return image_mask(picture, static_cast<float>(o.alpha_threshold)); });
 }
 
+// Returns how to read the images: no more channels than are meshed.
+ReadImageOptions read_options(const BuildOptions& o) {
+    ReadImageOptions read = o.read;
+    // A texture shows the colour also where other channels are meshed.
+    if (o.texture.wanted && !o.params.channels.empty()) return read;
+    read.channels.emplace();
+    for (const ChannelChoice& choice : o.params.channels) read.channels->push_back(choice.name);
+    return read;
+}
+
 Report build_one(const Job& job, const BuildOptions& o, const Context& context, const Progress& progress,
                  std::vector<std::string>& warnings) {
     Stopwatch whole, stage;
     check_output(job.output, context.overwrite);
-    const Image image = read_with_warnings(job.input, o.read, warnings);
+    const ReadImage read = read_with_warnings(job.input, read_options(o), warnings);
+    const Image& image = read.image;
     const bool cut = o.cut && o.mask.empty();
     Mask mask = cut ? alpha_mask(image, static_cast<float>(o.alpha_threshold)) : read_mask(o);
     const double read_seconds = stage.lap();
@@ -61,6 +72,7 @@ Report build_one(const Job& job, const BuildOptions& o, const Context& context, 
     const char* alpha = image.channel("A") < 0 ? "none" : cut ? "cut" : "ignored";
     report.update(
         image_report(image, alpha, result.report, written, {read_seconds, write_seconds, whole.lap()}));
+    report.update(read_report(read));
     return report;
 }
 

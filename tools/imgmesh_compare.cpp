@@ -71,16 +71,23 @@ void check_options(const Options& o) {
     if (o.inputs.size() > 2) refuse(cat(o.inputs[2], ": expected one container or two files"));
     if (!pair && !is_container(o.inputs[0]))
         refuse(cat(o.inputs[0], ": expected a second file, or a container (.glb, .gltf) alone"));
+    const std::pair<const char*, bool> reading[] = {
+        {"--color-space", o.read.color_space.has_value()},
+        {"--part", o.read.part.has_value()},
+        {"--layer", o.read.layer.has_value()},
+        {"--non-finite", o.read.non_finite != NonFinite::kRefuse}};
+    for (const auto& [name, given] : reading)
+        if (given && !pair) refuse(cat(name, ": expected two files to compare"));
     for (const auto& [name, given] :
-         {std::pair{"--mode", o.mode.has_value()}, std::pair{"--color-space", o.read.color_space.has_value()},
-          std::pair{"--tolerance", o.tolerance.has_value()},
+         {std::pair{"--mode", o.mode.has_value()}, std::pair{"--tolerance", o.tolerance.has_value()},
           std::pair{"--error-image", !o.error_image.empty()}})
         if (given && !pair) refuse(cat(name, ": expected two files to compare"));
     const bool containers = std::any_of(o.inputs.begin(), o.inputs.end(), is_container);
     const bool pictures = !std::all_of(o.inputs.begin(), o.inputs.end(), is_container);
     if ((o.mode || o.level) && !containers)
         refuse(cat(o.mode ? "--mode" : "--level", ": expected a container (.glb, .gltf) among the files"));
-    if (o.read.color_space && !pictures) refuse("--color-space: expected an image among the files");
+    for (const auto& [name, given] : reading)
+        if (given && !pictures) refuse(cat(name, ": expected an image among the files"));
     if (o.error_range && o.error_image.empty()) refuse("--error-range: expected --error-image as well");
     if (!o.error_image.empty() && !can_write_image(o.error_image))
         refuse(cat("--error-image ", o.error_image, ": expected the name of an image, as in .png"));
@@ -100,7 +107,9 @@ struct Input {
 };
 
 Input load_picture(const std::string& path, const Options& o, std::vector<std::string>& warnings) {
-    Input input{{path}, read_with_warnings(path, o.read, warnings), {}, {}};
+    ReadImage read = read_with_warnings(path, o.read, warnings);
+    const Report facts = read_report(read);
+    Input input{{path}, std::move(read.image), {}, {}};
     if (!has_color(input.image))
         throw Error(ErrorKind::kUnsupported,
                     cat(path, ": the image has no colour: neither channels R, G, B nor Y"));
@@ -109,6 +118,7 @@ Input load_picture(const std::string& path, const Options& o, std::vector<std::s
                     {"width", input.image.width},
                     {"height", input.image.height},
                     {"color_space", color_space_name(input.image.color_space)}};
+    input.report.update(facts);
     return input;
 }
 

@@ -17,6 +17,7 @@
 #include "tools/common/names.h"
 #include "tools/common/options.h"
 #include "tools/common/output.h"
+#include "tools/common/read_options.h"
 #include "tools/common/source_image.h"
 #include "tools/common/text.h"
 #include "tools/common/texture_options.h"
@@ -42,6 +43,7 @@ struct Options {
     std::optional<int> level;
     std::optional<Shading> shading;
     std::string image;
+    ReadImageOptions read;
     ContainerLimits limits;
 };
 
@@ -78,9 +80,11 @@ void add_options(CLI::App& app, Options& o) {
                         Choices<Shading>{{"flat", Shading::kFlat}, {"gradient", Shading::kGradient}},
                         {"Shading of an .svg's triangles", "flat"}),
              level);
-    add_value(app, "--image", "NAME", [&o](const std::string& text) { o.image = text; },
-              {"Image that --texture puts on the meshes, or that a sprite's .json names",
-               "the output's name in .png"});
+    CLI::Option* const image =
+        add_value(app, "--image", "NAME", [&o](const std::string& text) { o.image = text; },
+                  {"Image that --texture puts on the meshes, or that a sprite's .json names",
+                   "the output's name in .png"});
+    add_read_options(app, o.read, image, true);
     add_container_limits(app, o.limits);
 }
 
@@ -141,7 +145,10 @@ Texture chosen_texture(const Options& o, const MeshImage& m, Texture kept, Conte
                         cat("--texture: ", o.input, " has no colour; --image names an image that has"));
         image = draw(m, 0, {});
     } else {
-        image = read_source_image(o.image, source, o.input, {}, context.warnings);
+        ReadImageOptions options = o.read;
+        options.channels.emplace();  // the colour and alpha
+        options.limits.max_pixels = o.limits.max_pixels;
+        image = read_source_image(o.image, source, o.input, options, context.warnings);
     }
     Mask mask;
     if (source.has_mask) {

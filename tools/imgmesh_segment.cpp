@@ -18,6 +18,7 @@
 #include "tools/common/help.h"
 #include "tools/common/options.h"
 #include "tools/common/output.h"
+#include "tools/common/read_options.h"
 #include "tools/common/source_image.h"
 #include "tools/common/text.h"
 #include "tools/common/tool_main.h"
@@ -34,6 +35,7 @@ struct Options {
     std::optional<DistanceRule> distance;
     int level = 0;
     std::string image, outlines, flat, ucm, report, mesh;
+    ReadImageOptions read;
 };
 
 Choices<DistanceRule> distance_choices() {
@@ -65,9 +67,12 @@ void add_options(CLI::App& app, Options& o) {
                    {"Distance of regions, by their contours or by mean colours as in the paper",
                     name_of(distance_choices(), usual.distance)});
     advanced(app, in_group(distance, regions));
-    in_group(add_file(app, "--image", o.image,
-                      "Image itself, to measure and draw on instead of the reconstruction"),
-             files);
+    CLI::Option* const image =
+        in_group(add_file(app, "--image", o.image,
+                          "Image itself, to measure and draw on instead of the reconstruction"),
+                 files);
+    add_read_options(app, o.read, image);
+    o.read.channels.emplace();  // the colour and alpha
     in_group(
         add_file(app, "--outlines", o.outlines, "Image to write with the regions' borders drawn over it"),
         files);
@@ -120,7 +125,7 @@ void check_options(const Options& o) {
 
 FeatureImage picture_of(const Options& o, const MeshImage& mesh_image, const Level& level, Context& context) {
     if (o.image.empty()) return reconstruct_luv(level);
-    return luv_image(read_source_image(o.image, mesh_image.source, o.input, {}, context.warnings),
+    return luv_image(read_source_image(o.image, mesh_image.source, o.input, o.read, context.warnings),
                      Range::kClipped);
 }
 

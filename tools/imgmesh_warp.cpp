@@ -21,6 +21,7 @@
 #include "tools/common/container_input.h"
 #include "tools/common/options.h"
 #include "tools/common/output.h"
+#include "tools/common/read_options.h"
 #include "tools/common/source_image.h"
 #include "tools/common/text.h"
 #include "tools/common/tool_main.h"
@@ -32,6 +33,7 @@ namespace {
 struct Options {
     std::string input;
     std::string image;
+    ReadImageOptions read;
     std::string output;
     std::string displacement;
     std::string edits;
@@ -81,7 +83,8 @@ OutputSize parse_size(const std::string& name, const std::string& text) {
 
 void add_options(CLI::App& app, Options& o) {
     add_input(app, "CONTAINER", o.input, "Container to read (.glb, .gltf)");
-    add_file(app, "--image", o.image, "Image that the container was made from");
+    CLI::Option* const image = add_file(app, "--image", o.image, "Image that the container was made from");
+    add_read_options(app, o.read, image);
     add_file(app, "-o,--output", o.output,
              "Edited image to write (.png, .exr, .tif, ...), or edited container (.glb, .gltf)");
     add_file(app, "--displacement", o.displacement,
@@ -183,7 +186,7 @@ Report run(const Options& o, Context& context) {
     check_distinct(read, written_files(o));
     check_separate(written_files(o));
     std::optional<Image> image;
-    if (!o.image.empty()) image = read_source_image(o.image, source, o.input, {}, context.warnings);
+    if (!o.image.empty()) image = read_source_image(o.image, source, o.input, o.read, context.warnings);
 
     context.progress(0.3, "solve");
     const std::vector<VertexMoves> moves = solve(mesh_image, edits, o);

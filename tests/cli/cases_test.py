@@ -76,9 +76,21 @@ READ = (
     Read("F10-cmyka.tif", truth_alpha),
     Read("F11-thumbnail-first.tif"),
     Read("F13-picture.png"),
+    Read("F08-uint-id.exr", tolerance=1),
+    Read("F08-z-nan.exr", tolerance=1),
+    Read("F09-blender-layers.exr", tolerance=1),
+    Read("F09-blender-layers.exr", tolerance=1, args=("--layer", "ViewLayer.Combined")),
+    Read("F09-multipart-rgb-first.exr", tolerance=1),
+    Read("F09-multipart-rgb-first.exr", tolerance=1, args=("--part", "rgb")),
+    Read("F09-rgba-layer.exr", tolerance=1),
 )
 
-REFUSED = ()
+REFUSED = (
+    Refused("F08-z-nan.exr", 4, ("channel Z", "finite"), ("--channels", "R,G,B,Z")),
+    Refused("F08-uint-id.exr", 5, ("channel id", "integers"), ("--channels", "R,G,B,id")),
+    Refused("F09-blender-layers.exr", 4, ("no layer Combined", "ViewLayer.Combined"), ("--layer", "Combined")),
+    Refused("F09-multipart-rgb-first.exr", 4, ("no part 2", "rgb, depth_first"), ("--part", "2")),
+)
 
 COMPARED = (
     Compared("truth-alpha.png", "F07-no-hole.png", True),
@@ -104,6 +116,18 @@ class Cases(CliCase):
                 off = np.abs(back - expected)
                 self.assertLessEqual(off[..., 3].max(), case.tolerance, "alpha")
                 self.assertLessEqual(off[visible].max(), case.tolerance, "colour")
+
+    def test_luminance_chroma(self):
+        """Subsampled chroma is lost for good, so the luminance is that of the original, where it can be shown."""
+        if not FOLDER:
+            return
+        def luminance(samples):
+            encoded = samples[..., :3] / 255
+            linear = np.where(encoded <= 0.04045, encoded / 12.92, ((encoded + 0.055) / 1.055) ** 2.4)
+            return linear @ np.array([0.2126, 0.7152, 0.0722])
+        off = np.abs(luminance(self.read_back("F18-luma-chroma.exr")) - luminance(truth()))
+        self.assertLess(off.mean(), 0.003)
+        self.assertLess(np.quantile(off, 0.9), 0.005)
 
     def test_refused(self):
         for case in REFUSED if FOLDER else ():

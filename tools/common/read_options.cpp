@@ -1,5 +1,7 @@
 #include "tools/common/read_options.h"
 
+#include <nlohmann/json.hpp>
+#include <optional>
 #include <utility>
 
 #include "libcore/base/error.h"
@@ -9,20 +11,47 @@
 
 namespace imgmesh {
 
-void add_read_options(CLI::App& app, ReadImageOptions& options) {
-    CLI::Option* const space = add_choice(app, "--color-space", options.color_space, color_space_choices(),
-                                          {"Colour space of the images, whatever their files say", ""});
-    advanced(app, in_group(space, "Image"));
+void add_read_options(CLI::App& app, ReadImageOptions& options, CLI::Option* image, bool has_limits) {
+    const auto add = [&](CLI::Option* option) {
+        if (image) needs(option, image);
+        return in_group(option, "Image");
+    };
+    const auto name = [&](const char* option, std::optional<std::string>& target, const Help& help) {
+        return add(add_value(
+            app, option, "NAME", [&target](const std::string& text) { target = text; }, help));
+    };
+    advanced(app, add(add_choice(app, "--color-space", options.color_space, color_space_choices(),
+                                 {"Colour space of the images, whatever their files say", ""})));
+    name("--part", options.part,
+         {"Part of an EXR, by its name or its number from 0", "the first with colour"});
+    name("--layer", options.layer,
+         {"Layer of an EXR: all before the last dot of its channels' names, as in ViewLayer.Combined",
+          "the unnamed one if it has colour, else the first that has"});
+    advanced(app, add(add_choice(app, "--non-finite", options.non_finite,
+                                 Choices<NonFinite>{{"refuse", NonFinite::kRefuse},
+                                                    {"zero", NonFinite::kZero},
+                                                    {"nearest", NonFinite::kNearest}},
+                                 "What becomes of infinite samples and of those that are no numbers")));
+    if (has_limits) return;
     CLI::Option* const pixels =
         add_count(app, "--max-pixels", options.limits.max_pixels, {1}, "Refuse an image of more pixels");
+    if (image) needs(pixels, image);
     advanced(app, in_group(pixels, "Limits"));
 }
 
-Image read_with_warnings(const std::string& path, const ReadImageOptions& options,
-                         std::vector<std::string>& warnings) {
+ReadImage read_with_warnings(const std::string& path, const ReadImageOptions& options,
+                             std::vector<std::string>& warnings) {
     ReadImage read = read_image_file(path, options);
     for (const std::string& warning : read.warnings) warnings.push_back(cat(path, ": ", warning));
-    return std::move(read.image);
+    read.warnings.clear();
+    return read;
+}
+
+Report read_report(const ReadImage& read) {
+    Report report = Report::object();
+    if (read.place) report = {{"part", read.place->part}, {"layer", read.place->layer}};
+    if (read.non_finite > 0) report["non_finite"] = read.non_finite;
+    return report;
 }
 
 }  // namespace imgmesh
