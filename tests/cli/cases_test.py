@@ -75,6 +75,7 @@ READ = (
     Read("F10-palette8.tif"),
     Read("F10-cmyka.tif", truth_alpha),
     Read("F11-thumbnail-first.tif"),
+    Read("F12-bad-crc-text-chunk.png"),
     Read("F13-picture.png"),
     Read("F08-uint-id.exr", tolerance=1),
     Read("F08-z-nan.exr", tolerance=1),
@@ -90,6 +91,14 @@ REFUSED = (
     Refused("F08-uint-id.exr", 5, ("channel id", "integers"), ("--channels", "R,G,B,id")),
     Refused("F09-blender-layers.exr", 4, ("no layer Combined", "ViewLayer.Combined"), ("--layer", "Combined")),
     Refused("F09-multipart-rgb-first.exr", 4, ("no part 2", "rgb, depth_first"), ("--part", "2")),
+    Refused("F17-cgbi.png", 5, ("CgBI",)),
+)
+
+# The colour space that the file's own statement leads to.
+STATED = (
+    ("F05-icc_rec2020_g24.png", "sRGB"),
+    ("F05-png-chrm-adobe.png", "AdobeRGB"),
+    ("F05-png-cicp-pq.png", "linear"),
 )
 
 COMPARED = (
@@ -133,6 +142,11 @@ class Cases(CliCase):
         for case in REFUSED if FOLDER else ():
             self.assert_error("imgmesh-build", (FOLDER / case.name, "-o", "out.glb", *case.args), case.code,
                               pathlib.Path(case.name).name, *case.words)
+
+    def test_stated(self):
+        for name, space in STATED if FOLDER else ():
+            with self.subTest(name):
+                self.assertEqual(self.build(FOLDER / name, "--density", "40")["color_space"], space)
 
     def test_compared(self):
         for case in COMPARED if FOLDER else ():

@@ -27,7 +27,7 @@ struct PictureFile {
 struct DecodedPicture {
     Image image;  ///< as stored; its color_space is not set
     bool associated_alpha = false;
-    int orientation = 1;  ///< of EXIF, 1 to 8
+    int orientation = 1;  ///< of EXIF, 1 to 8; 0 if it is not said
     StatedColor color;    ///< what the file says about its colours
     std::vector<std::string> warnings;
     bool has_layers = false;                  ///< of an EXR

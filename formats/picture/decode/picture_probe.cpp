@@ -3,8 +3,6 @@
 // (T.800, A.5.1), HEIF (ISO/IEC 23008-12, `ispe`).
 #include "formats/picture/decode/picture_probe.h"
 
-#include <libdeflate.h>
-
 #include <algorithm>
 #include <array>
 #include <cctype>
@@ -38,24 +36,6 @@ std::optional<std::size_t> find(Bytes b, std::size_t from, std::string_view text
     constexpr std::size_t kWindow = std::size_t{1} << 20;
     const std::size_t at = text_of(b.first(std::min(b.size(), kWindow))).find(text, from);
     return at == std::string_view::npos ? std::nullopt : std::optional(at);
-}
-
-// libpng reports a broken file on stderr as well as by its error, and accepts one without an end. This check
-// finds both first.
-void check_png(const std::string& path, Bytes b) {
-    ByteReader in = big_endian(b);
-    in.take(8);  // the signature
-    for (;;) {
-        if (in.left() < 12) throw broken(path, "the PNG is truncated: it ends without an IEND chunk");
-        const std::uint32_t length = in.number(4);
-        if (length > in.left() - 8)
-            throw broken(path, cat("the PNG is truncated: a chunk of ", length, " bytes, ", in.left() - 8,
-                                   " are left"));
-        const Bytes chunk = in.take(4 + std::size_t{length});  // its name and its content
-        if (libdeflate_crc32(0, chunk.data(), chunk.size()) != in.number(4))
-            throw broken(path, "the PNG is broken: a chunk's checksum is wrong");
-        if (text_of(chunk).starts_with("IEND")) return;
-    }
 }
 
 // The frame header; a progressive file makes libjpeg take memory for the whole image when it is opened.
@@ -173,13 +153,8 @@ PictureFormat recognise(const std::string& path, Bytes b) {
 
 PictureClaim probe_picture(const std::string& path, Bytes b) {
     PictureClaim claim{recognise(path, b)};
-    const ByteReader big = big_endian(b), little = little_endian(b);
+    const ByteReader little = little_endian(b);
     switch (claim.format) {
-        case PictureFormat::kPng:
-            check_png(path, b);
-            claim.width = big.number_at(16, 4);
-            claim.height = big.number_at(20, 4);
-            break;
         case PictureFormat::kJpeg:
             claim_jpeg(b, claim);
             break;
@@ -201,6 +176,7 @@ PictureClaim probe_picture(const std::string& path, Bytes b) {
         case PictureFormat::kHeif:
             claim_heif(b, claim);
             break;
+        case PictureFormat::kPng:
         case PictureFormat::kTiff:
         case PictureFormat::kExr:
         case PictureFormat::kWebp:

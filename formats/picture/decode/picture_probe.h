@@ -21,7 +21,7 @@ struct PictureClaim {
 };
 
 /// Recognises the format by the content, not by the name (except TGA, which has no signature, by its
-/// extension), and checks a PNG's chunks to their end. Throws Error: kBadFile for no image, a broken PNG or a
+/// extension). Throws Error: kBadFile for no image or a
 /// BMP whose compression does not fit its depth; kUnsupported for camera raw files and other compressions of
 /// BMP.
 PictureClaim probe_picture(const std::string& path, std::span<const std::uint8_t> bytes);

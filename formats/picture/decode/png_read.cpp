@@ -1,135 +1,137 @@
-// PNG through libpng. Its errors leave by longjmp, so functions that it may leave hold nothing that needs a
-// destructor: everything is in a State outside of them.
-#include <png.h>
+// PNG by its specification (third edition), with libdeflate. Only missing pixels are an error; a PNG of iOS
+// is read too.
+#include <libdeflate.h>
 
-#include <bit>
-#include <csetjmp>
-#include <cstring>
+#include <algorithm>
+#include <array>
+#include <cstdlib>
 #include <memory>
+#include <new>
 
-#include "formats/picture/decode/exif.h"
+#include "formats/files/byte_reader.h"
 #include "formats/picture/decode/picture_decoders.h"
-#include "formats/picture/sample_codes.h"
+#include "formats/picture/decode/png_chunks.h"
+#include "formats/picture/decode/png_rows.h"
 #include "libcore/base/error.h"
+#include "libcore/base/parallel.h"
 
 namespace imgmesh {
 namespace {
 
-static_assert(std::endian::native == std::endian::little, "png_set_swap() is for these machines");
+using Bytes = std::span<const std::uint8_t>;
 
-struct State {
-    std::span<const std::uint8_t> left;  ///< of the file
-    std::string error;
-    png_structp png = nullptr;
-    png_infop info = nullptr;
-    png_uint_32 width = 0, height = 0;
-    int channels = 0;
-    int bits = 0;
-    std::vector<std::uint16_t> words;  ///< samples of 16 bits
-    std::vector<std::uint8_t> bytes;   ///< or of 8
-    std::vector<png_bytep> rows;
-
-    State() = default;
-    State(const State&) = delete;
-    State& operator=(const State&) = delete;
-    ~State() { png_destroy_read_struct(&png, &info, nullptr); }
+// One of the seven images of an interlaced PNG, or the whole one (section 8).
+struct Pass {
+    int x, y, step_x, step_y;
+    int width, height;  ///< of this pass
 };
 
-void on_error(png_structp png, png_const_charp message) {
-    static_cast<State*>(png_get_error_ptr(png))->error = message;
-    png_longjmp(png, 1);
-}
-void on_warning(png_structp, png_const_charp) {}
-
-void on_read(png_structp png, png_bytep out, std::size_t count) {
-    auto& left = static_cast<State*>(png_get_io_ptr(png))->left;
-    if (count > left.size()) png_error(png, "unexpected end");
-    std::memcpy(out, left.data(), count);
-    left = left.subspan(count);
-}
-
-// Converts palettes to RGB, grey of few bits to 8 bits, and a transparent colour to an alpha channel.
-void read_header(State& s) {
-    png_read_info(s.png, s.info);
-    png_set_expand(s.png);
-    png_set_swap(s.png);
-    png_set_interlace_handling(s.png);
-    png_read_update_info(s.png, s.info);
-    s.width = png_get_image_width(s.png, s.info);
-    s.height = png_get_image_height(s.png, s.info);
-    s.channels = png_get_channels(s.png, s.info);
-    s.bits = png_get_bit_depth(s.png, s.info);
+std::vector<Pass> passes_of(const PngParts& parts) {
+    const auto width = static_cast<int>(parts.width), height = static_cast<int>(parts.height);
+    if (!parts.interlaced) return {{0, 0, 1, 1, width, height}};
+    constexpr int kAdam7[7][4] = {{0, 0, 8, 8}, {4, 0, 8, 8}, {0, 4, 4, 8}, {2, 0, 4, 4},
+                                  {0, 2, 2, 4}, {1, 0, 2, 2}, {0, 1, 1, 2}};
+    std::vector<Pass> passes;
+    for (const auto& [x, y, step_x, step_y] : kAdam7)
+        if (width > x && height > y)
+            passes.push_back({x, y, step_x, step_y, (width - x + step_x - 1) / step_x,
+                              (height - y + step_y - 1) / step_y});
+    return passes;
 }
 
-void read_rows(State& s) {
-    png_read_image(s.png, s.rows.data());
-    png_read_end(s.png, s.info);  // metadata may follow the pixels
-}
-
-// Returns whether `step` came to its end.
-bool guarded(State& s, void (*step)(State&)) {
-    if (setjmp(png_jmpbuf(s.png))) return false;  // NOLINT(cert-err52-cpp): libpng knows no other way
-    step(s);
-    return true;
-}
-
-void make_rows(State& s) {
-    const std::size_t row = std::size_t{s.width} * static_cast<std::size_t>(s.channels);
-    s.rows.resize(s.height);
-    (s.bits == 16 ? s.words.resize(row * s.height) : s.bytes.resize(row * s.height));
-    for (std::size_t y = 0; y < s.height; ++y)
-        s.rows[y] =
-            s.bits == 16 ? reinterpret_cast<png_bytep>(s.words.data() + y * row) : s.bytes.data() + y * row;
-}
-
-StatedColor stated_color(const State& s) {
-    StatedColor stated;
-    png_charp name = nullptr;
-    int method = 0;
-    png_bytep profile = nullptr;
-    png_uint_32 length = 0;
-    if (png_get_iCCP(s.png, s.info, &name, &method, &profile, &length))
-        stated.icc.assign(profile, profile + length);
-    double encoding = 0;
-    int intent = 0;
-    if (png_get_sRGB(s.png, s.info, &intent))
-        stated.name = "sRGB";
-    else if (png_get_gAMA(s.png, s.info, &encoding) && encoding > 0)
-        stated.gamma = static_cast<float>(1 / encoding);
-    return stated;
+// Unpacks to exactly `size` bytes.
+std::vector<std::uint8_t> unpack(const std::string& path, PngParts& parts, std::size_t size) {
+    const auto broken = [&](const std::string& what) {
+        return Error(ErrorKind::kBadFile, cat(path, ": the PNG is ", what));
+    };
+    std::vector<std::uint8_t> joined;
+    Bytes packed = parts.pixels.front();
+    if (parts.pixels.size() > 1) {
+        for (const Bytes piece : parts.pixels) joined.insert(joined.end(), piece.begin(), piece.end());
+        packed = joined;
+    }
+    constexpr int kDeflate = 8, kDictionary = 32;
+    if (packed.size() < 2 || (packed[0] & 15) != kDeflate || (packed[1] & kDictionary))
+        throw broken("broken: its pixels are packed in an unknown way");
+    packed = packed.subspan(2);
+    // Deflate cannot pack more than 1032 bytes into one: no memory is taken for what cannot be there.
+    if (size / 1032 > packed.size())
+        throw broken(cat("truncated: ", packed.size(), " bytes cannot hold its pixels"));
+    const std::unique_ptr<libdeflate_decompressor, decltype(&libdeflate_free_decompressor)> unpacker(
+        libdeflate_alloc_decompressor(), libdeflate_free_decompressor);
+    if (!unpacker) throw std::bad_alloc();
+    constexpr std::size_t kRest =
+        1 << 16;  // no piece of a stream is longer, so all before one that is too much fits
+    std::vector<std::uint8_t> raw(size + kRest);
+    std::size_t used = 0, made = 0;
+    const libdeflate_result result = libdeflate_deflate_decompress_ex(
+        unpacker.get(), packed.data(), packed.size(), raw.data(), raw.size(), &used, &made);
+    if (result == LIBDEFLATE_BAD_DATA)
+        throw broken(parts.complete ? "broken: its pixels do not unpack"
+                                    : "truncated or broken: its pixels do not unpack");
+    const bool more = result == LIBDEFLATE_INSUFFICIENT_SPACE;
+    if (!more && made < size)
+        throw broken(cat("truncated: it has ", made, " bytes of pixels, expected ", size));
+    const bool summed = !more && packed.size() - used >= 4;
+    const bool sound = summed && ByteReader(packed, ByteOrder::kBig).number_at(used, 4) ==
+                                     libdeflate_adler32(1, raw.data(), made);
+    if (!sound && !parts.pixels_checked && parts.complete)
+        throw broken("broken: the checksum of its pixels is wrong");
+    if (summed && !sound)
+        parts.warnings.push_back("the checksum of its unpacked pixels is wrong");
+    else if (!parts.pixels_checked && parts.complete)
+        parts.warnings.push_back(
+            "the checksum of its packed pixels is wrong, that of the unpacked ones is right");
+    if (more || made > size) parts.warnings.push_back("it holds more pixels than it says");
+    raw.resize(size);
+    return raw;
 }
 
 }  // namespace
 
 DecodedPicture decode_png(const PictureFile& file) {
-    const std::string& path = file.path;
-    const ImageLimits& limits = file.options.limits;
-    check_size(path, file.claim.width, file.claim.height, 1, limits);
-    State s;
-    const auto broken = [&] {
-        return Error(ErrorKind::kBadFile, cat(path, ": cannot read the image: ", one_line(s.error)));
-    };
-    s.left = file.bytes;
-    s.png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &s, on_error, on_warning);
-    if (s.png) s.info = png_create_info_struct(s.png);
-    if (!s.info) throw std::bad_alloc();
-    png_set_read_fn(s.png, &s, on_read);
-    if (!guarded(s, read_header)) throw broken();
-    check_size(path, s.width, s.height, s.channels, limits);
-    make_rows(s);
-    if (!guarded(s, read_rows)) throw broken();
+    PngParts parts = png_parts(file.path, file.bytes);
+    const PngRows rows(parts);
+    check_size(file.path, parts.width, parts.height, rows.channels(), file.options.limits);
+    const std::vector<Pass> passes = passes_of(parts);
+    std::size_t size = 0;
+    for (const Pass& pass : passes)
+        size += static_cast<std::size_t>(pass.height) * (1 + rows.bytes(pass.width));
+    std::vector<std::uint8_t> raw = unpack(file.path, parts, size);
 
     DecodedPicture out;
-    out.image = make_image(static_cast<int>(s.width), static_cast<int>(s.height), s.channels);
-    out.image.sample_type = s.bits == 16 ? SampleType::kUint16 : SampleType::kUint8;
-    if (s.bits == 16)
-        floats_from_codes(s.words, out.image.data);
-    else
-        floats_from_codes(s.bytes, out.image.data);
-    png_bytep exif = nullptr;
-    png_uint_32 length = 0;
-    if (png_get_eXIf_1(s.png, s.info, &length, &exif)) out.orientation = exif_orientation({exif, length});
-    out.color = stated_color(s);
+    out.image = make_image(static_cast<int>(parts.width), static_cast<int>(parts.height), rows.channels());
+    out.image.sample_type = parts.depth == 16 ? SampleType::kUint16 : SampleType::kUint8;
+    std::uint8_t* at = raw.data();
+    for (const Pass& pass : passes) {
+        const std::size_t step = 1 + rows.bytes(pass.width);
+        if (!rows.undo_filters(at, pass.width, pass.height))
+            throw Error(ErrorKind::kBadFile,
+                        cat(file.path, ": the PNG is broken: a row has an unknown filter"));
+        constexpr int kGrainRows = 32;
+        parallel_blocks(0, pass.height, kGrainRows, [&](int first, int last) {
+            std::vector<float> samples(static_cast<std::size_t>(pass.width) *
+                                       static_cast<std::size_t>(rows.channels()));
+            for (int y = first; y < last; ++y) {
+                const std::uint8_t* const row = at + static_cast<std::size_t>(y) * step + 1;
+                float* const to = out.image.pixel(pass.x, pass.y + y * pass.step_y);
+                if (pass.step_x == 1) {
+                    rows.expand(row, pass.width, to);
+                    continue;
+                }
+                rows.expand(row, pass.width, samples.data());
+                for (int x = 0; x < pass.width; ++x)
+                    std::copy_n(samples.data() + static_cast<std::ptrdiff_t>(x) * rows.channels(),
+                                rows.channels(),
+                                to + static_cast<std::ptrdiff_t>(x) * pass.step_x * rows.channels());
+            }
+        });
+        at += static_cast<std::size_t>(pass.height) * step;
+    }
+    if (!parts.complete) parts.warnings.push_back("the PNG ends early, but all of its pixels are there");
+    out.orientation = parts.orientation;
+    out.color = std::move(parts.color);
+    out.warnings = std::move(parts.warnings);
     return out;
 }
 

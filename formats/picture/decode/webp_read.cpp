@@ -5,6 +5,7 @@
 
 #include <memory>
 
+#include "formats/files/byte_reader.h"
 #include "formats/picture/decode/exif.h"
 #include "formats/picture/decode/picture_decoders.h"
 #include "libcore/base/error.h"
@@ -61,7 +62,8 @@ DecodedPicture decode_webp(const PictureFile& file) {
                                     static_cast<std::size_t>(x)) +
                                static_cast<std::size_t>(c)]) /
                     255.0f;
-    out.orientation = exif_orientation(chunk(demuxer.get(), "EXIF"));
+    out.orientation = exif_facts(chunk(demuxer.get(), "EXIF")).orientation;
+    if (out.orientation == 0) out.orientation = xmp_orientation(text_of(chunk(demuxer.get(), "XMP ")));
     const Bytes profile = chunk(demuxer.get(), "ICCP");
     out.color.icc.assign(profile.begin(), profile.end());
     return out;
