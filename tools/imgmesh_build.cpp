@@ -9,6 +9,7 @@
 #include "libcore/base/stopwatch.h"
 #include "libcore/pipeline/build.h"
 #include "tools/build_jobs.h"
+#include "tools/build_mask.h"
 #include "tools/build_options.h"
 #include "tools/build_report.h"
 #include "tools/common/in_file.h"
@@ -21,13 +22,6 @@ namespace fs = std::filesystem;
 using namespace imgmesh;
 
 namespace {
-
-// Returns the mask of --mask; empty() without it.
-Mask read_mask(const BuildOptions& o) {
-    if (o.mask.empty()) return {};
-    const Image picture = read_image(o.mask, {.limits = o.read.limits});
-    return in_file(o.mask, [&] { return image_mask(picture, static_cast<float>(o.alpha_threshold)); });
-}
 
 // Returns how to read the images: no more channels than are meshed.
 ReadImageOptions read_options(const BuildOptions& o) {
@@ -46,7 +40,11 @@ Report build_one(const Job& job, const BuildOptions& o, const Context& context, 
     const ReadImage read = read_with_warnings(job.input, read_options(o), warnings);
     const Image& image = read.image;
     const bool cut = o.cut && o.mask.empty();
-    Mask mask = cut ? alpha_mask(image, static_cast<float>(o.alpha_threshold)) : read_mask(o);
+    Mask mask;
+    if (cut)
+        mask = alpha_mask(image, static_cast<float>(o.alpha_threshold));
+    else if (!o.mask.empty())
+        mask = read_mask(o.mask, o.alpha_threshold, o.read.limits, image, job.input);
     const double read_seconds = stage.lap();
     ContainerOptions container;
     container.draco = o.draco;

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "libcore/base/error.h"
+#include "libcore/image/mask_value.h"
 
 namespace imgmesh {
 namespace {
@@ -31,17 +31,7 @@ Mask alpha_mask(const Image& image, float threshold) {
 }
 
 Mask image_mask(const Image& image, float threshold) {
-    if (Mask mask = alpha_mask(image, threshold); !mask.empty()) return mask;
-    const int grey = image.channel("Y");
-    const int rgb[] = {image.channel("R"), image.channel("G"), image.channel("B")};
-    if (grey >= 0) return thresholded(image, threshold, [&](const float* pixel) { return pixel[grey]; });
-    if (std::min({rgb[0], rgb[1], rgb[2]}) >= 0)
-        return thresholded(image, threshold, [&](const float* pixel) {
-            return (pixel[rgb[0]] + pixel[rgb[1]] + pixel[rgb[2]]) / 3;
-        });
-    if (const int alpha = image.channel("A"); alpha >= 0)
-        return thresholded(image, threshold, [&](const float* pixel) { return pixel[alpha]; });
-    throw Error(ErrorKind::kUnsupported, "a mask needs channels A, Y, or R, G and B");
+    return thresholded(image, threshold, mask_value(image, threshold));
 }
 
 }  // namespace imgmesh

@@ -263,13 +263,34 @@ class Pictures(CliCase):
         picture_files.png(self.folder / "small.png", np.ones((9, 11, 1)))
         out = ("-o", "out.glb")
         self.assert_error("imgmesh-build", ("clear.png", *out), 5, "clear.png", "no pixel is inside")
-        self.assert_error("imgmesh-build", ("in.png", *out, "--mask", "black.png"), 5, "no pixel is inside")
-        self.assert_error("imgmesh-build", ("in.png", *out, "--mask", "small.png"), 4, "11x9", "12x9")
+        self.assert_error("imgmesh-build", ("in.png", *out, "--mask", "black.png"), 5, "error: black.png: no pixel is inside",
+                          "largest value is 0 of 255")
+        self.assert_error("imgmesh-build", ("in.png", *out, "--mask", "small.png"), 4, "error: small.png", "11x9", "in.png",
+                          "12x9")
         self.assert_error("imgmesh-build", ("in.png", *out, "--mask", "none.png"), 3, "none.png")
         self.assert_error("imgmesh-build", ("in.png", *out, "--mask", ""), 2, "--mask")
         for threshold in ("0", "1.01", "-1", "nan", ""):
             self.assert_error("imgmesh-build", ("in.png", *out, "--alpha-threshold", threshold), 2,
                               "--alpha-threshold")
+
+    def test_masks_of_small_numbers(self):
+        """A mask of 0 and 1 is black to imgmesh. The message says why, and the option that it names takes the mask."""
+        picture_files.png(self.folder / "in.png", picture_files.ramp(12, 9))
+        inside = np.zeros((9, 12, 1))
+        inside[2:6, 3:9] = 1
+        masks = {"8.png": (picture_files.png(self.folder / "8.png", inside / 255), "1 of 255"),
+                 "16.png": (picture_files.png(self.folder / "16.png", inside * 3 / 65535, bits=16), "3 of 65535"),
+                 "colour.png": (picture_files.png(self.folder / "colour.png", np.repeat(inside, 3, -1) * 40 / 255), "40 of 255"),
+                 "palette.png": (picture_files.png(self.folder / "palette.png", inside[..., 0],
+                                                   palette=[[0, 0, 0], [0.4, 0.4, 0.4]]), "102 of 255"),
+                 "float.tif": (picture_files.write_float(self.folder / "float.tif", inside * 0.25), "0.25")}
+        for name, (_, largest) in masks.items():
+            result = self.assert_error("imgmesh-build", ("in.png", "-o", "out.glb", "--mask", name), 5,
+                                       f"error: {name}: no pixel is inside the mask", f"largest value is {largest},",
+                                       "threshold of 0.5")
+            threshold = result.stderr.split("--alpha-threshold ")[1].split()[0]
+            report = self.build("in.png", "--mask", name, "--alpha-threshold", threshold)
+            self.assertEqual(report["pixels"], inside.sum())
 
     def test_precision_of_the_map(self):
         picture_files.png(self.folder / "in.png", picture_files.ramp(24, 16))

@@ -3,6 +3,7 @@
 
 #include "libcore/base/error.h"
 #include "libcore/image/mask.h"
+#include "libcore/image/mask_value.h"
 
 using namespace imgmesh;
 
@@ -39,6 +40,13 @@ TEST_CASE("masks: a mask's image counts by its alpha, else by its light") {
     CHECK(image_mask(alpha, 0.5f).values == Inside{1, 1, 1});
     alpha.channel_names = {"Z"};
     CHECK_THROWS_AS(image_mask(alpha, 0.5f), Error);
+}
+
+TEST_CASE("masks: the largest value is that of the channel that counts") {
+    CHECK(largest_mask_value(row_of(1, {0, 0.25f, 0.1f}), 0.5f) == 0.25f);
+    CHECK(largest_mask_value(row_of(3, {0, 0, 0, 0.25f, 0.5f, 0, 0.1f, 0, 0}), 0.5f) == 0.25f);
+    CHECK(largest_mask_value(row_of(2, {1, 0, 1, 0.125f, 1, 0}), 0.5f) == 0.125f);  // alpha
+    CHECK(largest_mask_value(row_of(2, {0, 1, 0.25f, 1, 0, 1}), 0.5f) == 0.25f);    // of opaque pixels
 }
 
 TEST_CASE("masks: nothing is inside beyond the image") {
