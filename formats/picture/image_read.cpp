@@ -140,13 +140,18 @@ void finish_samples(const std::string& path, bool associated_alpha, bool all_req
                                    ": ", out.non_finite));
 }
 
-DecodedPicture decode(const std::string& path, const ReadImageOptions& options) {
-    const ImageLimits& limits = options.limits;
+std::vector<std::uint8_t> read_bytes(const std::string& path, const ImageLimits& limits) {
     // A device or a pipe has no size to check beforehand. No more is read than the pixels could need.
     constexpr std::uint64_t kOther = std::uint64_t{64} << 20;  // profiles, previews, metadata
     const std::uint64_t most = kOther + static_cast<std::uint64_t>(limits.max_pixels) *
                                             static_cast<std::uint64_t>(limits.max_channels) * sizeof(float);
-    std::vector<std::uint8_t> bytes = read_file(path, std::min(kMaxFileBytes, most));
+    return read_file(path, std::min(kMaxFileBytes, most));
+}
+
+}  // namespace
+
+DecodedPicture decode_picture(const std::string& path, std::span<std::uint8_t> bytes,
+                              const ReadImageOptions& options) {
     const PictureFile file{path, bytes, probe_picture(path, bytes), options};
     switch (file.claim.format) {
         case PictureFormat::kExr:
@@ -157,15 +162,20 @@ DecodedPicture decode(const std::string& path, const ReadImageOptions& options) 
             return decode_png(file);
         case PictureFormat::kTiff:
             return decode_tiff(file);
+        case PictureFormat::kBmp:
+            return decode_bmp(file);
+        case PictureFormat::kPnm:
+            return decode_pnm(file);
+        case PictureFormat::kTga:
+            return decode_tga(file);
         default:
             return decode_with_oiio(file);
     }
 }
 
-}  // namespace
-
 ReadImage read_image_file(const std::string& path, const ReadImageOptions& options) {
-    DecodedPicture picture = decode(path, options);
+    std::vector<std::uint8_t> bytes = read_bytes(path, options.limits);
+    DecodedPicture picture = decode_picture(path, bytes, options);
     if (!picture.has_layers && (options.part || options.layer))
         picture.warnings.emplace_back("it has neither parts nor layers, which only EXR images have");
     ReadImage out{std::move(picture.image), std::move(picture.warnings), std::move(picture.place)};

@@ -38,6 +38,18 @@ def truth_grey():
     return samples
 
 
+def green_and_alpha():
+    both = truth_alpha()
+    return np.concatenate([np.repeat(both[..., 1:2], 3, axis=-1), both[..., 3:]], axis=-1)
+
+
+def squares():
+    """White and black, 8 pixels a side, white first."""
+    y, x = np.mgrid[0:64, 0:96] // 8
+    grey = np.where((x + y) % 2 == 0, 255, 0)
+    return np.stack([grey, grey, grey, np.full_like(grey, 255)], axis=-1)
+
+
 class Read(NamedTuple):
     """A file, the RGBA codes that it must give, how far they may be off, and options of imgmesh-build."""
     name: str
@@ -69,6 +81,13 @@ READ = (
     Read("F02-cmyk-24bit-tiles.tif"),
     Read("F02-cmyk-4bit-strips.tif", tolerance=17),  # 16 shades of each ink
     Read("F02-grey-24bit-tiles.tif", truth_grey),
+    Read("F03-bmp-bitfields-noalpha.bmp"),
+    Read("F03-bmp-bitfields-rgba-v5.bmp", truth_alpha),
+    Read("F03-bmp-bitfields-rgbx.bmp"),
+    Read("F03-bmp32-unused-zero.bmp"),
+    Read("F03-tga-grey-alpha.tga", green_and_alpha),
+    Read("F04-bmp-os2v2.bmp"),
+    Read("F04-bmp-rle8-eol-eob.bmp"),
     Read("F05-icc_applergb18.png", tolerance=3),  # stored in 8 bits of another curve
     Read("F05-icc_p3_g22.png", tolerance=3),
     Read("F05-icc_rec2020_g24.png", tolerance=10),
@@ -77,6 +96,8 @@ READ = (
     Read("F11-thumbnail-first.tif"),
     Read("F12-bad-crc-text-chunk.png"),
     Read("F13-picture.png"),
+    Read("F17-p1-packed.pbm", squares),
+    Read("F18-p7.pam", truth_alpha),
     Read("F08-uint-id.exr", tolerance=1),
     Read("F08-z-nan.exr", tolerance=1),
     Read("F09-blender-layers.exr", tolerance=1),
@@ -87,6 +108,8 @@ READ = (
 )
 
 REFUSED = (
+    Refused("F15-embedded.gltf", 5, ("glTF", "imgmesh-reconstruct")),
+    Refused("F18-base.psd", 5, ("Photoshop",)),
     Refused("F08-z-nan.exr", 4, ("channel Z", "finite"), ("--channels", "R,G,B,Z")),
     Refused("F08-uint-id.exr", 5, ("channel id", "integers"), ("--channels", "R,G,B,id")),
     Refused("F09-blender-layers.exr", 4, ("no layer Combined", "ViewLayer.Combined"), ("--layer", "Combined")),
@@ -125,6 +148,17 @@ class Cases(CliCase):
                 off = np.abs(back - expected)
                 self.assertLessEqual(off[..., 3].max(), case.tolerance, "alpha")
                 self.assertLessEqual(off[visible].max(), case.tolerance, "colour")
+
+    def test_masks(self):
+        """The message names the mask, its largest value, and an option that takes the mask as it is."""
+        for name in ("F13-mask-0-1.png", "F13-mask-int32.tif") if FOLDER else ():
+            mask = ("--mask", FOLDER / name)
+            line = self.assert_error("imgmesh-build", (FOLDER / "F13-picture.png", "-o", "out.glb", *mask), 5,
+                                     f"{name}: no pixel is inside the mask", "largest value is").stderr
+            self.assertNotIn("F13-picture", line)
+            threshold = line.split("--alpha-threshold ")[1].split()[0]
+            report = self.build(FOLDER / "F13-picture.png", *mask, "--alpha-threshold", threshold)
+            self.assertLess(report["pixels"], 96 * 64)
 
     def test_luminance_chroma(self):
         """Subsampled chroma is lost for good, so the luminance is that of the original, where it can be shown."""

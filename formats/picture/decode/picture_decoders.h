@@ -38,10 +38,17 @@ struct DecodedPicture {
 /// Each throws Error(kBadFile) for broken or truncated content and sizes over the limits, before memory is
 /// taken for the pixels, and kUnsupported for kinds of images that imgmesh does not use.
 DecodedPicture decode_with_oiio(const PictureFile& file);
+DecodedPicture decode_bmp(const PictureFile& file);
+DecodedPicture decode_pnm(const PictureFile& file);
+DecodedPicture decode_tga(const PictureFile& file);
 DecodedPicture decode_png(const PictureFile& file);
 DecodedPicture decode_tiff(const PictureFile& file);
 DecodedPicture decode_webp(const PictureFile& file);
 /// Reads the part, layer and channels of the options. The others leave that to read_image().
 DecodedPicture decode_exr(const PictureFile& file);
+
+/// Finds out what the bytes are and runs the decoder for it. Files may hold others: a BMP a PNG.
+DecodedPicture decode_picture(const std::string& path, std::span<std::uint8_t> bytes,
+                              const ReadImageOptions& options);
 
 }  // namespace imgmesh

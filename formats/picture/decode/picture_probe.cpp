@@ -1,6 +1,5 @@
 // Sources: the formats' specifications - PNG (ISO/IEC 15948, 5 and 11), JPEG (ITU T.81, annex B), GIF89a
-// (18), BMP (BITMAPCOREHEADER, BITMAPINFOHEADER), Truevision TGA 2.0, JPEG 2000
-// (T.800, A.5.1), HEIF (ISO/IEC 23008-12, `ispe`).
+// (18), JPEG 2000 (T.800, A.5.1), HEIF (ISO/IEC 23008-12, `ispe`).
 #include "formats/picture/decode/picture_probe.h"
 
 #include <algorithm>
@@ -11,6 +10,8 @@
 
 #include "formats/files/byte_reader.h"
 #include "formats/files/extension.h"
+#include "formats/picture/decode/other_formats.h"
+#include "formats/picture/decode/tga_signature.h"
 #include "libcore/base/error.h"
 
 namespace imgmesh {
@@ -57,32 +58,6 @@ void claim_jpeg(Bytes b, PictureClaim& claim) {
     }
 }
 
-void claim_bmp(Bytes b, PictureClaim& claim) {
-    const ByteReader in = little_endian(b);
-    const bool core = in.number_at(14, 4) == 12;
-    const auto side = [&](std::size_t at) {  // a negative height means top-down rows
-        const auto value = static_cast<std::int32_t>(in.number_at(at, 4));
-        return value < 0 ? -std::int64_t{value} : std::int64_t{value};
-    };
-    claim.width = core ? in.number_at(18, 2) : side(18);
-    claim.height = core ? in.number_at(20, 2) : side(22);
-}
-
-// Runs consist of a palette's indices. OpenImageIO 2.4 looks them up in a palette that other depths do not
-// have, and crashes; and it treats unknown compressions as none.
-void check_bmp_compression(const std::string& path, Bytes b) {
-    const ByteReader in = little_endian(b);
-    const std::uint32_t header = in.number_at(14, 4), bits = in.number_at(28, 2);
-    const std::uint32_t compression = header < 40 ? 0 : in.number_at(30, 4);
-    constexpr std::uint32_t kNone = 0, kRuns8 = 1, kRuns4 = 2, kMasks = 3, kMasksWithAlpha = 6;
-    if (compression > kMasks && compression != kMasksWithAlpha)
-        throw Error(ErrorKind::kUnsupported, cat(path, ": BMP of compression ", compression, ", expected ",
-                                                 kNone, " to ", kMasks, " or ", kMasksWithAlpha));
-    if ((compression == kRuns8 && bits != 8) || (compression == kRuns4 && bits != 4))
-        throw broken(path, cat("BMP of ", bits, " bits with compression ", compression, ", which is for ",
-                               compression == kRuns8 ? 8 : 4, " bits"));
-}
-
 void claim_jpeg2000(Bytes b, PictureClaim& claim) {
     const ByteReader in = big_endian(b);
     if (const auto at = find(b, 0, "\xFF\x4F\xFF\x51")) {
@@ -117,6 +92,7 @@ constexpr Signature kSignatures[] = {{PictureFormat::kPng, 0, "\x89PNG\r\n\x1a\n
                                      {PictureFormat::kWebp, 8, "WEBPVP8"sv},
                                      {PictureFormat::kGif, 0, "GIF8"sv},
                                      {PictureFormat::kBmp, 0, "BM"sv},
+                                     {PictureFormat::kBmp, 0, "BA"sv},
                                      {PictureFormat::kHdr, 0, "#?"sv},
                                      {PictureFormat::kJpeg2000, 0, "\0\0\0\x0CjP  "sv},
                                      {PictureFormat::kJpeg2000, 0, "\xFF\x4F\xFF\x51"sv},
@@ -130,6 +106,8 @@ constexpr std::string_view kRawExtensions[] = {".3fr", ".arw", ".cr2", ".dcr", "
                                                ".iiq", ".kdc", ".mef", ".mos", ".nef", ".nrw",
                                                ".pef", ".rw2", ".sr2", ".srw"};
 
+constexpr std::string_view kTgaExtensions[] = {".tga", ".tpic", ".vda", ".icb", ".vst"};
+
 PictureFormat recognise(const std::string& path, Bytes b) {
     const std::string extension = lower_extension(path);
     if (b.empty()) throw broken(path, "is empty, expected an image");
@@ -141,9 +119,14 @@ PictureFormat recognise(const std::string& path, Bytes b) {
                         cat(path, ": camera raw files are not supported; develop it to TIFF, EXR or PNG"));
         return s.format;
     }
-    const bool letter_p = b.size() > 2 && b[0] == 'P' && std::isspace(b[2]);
-    if (letter_p && ((b[1] >= '1' && b[1] <= '6') || b[1] == 'F' || b[1] == 'f')) return PictureFormat::kPnm;
-    if (extension == ".tga" || extension == ".tpic") return PictureFormat::kTga;
+    const bool letter_p = b.size() > 2 && b[0] == 'P' && (std::isspace(b[2]) || b[2] == '#');
+    const bool pam = letter_p && b[1] == '7' && b[2] != ' ';  // a space follows in thumbnails of XV
+    if (pam || (letter_p && ((b[1] >= '1' && b[1] <= '6') || b[1] == 'F' || b[1] == 'f')))
+        return PictureFormat::kPnm;
+    if (has_tga_footer(b)) return PictureFormat::kTga;
+    if (const std::string other = name_other_format(b, extension); !other.empty())
+        throw Error(ErrorKind::kUnsupported, cat(path, ": ", other));
+    if (std::ranges::count(kTgaExtensions, extension)) return PictureFormat::kTga;
     throw broken(path,
                  "not an image that imgmesh reads (PNG, JPEG, TIFF, EXR, WebP, GIF, BMP, PNM, TGA, HDR, "
                  "JPEG 2000, HEIF)");
@@ -162,14 +145,6 @@ PictureClaim probe_picture(const std::string& path, Bytes b) {
             claim.width = little.number_at(6, 2);
             claim.height = little.number_at(8, 2);
             break;
-        case PictureFormat::kBmp:
-            check_bmp_compression(path, b);
-            claim_bmp(b, claim);
-            break;
-        case PictureFormat::kTga:
-            claim.width = little.number_at(12, 2);
-            claim.height = little.number_at(14, 2);
-            break;
         case PictureFormat::kJpeg2000:
             claim_jpeg2000(b, claim);
             break;
@@ -180,8 +155,10 @@ PictureClaim probe_picture(const std::string& path, Bytes b) {
         case PictureFormat::kTiff:
         case PictureFormat::kExr:
         case PictureFormat::kWebp:
-        case PictureFormat::kPnm:
         case PictureFormat::kHdr:
+        case PictureFormat::kBmp:
+        case PictureFormat::kPnm:
+        case PictureFormat::kTga:
             break;
     }
     return claim;

@@ -11,8 +11,8 @@ namespace imgmesh {
 
 enum class PictureFormat { kPng, kJpeg, kTiff, kExr, kWebp, kGif, kBmp, kPnm, kTga, kHdr, kJpeg2000, kHeif };
 
-/// The size by the first bytes; 0 if only the library can tell, which then does so without taking memory for
-/// the pixels.
+/// The size by the first bytes; 0 if the decoder tells it, which then does so without taking memory for the
+/// pixels.
 struct PictureClaim {
     PictureFormat format;
     std::int64_t width = 0;
@@ -20,10 +20,9 @@ struct PictureClaim {
     std::int64_t channels = 0;
 };
 
-/// Recognises the format by the content, not by the name (except TGA, which has no signature, by its
-/// extension). Throws Error: kBadFile for no image or a
-/// BMP whose compression does not fit its depth; kUnsupported for camera raw files and other compressions of
-/// BMP.
+/// Recognises the format by the content, not by the name (except TGA, which may have no signature, by its
+/// extension). Throws Error: kBadFile for no image; kUnsupported for camera raw files and other formats that
+/// imgmesh knows by name alone.
 PictureClaim probe_picture(const std::string& path, std::span<const std::uint8_t> bytes);
 
 /// Throws Error(kBadFile) if the size is not positive or over the limits.
