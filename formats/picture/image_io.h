@@ -1,4 +1,4 @@
-// Images from and to files: PNG, TIFF, EXR and WebP through their own libraries, the rest through
+// Images from and to files: PNG, JPEG, TIFF, EXR and WebP by themselves, the rest through
 // OpenImageIO, which is loaded when it is first needed. Target imgmesh::pictures.
 #pragma once
 

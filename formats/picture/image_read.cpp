@@ -158,6 +158,8 @@ DecodedPicture decode_picture(const std::string& path, std::span<std::uint8_t> b
             return decode_exr(file);
         case PictureFormat::kWebp:
             return decode_webp(file);
+        case PictureFormat::kJpeg:
+            return decode_jpeg(file);
         case PictureFormat::kPng:
             return decode_png(file);
         case PictureFormat::kTiff:

@@ -14,8 +14,9 @@ const OiioModule& load() {
     void* const entry = module ? ::dlsym(module, kOiioEntry) : nullptr;
     if (!entry) {
         const char* reason = ::dlerror();
-        throw Error(ErrorKind::kUnsupported, cat("images other than PNG, EXR and WebP need OpenImageIO: ",
-                                                 one_line(reason ? reason : "no such module")));
+        throw Error(ErrorKind::kUnsupported,
+                    cat("images other than PNG, JPEG, TIFF, EXR and WebP need OpenImageIO: ",
+                        one_line(reason ? reason : "no such module")));
     }
     return *reinterpret_cast<OiioEntry*>(entry)();
 }

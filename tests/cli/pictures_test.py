@@ -332,7 +332,11 @@ class Pictures(CliCase):
             with self.subTest(args):
                 self.assertNotIn("OpenImageIO", self.loaded(tool, *args))
         self.assertIn("libOpenImageIO", self.loaded("imgmesh-reconstruct", "a.glb", "-o", "b.tif"))
-        self.assertIn("libOpenImageIO", self.loaded("imgmesh-build", "b.tif", "-o", "c.glb"))
+        self.assertNotIn("OpenImageIO", self.loaded("imgmesh-build", "b.tif", "-o", "c.glb"))
+        self.run_ok("imgmesh-reconstruct", "a.glb", "-o", "b.jpg")
+        self.assertNotIn("OpenImageIO", self.loaded("imgmesh-build", "b.jpg", "-o", "d.glb"))
+        picture_files.write_float(self.folder / "b.hdr", picture_files.ramp(20, 16))
+        self.assertIn("libOpenImageIO", self.loaded("imgmesh-build", "b.hdr", "-o", "e.glb"))
 
 
 if __name__ == "__main__":

@@ -52,7 +52,7 @@ struct Source {
     float scale = 1;
 };
 
-std::optional<Source> source_of(const Image& image, const ColorPlaces& places, cmsColorSpaceSignature model,
+std::optional<Source> source_of(const Image& image, const ColorPlaces& places, cmsUInt32Number model,
                                 bool inks) {
     const std::vector<std::size_t>& at = places.at;
     if (inks) {
@@ -92,7 +92,8 @@ std::int64_t outside(const Image& image, ColorSpace space) {
 
 std::optional<Image> linear_from_profile(const Image& image, const LcmsProfile& profile, bool inks) {
     // Links and named colours lead to no colour space, abstract profiles come from none.
-    const cmsProfileClassSignature kind = cmsGetDeviceClass(profile.get());
+    // As a number: a broken profile has values that the enumeration does not have.
+    const cmsUInt32Number kind = cmsGetDeviceClass(profile.get());
     if (kind != cmsSigInputClass && kind != cmsSigDisplayClass && kind != cmsSigOutputClass &&
         kind != cmsSigColorSpaceClass)
         return std::nullopt;

@@ -39,6 +39,7 @@ struct DecodedPicture {
 /// taken for the pixels, and kUnsupported for kinds of images that imgmesh does not use.
 DecodedPicture decode_with_oiio(const PictureFile& file);
 DecodedPicture decode_bmp(const PictureFile& file);
+DecodedPicture decode_jpeg(const PictureFile& file);
 DecodedPicture decode_pnm(const PictureFile& file);
 DecodedPicture decode_tga(const PictureFile& file);
 DecodedPicture decode_png(const PictureFile& file);

@@ -1,5 +1,5 @@
-// Sources: the formats' specifications - PNG (ISO/IEC 15948, 5 and 11), JPEG (ITU T.81, annex B), GIF89a
-// (18), JPEG 2000 (T.800, A.5.1), HEIF (ISO/IEC 23008-12, `ispe`).
+// Sources: the formats' specifications - GIF89a (18), JPEG 2000 (T.800, A.5.1), HEIF (ISO/IEC 23008-12,
+// `ispe`).
 #include "formats/picture/decode/picture_probe.h"
 
 #include <algorithm>
@@ -37,25 +37,6 @@ std::optional<std::size_t> find(Bytes b, std::size_t from, std::string_view text
     constexpr std::size_t kWindow = std::size_t{1} << 20;
     const std::size_t at = text_of(b.first(std::min(b.size(), kWindow))).find(text, from);
     return at == std::string_view::npos ? std::nullopt : std::optional(at);
-}
-
-// The frame header; a progressive file makes libjpeg take memory for the whole image when it is opened.
-void claim_jpeg(Bytes b, PictureClaim& claim) {
-    const ByteReader in = big_endian(b);
-    for (std::size_t at = 2; at + 9 < b.size();) {
-        if (b[at] != 0xFF || b[at + 1] == 0 || b[at + 1] == 0xFF) {
-            ++at;  // libjpeg skips to the next marker as well
-            continue;
-        }
-        const std::uint8_t marker = b[at + 1];
-        if (marker >= 0xC0 && marker <= 0xCF && marker != 0xC4 && marker != 0xC8 && marker != 0xCC) {
-            claim.height = in.number_at(at + 5, 2);
-            claim.width = in.number_at(at + 7, 2);
-            return;
-        }
-        const bool alone = marker == 0x01 || (marker >= 0xD0 && marker <= 0xD8);
-        at += alone ? 2 : 2 + in.number_at(at + 2, 2);
-    }
 }
 
 void claim_jpeg2000(Bytes b, PictureClaim& claim) {
@@ -138,9 +119,6 @@ PictureClaim probe_picture(const std::string& path, Bytes b) {
     PictureClaim claim{recognise(path, b)};
     const ByteReader little = little_endian(b);
     switch (claim.format) {
-        case PictureFormat::kJpeg:
-            claim_jpeg(b, claim);
-            break;
         case PictureFormat::kGif:
             claim.width = little.number_at(6, 2);
             claim.height = little.number_at(8, 2);
@@ -151,6 +129,7 @@ PictureClaim probe_picture(const std::string& path, Bytes b) {
         case PictureFormat::kHeif:
             claim_heif(b, claim);
             break;
+        case PictureFormat::kJpeg:
         case PictureFormat::kPng:
         case PictureFormat::kTiff:
         case PictureFormat::kExr:
