@@ -13,9 +13,11 @@ set(IMGMESH_PUBLIC_HEADERS
   libcore/image/feature_space.h
   libcore/image/image.h
   libcore/image/mask.h
+  libcore/image/texture_image.h
 
   libcore/mesh/base_mesh.h
   libcore/mesh/mesh_image.h
+  libcore/mesh/outer_edge.h
   libcore/mesh/pixel_map.h
 
   libcore/simplify/metric.h

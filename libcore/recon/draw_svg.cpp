@@ -45,7 +45,7 @@ std::string draw_svg(const MeshImage& mesh_image, int level_index, DrawMode mode
         throw Error(ErrorKind::kBadArgument, "only the wire and flat drawings can be written as SVG");
     const BaseMesh& mesh = level_to_draw(mesh_image, level_index).mesh;
     const SourceInfo& source = mesh_image.source;
-    const std::vector<Vec2d> points = outward(mesh, source);
+    const std::vector<Vec2d> points = outward(mesh_image.levels[as_index(level_index)], source);
     std::string out = cat("<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"", source.width, "\" height=\"",
                           source.height, "\" viewBox=\"-.5 -.5 ", source.width, ' ', source.height, "\">\n");
     if (mode == DrawMode::kFlat)

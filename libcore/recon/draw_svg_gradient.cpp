@@ -74,7 +74,7 @@ void append_gradient(std::string& out, std::size_t id, const Gradient& g) {
 std::string draw_svg_gradient(const MeshImage& mesh_image, int level_index) {
     const BaseMesh& mesh = level_to_draw(mesh_image, level_index).mesh;
     const SourceInfo& source = mesh_image.source;
-    const std::vector<Vec2d> points = outward(mesh, source);
+    const std::vector<Vec2d> points = outward(mesh_image.levels[as_index(level_index)], source);
     std::vector<Vec3d> colors(mesh.vertex_count());
     for (Id v = 0; v < mesh.vertex_count(); ++v) {
         const float* f = mesh.feature_of(v);

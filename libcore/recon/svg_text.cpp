@@ -3,6 +3,8 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "libcore/mesh/outer_edge.h"
+
 namespace imgmesh {
 
 void append_number(std::string& out, double value) {
@@ -23,14 +25,19 @@ void append_point(std::string& out, char command, const Vec2d& p) {
     append_number(out, p.y());
 }
 
-std::vector<Vec2d> outward(const BaseMesh& mesh, const SourceInfo& source) {
+std::vector<Vec2d> outward(const Level& level, const SourceInfo& source) {
+    const BaseMesh& mesh = level.mesh;
+    std::vector<Vec2d> points;
+    points.reserve(mesh.vertex_count());
+    if (source.has_mask) {
+        for (const Vec2f& p : outer_positions(mesh, level.map)) points.push_back(p.cast<double>());
+        return points;
+    }
     const auto moved = [&](float x, int side) {
-        if (side == 1 || source.has_mask) return double(x);  // already -0.5 .. 0.5
+        if (side == 1) return double(x);  // already -0.5 .. 0.5
         if (x <= 0) return x - 0.5;
         return x >= static_cast<float>(side - 1) ? x + 0.5 : double(x);
     };
-    std::vector<Vec2d> points;
-    points.reserve(mesh.vertex_count());
     for (const Vec2f& p : mesh.position)
         points.emplace_back(moved(p.x(), source.width), moved(p.y(), source.height));
     return points;
