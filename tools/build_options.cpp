@@ -126,15 +126,22 @@ void add_build_options(CLI::App& app, BuildOptions& o) {
     const std::string image = "Image";
     in_group(add_file(app, "--mask", o.mask,
                       "Image of the same size: only pixels where its alpha, or else its brightness, reaches "
-                      "the threshold are meshed, whatever the images' own alpha"),
+                      "the threshold are meshed, whatever the images' own alpha; with --alpha keep that is a "
+                      "channel all the same"),
              image);
-    CLI::Option* const alpha =
-        add_choice(app, "--alpha", o.cut, Choices<bool>{{"cut", true}, {"ignore", false}},
-                   "Mesh only what an alpha channel shows, or all pixels");
+    CLI::Option* const alpha = add_choice(
+        app, "--alpha", o.alpha,
+        Choices<AlphaUse>{{"auto", AlphaUse::kAuto},
+                          {"keep", AlphaUse::kKeep},
+                          {"cut", AlphaUse::kCut},
+                          {"ignore", AlphaUse::kIgnore}},
+        "Use of an alpha channel: keep it as a channel of the mesh, cut the image where it is below "
+        "the threshold, or ignore it; auto keeps what is soft and cuts the rest");
     in_group(alpha, image);
     CLI::Option* const threshold =
         add_number(app, "--alpha-threshold", o.alpha_threshold, {0, 1, true},
-                   "Least alpha, or brightness of a mask, of the pixels that are meshed");
+                   {"Least alpha, or brightness of a mask, of the pixels that are meshed",
+                    "0.5, or 1/510 where alpha is kept"});
     advanced(app, in_group(threshold, image));
     add_read_options(app, o.read);
 

@@ -13,6 +13,14 @@
 
 namespace imgmesh {
 
+/// What an alpha channel is to a build.
+enum class AlphaUse {
+    kAuto,   ///< kept if it is soft, else cut
+    kKeep,   ///< a channel of the mesh
+    kCut,    ///< a mask
+    kIgnore  ///< nothing
+};
+
 struct BuildOptions {
     std::vector<std::string> inputs;
     std::string output;
@@ -21,9 +29,9 @@ struct BuildOptions {
     std::vector<std::function<void(BuildParams&)>> given;  ///< the options that count more than the preset
     DracoMode draco = DracoMode::kEdgebreaker;
     ReadImageOptions read;
-    bool cut = true;  ///< whether alpha masks the image
+    AlphaUse alpha = AlphaUse::kAuto;
     std::string mask;
-    double alpha_threshold = 0.5;
+    std::optional<double> alpha_threshold;  ///< none: 1/2, or where alpha is kept whatever is not transparent
     TextureOptions texture;
 };
 

@@ -1,4 +1,5 @@
 // imgmesh-build: images in, containers out.
+#include <algorithm>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -7,6 +8,7 @@
 #include "formats/picture/image_io.h"
 #include "libcore/base/parallel.h"
 #include "libcore/base/stopwatch.h"
+#include "libcore/mesh/outer_edge.h"
 #include "libcore/pipeline/build.h"
 #include "tools/build_jobs.h"
 #include "tools/build_mask.h"
@@ -22,6 +24,48 @@ namespace fs = std::filesystem;
 using namespace imgmesh;
 
 namespace {
+
+// The threshold of masks: half, as everywhere.
+constexpr double kOpaqueEnough = 0.5;
+
+// What becomes of an image's alpha: AlphaUse, but never kAuto.
+AlphaUse alpha_use(const Image& image, const BuildOptions& o) {
+    const auto& channels = o.params.channels;
+    const bool left_out =
+        !channels.empty() && std::ranges::find(channels, "A", &ChannelChoice::name) == channels.end();
+    if (image.channel("A") < 0) return AlphaUse::kIgnore;
+    if (o.alpha == AlphaUse::kKeep) return AlphaUse::kKeep;
+    if (o.alpha == AlphaUse::kIgnore || !o.mask.empty()) return AlphaUse::kIgnore;
+    if (o.alpha == AlphaUse::kCut || left_out) return AlphaUse::kCut;
+    return has_soft_alpha(image) ? AlphaUse::kKeep : AlphaUse::kCut;
+}
+
+// Adds alpha to the channels of the mesh. Refinement is for colour alone: where nobody has asked for the
+// alpha, it is left out with a warning instead of an error.
+void keep_alpha(const Image& image, const std::string& input, bool asked, BuildParams& p,
+                std::vector<std::string>& warnings) {
+    if (p.channels.empty())
+        for (const std::string& name : split_names(image.channel_names).color)
+            p.channels.push_back({name, 1});
+    if (std::ranges::find(p.channels, "A", &ChannelChoice::name) == p.channels.end())
+        p.channels.push_back({"A", kAlphaWeight});
+    if (asked || (p.refine.value_or(0) == 0 && p.objective == Objective::kLuv)) return;
+    p.refine = 0;
+    p.objective = Objective::kLuv;
+    warnings.push_back(
+        cat(input, ": its soft alpha is kept, and so the mesh is not refined; --alpha cut refines it"));
+}
+
+// Returns the mask of --mask, or of alpha; empty() for none.
+Mask mask_of(const Image& image, const std::string& input, AlphaUse alpha, const BuildOptions& o) {
+    const auto threshold = [&](double usual) {
+        return static_cast<float>(o.alpha_threshold.value_or(usual));
+    };
+    if (!o.mask.empty())
+        return read_mask(o.mask, o.alpha_threshold.value_or(kOpaqueEnough), o.read.limits, image, input);
+    if (alpha == AlphaUse::kKeep) return alpha_mask(image, threshold(kVisibleAlpha));
+    return alpha == AlphaUse::kCut ? alpha_mask(image, threshold(kOpaqueEnough)) : Mask();
+}
 
 // Returns how to read the images: no more channels than are meshed.
 ReadImageOptions read_options(const BuildOptions& o) {
@@ -39,37 +83,46 @@ Report build_one(const Job& job, const BuildOptions& o, const Context& context, 
     check_output(job.output, context.overwrite);
     const ReadImage read = read_with_warnings(job.input, read_options(o), warnings);
     const Image& image = read.image;
-    const bool cut = o.cut && o.mask.empty();
-    Mask mask;
-    if (cut)
-        mask = alpha_mask(image, static_cast<float>(o.alpha_threshold));
-    else if (!o.mask.empty())
-        mask = read_mask(o.mask, o.alpha_threshold, o.read.limits, image, job.input);
+    const AlphaUse alpha = alpha_use(image, o);
+    const bool keep = alpha == AlphaUse::kKeep;
+    BuildParams params = o.params;
+    if (keep) keep_alpha(image, job.input, o.alpha == AlphaUse::kKeep, params, warnings);
+    Mask mask = mask_of(image, job.input, alpha, o);
     const double read_seconds = stage.lap();
     ContainerOptions container;
     container.draco = o.draco;
     container.overwrite = context.overwrite;
     if (o.texture.wanted)
-        container.texture.picture =
-            in_file(job.input, [&] { return encode_texture(image, mask, o.texture.type); });
+        container.texture.picture = in_file(job.input, [&] {
+            return encode_texture(image, mask, o.texture.type,
+                                  keep ? TextureAlpha::kOwn : TextureAlpha::kMask);
+        });
     BuildResult result =
-        in_file(job.input, [&] { return build_mesh_image(image, o.params, progress, std::move(mask)); });
+        in_file(job.input, [&] { return build_mesh_image(image, params, progress, std::move(mask)); });
     result.mesh_image.generator = context.generator;
     if (result.mesh_image.source.has_mask) {
-        result.mesh_image.parameters.emplace_back("mask", std::string(cut ? "alpha" : "picture"));
-        result.mesh_image.parameters.emplace_back("alpha-threshold", o.alpha_threshold);
+        result.mesh_image.parameters.emplace_back("mask", std::string(o.mask.empty() ? "alpha" : "picture"));
+        result.mesh_image.parameters.emplace_back(
+            "alpha-threshold",
+            o.alpha_threshold.value_or(keep && o.mask.empty() ? kVisibleAlpha : kOpaqueEnough));
     }
     stage.lap();
-    if (o.texture.wanted) container.texture.coords = texture_coords(result.mesh_image);
+    if (o.texture.wanted) {
+        extend_to_outer_edge(result.mesh_image);
+        container.texture.coords = texture_coords(result.mesh_image);
+    }
     write_container(job.output, result.mesh_image, container);
     const double write_seconds = stage.lap();
 
     // The figures are those that a reader of the container gets.
     const Container written = read_container(job.output);
     Report report = {{"input", job.input}, {"output", job.output}};
-    const char* alpha = image.channel("A") < 0 ? "none" : cut ? "cut" : "ignored";
+    const char* use = image.channel("A") < 0    ? "none"
+                      : keep                    ? "kept"
+                      : alpha == AlphaUse::kCut ? "cut"
+                                                : "ignored";
     report.update(
-        image_report(image, alpha, result.report, written, {read_seconds, write_seconds, whole.lap()}));
+        image_report(image, use, result.report, written, {read_seconds, write_seconds, whole.lap()}));
     report.update(read_report(read));
     return report;
 }

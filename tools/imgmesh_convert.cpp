@@ -1,5 +1,6 @@
 // imgmesh-convert: a container as another file variant or with another compression, with fewer levels, or in
 // another format.
+#include <algorithm>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -10,6 +11,7 @@
 #include "formats/files/extension.h"
 #include "formats/picture/image_io.h"
 #include "libcore/image/feature_space.h"
+#include "libcore/mesh/outer_edge.h"
 #include "libcore/recon/draw.h"
 #include "tools/common/container_input.h"
 #include "tools/common/in_file.h"
@@ -133,10 +135,14 @@ void keep_levels(const Options& o, MeshImage& m, Texture& texture) {
     m.levels = std::move(kept);
 }
 
-// Returns the texture of the meshes; `kept` is the existing one.
-Texture chosen_texture(const Options& o, const MeshImage& m, Texture kept, Context& context) {
-    if (!o.texture.wanted) return kept;
-    if (!*o.texture.wanted) return {};
+// Returns the texture of the meshes; `kept` is the existing one. What engines get covers all of its pixels:
+// the meshes of a new texture, and those without a pixel map.
+Texture chosen_texture(const Options& o, MeshImage& m, Texture kept, Context& context) {
+    if (!o.texture.wanted && !kept.picture.empty()) return kept;
+    if (!o.texture.wanted.value_or(false)) {
+        if (o.no_layers) extend_to_outer_edge(m);
+        return {};
+    }
     const SourceInfo& source = m.source;
     Image image;
     if (o.image.empty()) {
@@ -155,8 +161,13 @@ Texture chosen_texture(const Options& o, const MeshImage& m, Texture kept, Conte
         mask = {source.width, source.height, {}};
         for (const PixelCoord& c : m.levels[0].map) mask.values.push_back(c.face != kNone);
     }
+    const auto& names = source.channel_names;
+    const bool soft = std::find(names.begin(), names.end(), "A") != names.end();
+    extend_to_outer_edge(m);
     return in_file(o.image.empty() ? o.input : o.image, [&] {
-        return Texture{encode_texture(image, mask, o.texture.type), texture_coords(m)};
+        return Texture{
+            encode_texture(image, mask, o.texture.type, soft ? TextureAlpha::kOwn : TextureAlpha::kMask),
+            texture_coords(m)};
     });
 }
 
@@ -179,6 +190,8 @@ Image id_image(const Level& level, bool has_mask) {
 void export_level(const Options& o, const MeshImage& m, int index, Context& context) {
     const Level& level = m.levels[static_cast<std::size_t>(index)];
     const std::string extension = lower_extension(o.output);
+    BaseMesh mesh = level.mesh;
+    mesh.position = outer_positions(level.mesh, level.map);
     if (extension == ".png") {
         write_image(o.output, id_image(level, m.source.has_mask), {context.overwrite, SampleType::kUint8});
         return;
@@ -190,12 +203,12 @@ void export_level(const Options& o, const MeshImage& m, int index, Context& cont
         text = o.shading == Shading::kGradient ? draw_svg_gradient(m, index)
                                                : draw_svg(m, index, DrawMode::kFlat);
     else if (extension == ".ply")
-        text = ply_from_mesh(level.mesh);
+        text = ply_from_mesh(mesh);
     else if (extension == ".obj")
-        text = obj_from_mesh(level.mesh, m.source);
+        text = obj_from_mesh(mesh, m.source);
     else
         text = sprite_json_from_mesh(
-            level.mesh, m.source,
+            mesh, m.source,
             o.image.empty() ? fs::path(o.output).filename().replace_extension(".png").string() : o.image,
             context.generator);
     write_text(o.output, text, context.overwrite);

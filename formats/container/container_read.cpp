@@ -78,7 +78,7 @@ BaseMesh load_level(const AssetLevel& level, const SourceInfo& source, View buff
         findings.add("mesh.topology", cat("the mesh has the hash ", topology, ", its pixel map was made for ",
                                           level.topology));
     const std::size_t before = findings.errors();
-    BaseMesh base = base_from_stored(mesh, findings);
+    BaseMesh base = base_from_stored(mesh, findings, layout_of(source).alpha.has_value());
     for (const auto& [u, v] : mesh.texcoord) coords.emplace_back(u, v);
     if (findings.collects() && findings.errors() == before) lint_mesh(mesh, level, source, findings);
     return base;

@@ -2,6 +2,7 @@
 // B1, with the colours that MeshLab and Blender read; TexturePacker's "JSON (Hash)" export with polygons.
 #include "formats/export/mesh_export.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -30,9 +31,7 @@ std::string number(float value) {
 
 // Returns a coordinate in pixels from the top-left corner of the image, along one axis.
 float from_corner(float x, int side) {
-    if (side == 1) return x + 0.5f;  // a strip from -0.5 to 0.5
-    if (x <= 0) return 0;
-    return x >= static_cast<float>(side - 1) ? static_cast<float>(side) : x + 0.5f;
+    return std::clamp(x + 0.5f, 0.0f, static_cast<float>(side));
 }
 
 }  // namespace

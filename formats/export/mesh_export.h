@@ -1,5 +1,5 @@
 // Base meshes in text formats of other programs. The same mesh gives the same bytes. All take O(vertices +
-// faces) time.
+// faces) time. A mesh with outer_positions() covers its pixels to their outer edge.
 #pragma once
 
 #include <string>
@@ -17,9 +17,8 @@ std::string ply_from_mesh(const BaseMesh& mesh);
 std::string obj_from_mesh(const BaseMesh& mesh, const SourceInfo& source);
 
 /// TexturePacker's JSON with polygon outlines, as Pixi reads it: one frame, the whole image `image`, with
-/// `vertices` and `verticesUV` in pixels from the image's top-left corner and `triangles`. Vertices on a
-/// side of the image move to the outer side of the outermost pixels, so the sprite is as large as the
-/// image.
+/// `vertices` and `verticesUV` in pixels from the image's top-left corner and `triangles`. Vertices are kept
+/// inside the image.
 std::string sprite_json_from_mesh(const BaseMesh& mesh, const SourceInfo& source, const std::string& image,
                                   const std::string& generator);
 

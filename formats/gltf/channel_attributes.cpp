@@ -23,8 +23,12 @@ std::string upper_case(const std::string& name) {
 
 StoredLayout layout_of(const SourceInfo& source) {
     const SplitNames names = split_names(source.channel_names);
-    return {!names.color.empty(), !names.color.empty() && source.gamut == Gamut::kHdr,
-            names.auxiliary.size()};
+    StoredLayout layout{!names.color.empty(), !names.color.empty() && source.gamut == Gamut::kHdr,
+                        names.auxiliary.size()};
+    const auto alpha = std::ranges::find(names.auxiliary, "A");
+    if (layout.color && alpha != names.auxiliary.end())
+        layout.alpha = static_cast<std::size_t>(alpha - names.auxiliary.begin());
+    return layout;
 }
 
 std::vector<std::string> channel_attributes(const SourceInfo& source) {

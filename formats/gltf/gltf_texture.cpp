@@ -72,16 +72,14 @@ std::string picture_type(std::span<const std::uint8_t> bytes) {
     return starts(kPngStart) ? kPng : starts(kJpegStart) ? kJpeg : "";
 }
 
-void add_texture(json& document, int view, const std::string& type, bool masked) {
+void add_texture(json& document, int view, const std::string& type) {
     document["images"] = json::array({{{"bufferView", view}, {"mimeType", type}, {"name", "picture"}}});
     document["samplers"] = json::array({{{"magFilter", kLinear},
                                          {"minFilter", kLinearMipmapLinear},
                                          {"wrapS", kClampToEdge},
                                          {"wrapT", kClampToEdge}}});
     document["textures"] = json::array({{{"sampler", 0}, {"source", 0}}});
-    json& material = document["materials"][0];
-    material["pbrMetallicRoughness"]["baseColorTexture"] = {{"index", 0}};
-    if (masked) material["alphaMode"] = "MASK";  // at the default, 1/2
+    document["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"] = {{"index", 0}};
 }
 
 std::optional<TextureView> texture_view(const json& document, std::uint64_t mesh) {

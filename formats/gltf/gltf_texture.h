@@ -15,9 +15,8 @@ struct Asset;
 /// Returns "image/png" or "image/jpeg" by the first bytes; empty for anything else.
 std::string picture_type(std::span<const std::uint8_t> bytes);
 
-/// Makes material 0 show the image in bufferView `view`. With `masked`, areas where its alpha is below 1/2
-/// are not drawn.
-void add_texture(nlohmann::json& document, int view, const std::string& type, bool masked);
+/// Makes material 0 show the image in bufferView `view`.
+void add_texture(nlohmann::json& document, int view, const std::string& type);
 
 /// The place of a texture's image.
 struct TextureView {

@@ -205,7 +205,11 @@ std::string json_from_asset(const Asset& asset) {
     json buffer = {{"byteLength", asset.buffer_length}};
     if (!asset.buffer_name.empty()) buffer["uri"] = uri_from_name(asset.buffer_name);
     document["buffers"] = json::array({std::move(buffer)});
-    if (texture_view >= 0) add_texture(document, texture_view, asset.texture_type, asset.source.has_mask);
+    if (texture_view >= 0) add_texture(document, texture_view, asset.texture_type);
+    if (layout_of(asset.source).alpha)
+        document["materials"][0]["alphaMode"] = "BLEND";
+    else if (texture_view >= 0 && asset.source.has_mask)
+        document["materials"][0]["alphaMode"] = "MASK";  // areas below 1/2, the default, are not drawn
     if (asset.has_layers) document["extensions"][kPixelMap] = root_extension(asset, layers_view);
     for (std::size_t k = 0; k < asset.levels.size() && asset.has_layers; ++k) {
         const AssetLevel& level = asset.levels[k];

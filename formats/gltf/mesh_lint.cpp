@@ -9,17 +9,18 @@
 namespace imgmesh {
 namespace {
 
-// A side of one pixel counts as a strip around it, and so do single pixels of a masked image
-// (docs/format.md).
-std::pair<float, float> span_of(int side, bool has_mask) {
-    if (side == 1 || has_mask) return {-0.5f, static_cast<float>(side) - 0.5f};
+// A side of one pixel counts as a strip around it, and so do single pixels of a masked image; with a texture
+// the mesh covers whole pixels (docs/format.md).
+std::pair<float, float> span_of(int side, bool whole_pixels) {
+    if (side == 1 || whole_pixels) return {-0.5f, static_cast<float>(side) - 0.5f};
     return {0.0f, static_cast<float>(side - 1)};
 }
 
 void lint_vertices(const StoredMesh& mesh, const AssetLevel& level, const SourceInfo& source,
                    Findings& findings) {
-    const auto [left, right] = span_of(source.width, source.has_mask);
-    const auto [top, bottom] = span_of(source.height, source.has_mask);
+    const bool whole_pixels = source.has_mask || !mesh.texcoord.empty();
+    const auto [left, right] = span_of(source.width, whole_pixels);
+    const auto [top, bottom] = span_of(source.height, whole_pixels);
     Repeated outside(findings, "mesh.outside");
     for (std::size_t v = 0; v < mesh.position.size(); ++v) {
         const auto& p = mesh.position[v];
@@ -77,7 +78,8 @@ void lint_faces(const StoredMesh& mesh, const SourceInfo& source, Findings& find
             });
     const auto extent = [](int side) { return double(side == 1 ? 1 : side - 1); };
     const double whole = extent(source.width) * extent(source.height);  // exact, as the sum is
-    if (!source.has_mask && area2 != 2 * whole)
+    const bool outer = !mesh.texcoord.empty() && area2 == 2 * double(source.width) * double(source.height);
+    if (!source.has_mask && area2 != 2 * whole && !outer)
         findings.add("mesh.area", cat("the faces have an area of ", area2 / 2, ", the image ", whole));
 }
 

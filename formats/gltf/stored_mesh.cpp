@@ -83,13 +83,14 @@ std::uint16_t code_of(float light) {
 
 // Adds the attributes of one more vertex.
 void add_features(const float* feature, const StoredLayout& layout, StoredMesh& stored) {
+    const std::uint16_t alpha = layout.alpha ? code_of(feature[3 + *layout.alpha]) : 65535;
     if (layout.hdr) {
         const Vec3f light = quantized_hdr(Vec3f(feature));
         stored.hdr.push_back({light[0], light[1], light[2]});
-        stored.color.push_back({code_of(light[0]), code_of(light[1]), code_of(light[2]), 65535});
+        stored.color.push_back({code_of(light[0]), code_of(light[1]), code_of(light[2]), alpha});
     } else if (layout.color) {
         const auto codes = color_codes(Vec3f(feature));
-        stored.color.push_back({codes[0], codes[1], codes[2], 65535});
+        stored.color.push_back({codes[0], codes[1], codes[2], alpha});
     }
     if (layout.color) feature += 3;
     for (std::vector<float>& channel : stored.channels) channel.push_back(*feature++);
@@ -142,7 +143,7 @@ StoredMesh stored_from_base(const BaseMesh& mesh, const StoredLayout& layout) {
     return stored;
 }
 
-BaseMesh base_from_stored(const StoredMesh& mesh, Findings& findings) {
+BaseMesh base_from_stored(const StoredMesh& mesh, Findings& findings, bool soft) {
     Repeated off_grid(findings, "mesh.position"), alphas(findings, "mesh.color"),
         indices(findings, "mesh.index"), turned(findings, "mesh.orientation"), lights(findings, "mesh.light"),
         values(findings, "mesh.channel");
@@ -162,7 +163,7 @@ BaseMesh base_from_stored(const StoredMesh& mesh, Findings& findings) {
         base.position.emplace_back(x, 0.0f - y);
         if (layout.color) {
             const auto& [red, green, blue, alpha] = mesh.color[v];
-            if (alpha != 65535)
+            if (alpha != 65535 && !soft)
                 alphas.hit([&, &alpha = alpha] {
                     return std::pair(cat("vertex ", v, " has alpha ", alpha, ", expected 65535"), Place());
                 });

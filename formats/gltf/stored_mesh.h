@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -20,6 +21,8 @@ struct StoredLayout {
     bool hdr = false;          ///< colours without an upper bound
     std::size_t channels = 0;  ///< auxiliary channels
     bool texture = false;      ///< coordinates in a texture
+    /// The channel, from 0, that viewers see as the alpha of the colour; only for stored_from_base().
+    std::optional<std::size_t> alpha = {};
     bool operator==(const StoredLayout&) const = default;
 };
 
@@ -33,7 +36,9 @@ struct StoredMesh {
     std::vector<std::vector<float>> channels;
     std::vector<std::array<float, 2>> texcoord;  ///< for viewers alone
 
-    StoredLayout layout() const { return {!color.empty(), !hdr.empty(), channels.size(), !texcoord.empty()}; }
+    StoredLayout layout() const {
+        return {!color.empty(), !hdr.empty(), channels.size(), !texcoord.empty(), {}};
+    }
 
     bool operator==(const StoredMesh&) const = default;
 };
@@ -54,9 +59,10 @@ inline constexpr int kMaxCoordinate = 131072;
 /// the texture), an index out of range, a position off kPositionStep, a face without area, a value that is
 /// not finite.
 StoredMesh stored_from_base(const BaseMesh& mesh, const StoredLayout& layout = {});
-/// The inverse. Errors are invalid indices, positions, colours, channels or faces. With collecting findings
-/// the result is valid only if there are none.
-BaseMesh base_from_stored(const StoredMesh& mesh, Findings& findings);
+/// The inverse. With `soft`, the colours may have any alpha, as a channel A gives them. Errors are invalid
+/// indices, positions, colours, channels or faces. With collecting findings the result is valid only if there
+/// are none.
+BaseMesh base_from_stored(const StoredMesh& mesh, Findings& findings, bool soft = false);
 BaseMesh base_from_stored(const StoredMesh& mesh);  ///< strict findings
 
 /// Returns the hex SHA-256 over the indices (uint32) and then the positions (three float32 a vertex), little

@@ -42,6 +42,10 @@ struct ChannelChoice {
     double weight = 1;  ///< of its unscaled values; compare L*u*v* with L* from 0 to 100; > 0
 };
 
+/// The usual weight of alpha: a difference of alpha counts like the difference in L* that it makes to a black
+/// or a white pixel on a middle grey.
+inline constexpr double kAlphaWeight = 50;
+
 /// Throws Error(kBadArgument) for a channel that is chosen twice, a weight that is not finite and above 0,
 /// different weights of R, G and B, and more than kMaxFeatures features.
 void check_channels(const std::vector<ChannelChoice>& choices);

@@ -30,6 +30,21 @@ Mask alpha_mask(const Image& image, float threshold) {
     return mask;
 }
 
+bool has_soft_alpha(const Image& image) {
+    constexpr float kLeast = 1.5f / 255, kMost = 253.5f / 255;
+    constexpr double kShare = 0.001;
+    const int alpha = image.channel("A");
+    if (alpha < 0) return false;
+    std::int64_t visible = 0, soft = 0, opaque = 0;
+    for (std::size_t i = 0; i < image.pixel_count(); ++i) {
+        const float a = image.pixel(i)[alpha];
+        visible += a >= kVisibleAlpha;
+        soft += a >= kLeast && a < kMost;
+        opaque += a >= kMost;
+    }
+    return double(soft) > kShare * double(visible) || (visible > 0 && opaque == 0);
+}
+
 Mask image_mask(const Image& image, float threshold) {
     return thresholded(image, threshold, mask_value(image, threshold));
 }

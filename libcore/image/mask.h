@@ -20,6 +20,14 @@ struct Mask : Grid<std::uint8_t> {
 /// Returns the pixels with alpha >= `threshold`; empty() without a channel A or if all are inside.
 Mask alpha_mask(const Image& image, float threshold);
 
+/// The least alpha that 8 bits do not round to 0.
+inline constexpr float kVisibleAlpha = 0.5f / 255;
+
+/// Whether alpha is more than a mask: of the pixels with kVisibleAlpha or more, either more than 0.1 % are
+/// from 2/255 to 253/255 (other values are noise of 8 bits around 0 and 1), or none is opaque. False without
+/// a channel A.
+bool has_soft_alpha(const Image& image);
+
 /// Returns the pixels where the image of a mask is at least `threshold`. Its alpha counts, unless it has none
 /// or all of it is opaque; then Y counts, or the mean of R, G and B, as encoded. Never empty(): all pixels
 /// may be inside. Throws Error(kUnsupported) for an image with none of these channels.

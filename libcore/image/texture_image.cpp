@@ -96,10 +96,12 @@ void spread_colors(Image& out, const Mask& mask) {
 
 }  // namespace
 
-Image texture_image(const Image& image, const Mask& mask) {
+Image texture_image(const Image& image, const Mask& mask, TextureAlpha kind) {
     assert(mask.empty() || mask.size() == image.pixel_count());
     const std::array<int, 3> rgb = color_channels(image);
-    Image out = make_image(image.width, image.height, mask.empty() ? 3 : 4);
+    const int alpha = kind == TextureAlpha::kOwn ? image.channel("A") : -1;
+    const bool clear = !mask.empty() || alpha >= 0;
+    Image out = make_image(image.width, image.height, clear ? 4 : 3);
     parallel_blocks(0, image.height, kGrainRows, [&](int first, int last) {
         const std::size_t end = as_index(last) * as_index(image.width);
         for (std::size_t i = image.row_begin(first); i < end; ++i) {
@@ -109,7 +111,8 @@ Image texture_image(const Image& image, const Mask& mask) {
             if (image.color_space != ColorSpace::kSrgb)
                 color = encoded_from_linear(ColorSpace::kSrgb, linear_from_encoded(image.color_space, color));
             Eigen::Map<Vec3f>{to} = color.cwiseMax(0.0f).cwiseMin(1.0f);
-            if (!mask.empty()) to[3] = mask.contains(i) ? 1.0f : 0.0f;
+            if (clear)
+                to[3] = !mask.contains(i) ? 0.0f : alpha < 0 ? 1.0f : std::clamp(from[alpha], 0.0f, 1.0f);
         }
     });
     if (!mask.empty()) spread_colors(out, mask);

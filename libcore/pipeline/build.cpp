@@ -45,6 +45,22 @@ void take_weights_out(BaseMesh& mesh, const FeatureSpace& space) {
     }
 }
 
+// Least squares overshoots beside edges. An alpha above 1 or below 0 means nothing, so the vertices' stays
+// between the least and the largest of the image.
+void limit_alpha(BaseMesh& mesh, const FeatureImage& feature, const FeatureSpace& space, const Mask& mask) {
+    const auto at = std::ranges::find(space.auxiliary, "A");
+    if (at == space.auxiliary.end()) return;
+    const auto c = (space.color ? 3 : 0) + (at - space.auxiliary.begin());
+    float least = std::numeric_limits<float>::max(), most = std::numeric_limits<float>::lowest();
+    for (std::size_t i = 0; i < feature.pixel_count(); ++i) {
+        if (!mask.contains(i)) continue;
+        least = std::min(least, feature.pixel(i)[c]);
+        most = std::max(most, feature.pixel(i)[c]);
+    }
+    for (Id v = 0; v < mesh.vertex_count(); ++v)
+        mesh.feature_of(v)[c] = std::clamp(mesh.feature_of(v)[c], least, most);
+}
+
 // Maps the progress of a part to [begin, end] of the whole.
 Progress part_of(const Progress& whole, double begin, double end) {
     if (!whole) return {};
@@ -118,6 +134,7 @@ struct Pipeline {
         fit.keep_colors = params.quadric_colors || params.objective == Objective::kRgb;
         level.map = tracked ? fit_given_map(level.mesh, feature, *std::move(tracked), fit, mask)
                             : fit_map(level.mesh, feature, fit, part_of(progress, middle, end), mask);
+        limit_alpha(level.mesh, feature, space, mask);
         const PixelMap trivial = trivial_map(level.mesh, feature.width, feature.height, mask);
         figures = {map_rms(level.mesh, level.map, feature), map_rms(level.mesh, trivial, feature), {}};
         for (int c = space.color ? 3 : 0; c < space.features(); ++c)

@@ -29,6 +29,13 @@ void store(float* planes, int width, std::size_t x, const Vec3f& luv) {
     for (int c = 0; c < 3; ++c) planes[as_index(c * width) + x] = luv[c];
 }
 
+// A feature at a place on the mesh.
+float at_coord(const BaseMesh& mesh, const PixelCoord& at, int feature) {
+    const auto [a, b, c] = mesh.faces[at.face];
+    return (1 - at.u - at.v) * mesh.feature_of(a)[feature] + at.u * mesh.feature_of(b)[feature] +
+           at.v * mesh.feature_of(c)[feature];
+}
+
 // Fills a row through the map. The map is read from memory once and the rows stay in cache; only the corners'
 // colours are gathered. Face ids are known to be valid or kNone.
 void interpolate_row(const BaseMesh& mesh, const PixelMap& map, int y, float* planes) {
@@ -112,8 +119,13 @@ class WireRow {
     float opacity_;
 };
 
-Image encode_rows(const SourceInfo& source, const PixelMap& map, const RowFunction& row_function) {
-    Image image = make_image(map.width, map.height, source.has_mask ? 4 : 3);
+// Alpha of a pixel inside; empty: 1.
+using AlphaFunction = std::function<float(const PixelCoord&)>;
+
+Image encode_rows(const SourceInfo& source, const PixelMap& map, const RowFunction& row_function,
+                  const AlphaFunction& alpha = {}) {
+    const bool clear = source.has_mask || alpha;
+    Image image = make_image(map.width, map.height, clear ? 4 : 3);
     image.color_space = source.gamut == Gamut::kHdr ? ColorSpace::kLinear : source.color_space;
     image.sample_type = source.sample_type;
     const LuvEncoder encoder(image.color_space);
@@ -123,9 +135,9 @@ Image encode_rows(const SourceInfo& source, const PixelMap& map, const RowFuncti
             row_function(y, planes.data());
             float* out = image.row(y).data();
             encoder.encode_row(planes, map.width, out, image.channels);
-            if (!source.has_mask) continue;
+            if (!clear) continue;
             for (const PixelCoord& c : map.row(y)) {
-                out[3] = c.face == kNone ? 0.0f : 1.0f;
+                out[3] = c.face == kNone ? 0.0f : alpha ? std::clamp(alpha(c), 0.0f, 1.0f) : 1.0f;
                 out += image.channels;
             }
         }
@@ -161,11 +173,13 @@ Image draw(const MeshImage& mesh_image, int level_index, const DrawParams& param
     if (may_scale(params.mode))
         raster = bounded_raster(mesh, sample_grid(source.width, source.height, params.scale));
     const PixelMap& map = may_scale(params.mode) ? raster : level.map;
+    const int a = alpha_feature(source);
     switch (params.mode) {
         case DrawMode::kMap:
         case DrawMode::kGouraud:
-            return encode_rows(source, map,
-                               [&](int y, float* planes) { interpolate_row(mesh, map, y, planes); });
+            return encode_rows(
+                source, map, [&](int y, float* planes) { interpolate_row(mesh, map, y, planes); },
+                a < 0 ? AlphaFunction() : [&mesh, a](const PixelCoord& c) { return at_coord(mesh, c, a); });
         case DrawMode::kWire: {
             const WireRow wire(mesh, params.scale);
             return encode_rows(source, map, [&](int y, float* planes) {
@@ -194,7 +208,10 @@ Image draw(const MeshImage& mesh_image, int level_index, const DrawParams& param
             break;
     }
     const std::vector<Vec3f> colors = face_means(mesh);
-    return encode_rows(source, map, [&](int y, float* planes) { face_row(colors, map, y, planes); });
+    return encode_rows(
+        source, map, [&](int y, float* planes) { face_row(colors, map, y, planes); },
+        a < 0 ? AlphaFunction()
+              : [&mesh, a](const PixelCoord& c) { return at_coord(mesh, {c.face, 1.0f / 3, 1.0f / 3}, a); });
 }
 
 }  // namespace imgmesh

@@ -26,7 +26,8 @@ struct DrawParams {
 ///
 /// return  channels R, G, B in the source's sample type and colour space (HDR meshes in linear RGB), clamped
 ///         to [0, 1] unless the space is linear. A as well if the source has a mask: 0 outside the mask for
-///         map, patches and visits, outside the mesh for the other modes. A side has
+///         map, patches and visits, outside the mesh for the other modes. If the mesh has a channel A, the
+///         modes map, Gouraud and flat draw it, clamped to [0, 1]; the others are opaque inside. A side has
 ///         round(scale * source side) pixels, at least 1; the centre of output pixel i is at
 ///         (i + 0.5) / scale - 0.5 of the source.
 ///

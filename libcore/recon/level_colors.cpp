@@ -1,5 +1,7 @@
 #include "libcore/recon/level_colors.h"
 
+#include <algorithm>
+
 #include "libcore/base/error.h"
 #include "libcore/image/feature_space.h"
 
@@ -21,6 +23,13 @@ const Level& level_to_draw(const MeshImage& mesh_image, int level_index) {
         throw Error(ErrorKind::kUnsupported,
                     cat("the base mesh has no colour, its channels are ", names, "; an EXR holds them"));
     return level;
+}
+
+int alpha_feature(const SourceInfo& source) {
+    const SplitNames names = split_names(source.channel_names);
+    const auto alpha = std::ranges::find(names.auxiliary, "A");
+    if (names.color.empty() || alpha == names.auxiliary.end()) return -1;
+    return 3 + as_int(static_cast<std::size_t>(alpha - names.auxiliary.begin()));
 }
 
 std::vector<Vec3f> face_means(const BaseMesh& mesh) {

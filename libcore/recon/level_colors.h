@@ -12,6 +12,9 @@ const Level& checked_level(const MeshImage& mesh_image, int level_index);
 /// The same. Throws Error(kUnsupported) for a mesh without colour.
 const Level& level_to_draw(const MeshImage& mesh_image, int level_index);
 
+/// Returns the feature that is the alpha of a mesh with colour, or -1.
+int alpha_feature(const SourceInfo& source);
+
 /// Returns the mean colour of every face's three corners, L*u*v*. mesh.channels >= 3.
 std::vector<Vec3f> face_means(const BaseMesh& mesh);
 

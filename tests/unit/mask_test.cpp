@@ -56,3 +56,21 @@ TEST_CASE("masks: nothing is inside beyond the image") {
     for (const auto& [x, y] : {std::pair{-1, 0}, {2, 0}, {0, 1}, {0, -1}}) CHECK_FALSE(mask.at(x, y));
     CHECK(Mask{}.contains(7));
 }
+
+// 2000 visible pixels: two soft ones are a thousandth, three are more.
+TEST_CASE("has_soft_alpha: more than a thousandth of what is visible, or nothing opaque") {
+    Image image = make_image(50, 50, 4);
+    CHECK_FALSE(has_soft_alpha(image));  // nothing is visible
+    for (std::size_t i = 0; i < 2000; ++i) image.pixel(i)[3] = i % 2 == 0 ? 1.0f : 254.0f / 255;
+    for (std::size_t i = 2000; i < 2500; ++i) image.pixel(i)[3] = i % 2 == 0 ? 0.0f : 0.4f / 255;
+    CHECK_FALSE(has_soft_alpha(image));
+    image.pixel(std::size_t{0})[3] = image.pixel(std::size_t{1})[3] = 0.5f;
+    CHECK_FALSE(has_soft_alpha(image));
+    image.pixel(std::size_t{2})[3] = 2.0f / 255;
+    CHECK(has_soft_alpha(image));
+    for (std::size_t i = 0; i < 2500; ++i) image.pixel(i)[3] = i == 7 ? 1.0f / 255 : 0.0f;
+    CHECK(has_soft_alpha(image));  // faint, and all that there is
+    image.pixel(std::size_t{7})[3] = 1;
+    CHECK_FALSE(has_soft_alpha(image));
+    CHECK_FALSE(has_soft_alpha(make_image(3, 3, 3)));
+}

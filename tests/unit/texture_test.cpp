@@ -123,3 +123,16 @@ TEST_CASE("texture: an image without colour has none") {
     Image image = make_image(2, 2, 5);
     CHECK_THROWS_AS(texture_image(image, {}), Error);
 }
+
+TEST_CASE("texture: an alpha of its own is kept inside the mask, clipped") {
+    Image image = make_image(3, 1, 4);
+    image.data = {1, 0, 0, 0.25f, 0, 1, 0, 1.5f, 0, 0, 1, 0.75f};
+    const Image whole = texture_image(image, {}, TextureAlpha::kOwn);
+    REQUIRE(whole.channels == 4);
+    CHECK(whole.data[3] == 0.25f);
+    CHECK(whole.data[7] == 1);
+    const Image cut = texture_image(image, {3, 1, {1, 1, 0}}, TextureAlpha::kOwn);
+    CHECK(cut.data[3] == 0.25f);
+    CHECK(cut.data[11] == 0);
+    CHECK(texture_image(make_image(2, 2, 3), {}, TextureAlpha::kOwn).channels == 3);
+}
