@@ -12,6 +12,7 @@
 #include "formats/picture/image_io.h"
 #include "libcore/image/feature_space.h"
 #include "libcore/mesh/outer_edge.h"
+#include "libcore/mesh/outline_mesh.h"
 #include "libcore/recon/draw.h"
 #include "tools/common/container_input.h"
 #include "tools/common/in_file.h"
@@ -33,6 +34,9 @@ namespace {
 // More than a container can have; its own number is checked when it has been read.
 constexpr CountRange kLevelRange = {0, 1000};
 
+// Beyond, a sprite's outline is no longer its own.
+constexpr double kMostTolerance = 64;
+
 enum class Shading { kFlat, kGradient };
 
 struct Options {
@@ -44,6 +48,8 @@ struct Options {
     TextureOptions texture;
     std::optional<int> level;
     std::optional<Shading> shading;
+    std::optional<double> outline_tolerance;
+    OutlineSide outline_side = OutlineSide::kOut;
     std::string image;
     ReadImageOptions read;
     ContainerLimits limits;
@@ -82,6 +88,18 @@ void add_options(CLI::App& app, Options& o) {
                         Choices<Shading>{{"flat", Shading::kFlat}, {"gradient", Shading::kGradient}},
                         {"Shading of an .svg's triangles", "flat"}),
              level);
+    CLI::Option* const tolerance = in_group(
+        add_number(
+            app, "--outline-tolerance", o.outline_tolerance, {0, kMostTolerance},
+            {"Make the mesh of a sprite (.json, .obj, or a container with a texture) from its outline alone, "
+             "which may lie this many pixels from the image's",
+             "none: the base mesh"}),
+        level);
+    CLI::Option* const side =
+        add_choice(app, "--outline-side", o.outline_side,
+                   Choices<OutlineSide>{{"out", OutlineSide::kOut}, {"both", OutlineSide::kBoth}},
+                   "Where that outline may lie: outside alone, where it cuts no pixel, or on both sides");
+    in_group(needs(side, tolerance), level);
     CLI::Option* const image =
         add_value(app, "--image", "NAME", [&o](const std::string& text) { o.image = text; },
                   {"Image that --texture puts on the meshes, or that a sprite's .json names",
@@ -114,6 +132,13 @@ void check_options(const Options& o) {
     if (container && !o.image.empty() && !o.texture.wanted.value_or(false))
         throw Error(ErrorKind::kBadArgument, "--image: of use to a container only with --texture");
     only_for(!o.image.empty(), "--image", container || extension == ".json", "container or sprite's JSON");
+    only_for(o.outline_tolerance.has_value(), "--outline-tolerance",
+             container || extension == ".obj" || extension == ".json", "container, .obj or .json");
+    if (o.outline_tolerance && !o.levels.empty())
+        throw Error(ErrorKind::kBadArgument, "--outline-tolerance and --levels: an outline has one level");
+    if (o.outline_tolerance && container && !o.texture.wanted.value_or(true))
+        throw Error(ErrorKind::kBadArgument,
+                    "--outline-tolerance and --no-texture: an outline shows nothing without a texture");
     for (std::size_t i = 1; i < o.levels.size(); ++i)
         if (o.levels[i] <= o.levels[i - 1])
             throw Error(ErrorKind::kBadArgument, cat("--levels: ", o.levels[i], " after ", o.levels[i - 1],
@@ -191,7 +216,7 @@ void export_level(const Options& o, const MeshImage& m, int index, Context& cont
     const Level& level = m.levels[static_cast<std::size_t>(index)];
     const std::string extension = lower_extension(o.output);
     BaseMesh mesh = level.mesh;
-    mesh.position = outer_positions(level.mesh, level.map);
+    if (!o.outline_tolerance) mesh.position = outer_positions(level.mesh, level.map);
     if (extension == ".png") {
         write_image(o.output, id_image(level, m.source.has_mask), {context.overwrite, SampleType::kUint8});
         return;
@@ -227,25 +252,34 @@ Report run(const Options& o, Context& context) {
     check_level("--level", level, o.input, m);
     context.progress(0.5, "write");
     ContainerOptions options;
+    const auto outline = [&] { m = outline_mesh_image(m, level, *o.outline_tolerance, o.outline_side); };
     if (is_container(o.output)) {
         options.texture = chosen_texture(o, m, std::move(container.texture), context);
         keep_levels(o, m, options.texture);
         options.draco = o.draco.value_or(container.facts.draco);
         options.overwrite = context.overwrite;
         options.keep = container.facts.files;
-        options.layers = !o.no_layers;
+        options.layers = !o.no_layers && !o.outline_tolerance;
+        if (o.outline_tolerance) {
+            if (options.texture.picture.empty())
+                throw Error(ErrorKind::kBadArgument,
+                            cat("--outline-tolerance: ", o.input, " has no texture; --texture makes one"));
+            outline();
+            options.texture.coords = texture_coords(m);
+        }
         write_container(o.output, m, options);
     } else {
-        export_level(o, m, level, context);
+        if (o.outline_tolerance) outline();
+        export_level(o, m, o.outline_tolerance ? 0 : level, context);
     }
-    const Level& first = m.levels[static_cast<std::size_t>(level)];
+    const Level& first = o.outline_tolerance ? m.levels[0] : m.levels[static_cast<std::size_t>(level)];
     return {{"input", o.input},
             {"output", o.output},
             {"levels", is_container(o.output) ? m.levels.size() : 1},
             {"level", is_container(o.output) ? 0 : level},
             {"vertices", first.mesh.vertex_count()},
             {"faces", first.mesh.faces.size()},
-            {"layers", is_container(o.output) && !o.no_layers},
+            {"layers", is_container(o.output) && options.layers},
             {"texture", !options.texture.picture.empty()},
             {"bytes", fs::file_size(o.output)}};
 }

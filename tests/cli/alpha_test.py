@@ -206,6 +206,45 @@ class Sprites(CliCase):
         a, b = (self.report("imgmesh-compare", "whole.png", n)["difference"] for n in ("w.glb", "plain.glb"))
         self.assertAlmostEqual(a["rms_luv"], b["rms_luv"], places=4)
 
+    def test_outlines(self):
+        """A round sprite in few triangles: all of it inside, or near it on both sides."""
+        y, x = np.mgrid[0:64, 0:64]
+        samples = np.ones((64, 64, 4)) * np.array([0.9, 0.3, 0.1, 1])
+        samples[..., 3] = np.hypot(x - 31.5, y - 31.5) < 30
+        picture_files.png(self.folder / "round.png", samples)
+        self.build("round.png", output="r.glb")
+        pixels = samples[..., 3].sum()
+        areas = {}
+        for side in ("out", "both"):
+            report = self.report("imgmesh-convert", "r.glb", "-o", "r.json", "--outline-tolerance", "2", "--outline-side", side)
+            self.assertLessEqual(report["faces"], 50)
+            (frame,) = json.loads((self.folder / "r.json").read_text())["frames"].values()
+            self.assertEqual(len(frame["triangles"]), report["faces"])
+            areas[side] = area_of(np.array(frame["vertices"]), frame["triangles"])
+        self.assertTrue(pixels < areas["out"] < 1.15 * pixels, areas)
+        self.assertTrue(0.95 * pixels < areas["both"] < areas["out"], areas)
+        self.run_ok("imgmesh-convert", "r.glb", "-o", "r.obj", "--outline-tolerance", "2", "-q")
+        report = self.report("imgmesh-convert", "r.glb", "-o", "t.glb", "--outline-tolerance", "2", "--texture", "--image",
+                             "round.png", "--draco", "none")
+        self.assertEqual((report["layers"], report["texture"], report["levels"]), (False, True, 1))
+        place = attribute(self.folder / "t.glb", "POSITION")[:, :2] * [1, -1]
+        np.testing.assert_allclose(attribute(self.folder / "t.glb", "TEXCOORD_0"), (place + 0.5) / 64, atol=1e-6)
+        np.testing.assert_array_equal(texture_of(self.folder / "t.glb")[..., 3], samples[..., 3] * 255)
+        # A texture that is there already stays.
+        self.build("round.png", "--texture", output="k.glb")
+        self.run_ok("imgmesh-convert", "k.glb", "-o", "l.glb", "--outline-tolerance", "2", "--draco", "none", "-q")
+        self.assertTrue((attribute(self.folder / "l.glb", "POSITION") == attribute(self.folder / "t.glb", "POSITION")).all())
+
+    def test_outlines_wrongly_used(self):
+        self.build("sprite.png", output="s.glb")
+        for args, code, *words in ((["-o", "x.svg", "--outline-tolerance", "1"], 2, "--outline-tolerance", "x.svg"),
+                                   (["-o", "x.glb", "--outline-tolerance", "1"], 2, "--texture"),
+                                   (["-o", "x.glb", "--outline-tolerance", "1", "--no-texture"], 2, "--no-texture"),
+                                   (["-o", "x.glb", "--texture", "--levels", "0", "--outline-tolerance", "1"], 2, "--levels"),
+                                   (["-o", "x.json", "--outline-tolerance", "-1"], 2, "'-1'"),
+                                   (["-o", "x.json", "--outline-side", "both"], 2, "--outline-tolerance")):
+            self.assert_error("imgmesh-convert", ["s.glb", *args], code, *words)
+
 
 if __name__ == "__main__":
     main()
