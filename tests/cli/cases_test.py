@@ -2,6 +2,7 @@
 
 They lie beside the checkout, in shared/cases/pictures; without that folder nothing is tested here. READ says what an
 image looks like, REFUSED which one line refuses it. A new kind is a new row."""
+import json
 import pathlib
 from typing import Callable, NamedTuple
 
@@ -29,6 +30,10 @@ def truth():
 
 def truth_alpha():
     return rgba(FOLDER / "truth-alpha.png")
+
+
+def soft_shadow():
+    return rgba(FOLDER / "F06-soft-shadow.png")
 
 
 def truth_grey():
@@ -91,6 +96,7 @@ READ = (
     Read("F05-icc_applergb18.png", tolerance=3),  # stored in 8 bits of another curve
     Read("F05-icc_p3_g22.png", tolerance=3),
     Read("F05-icc_rec2020_g24.png", tolerance=10),
+    Read("F06-soft-shadow.png", soft_shadow, tolerance=1),
     Read("F10-palette8.tif"),
     Read("F10-cmyka.tif", truth_alpha),
     Read("F11-thumbnail-first.tif"),
@@ -181,6 +187,17 @@ class Cases(CliCase):
         for name, space in STATED if FOLDER else ():
             with self.subTest(name):
                 self.assertEqual(self.build(FOLDER / name, "--density", "40")["color_space"], space)
+
+    def test_sprite_is_as_large_as_its_pixels(self):
+        if not FOLDER:
+            return
+        self.build(FOLDER / "F14-rect-sprite.png", "--texture")
+        for name in ("s.json", "s.obj"):
+            self.run_ok("imgmesh-convert", "out.glb", "-o", name)
+        (frame,) = json.loads((self.folder / "s.json").read_text())["frames"].values()
+        obj = [line.split()[1:3] for line in (self.folder / "s.obj").read_text().splitlines() if line.startswith("v ")]
+        for points in (np.array(frame["vertices"]), np.array(obj, float)):
+            self.assertEqual(np.ptp(points, axis=0).tolist(), [40, 32])
 
     def test_compared(self):
         for case in COMPARED if FOLDER else ():
