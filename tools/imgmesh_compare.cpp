@@ -179,7 +179,7 @@ Plot make_plot(const std::vector<Input>& inputs, const Options& o, std::vector<H
 Image draw_plot(const Plot& plot, const std::string& path) {
     Image image = plot_boxes(plot, kPngScale);
     try {
-        for (const TextLabel& label : plot_labels(plot, kPngScale)) draw_text(image, label);
+        draw_text(image, plot_labels(plot, kPngScale));
     } catch (const Error& e) {
         throw Error(e.kind(), cat(path, ": ", e.what(), "; .svg needs no font"));
     }

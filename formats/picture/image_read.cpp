@@ -171,7 +171,7 @@ DecodedPicture decode_picture(const std::string& path, std::span<std::uint8_t> b
         case PictureFormat::kTga:
             return decode_tga(file);
         default:
-            return decode_with_oiio(file);
+            return decode_with_codecs(file);
     }
 }
 

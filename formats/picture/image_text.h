@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "libcore/image/image.h"
 
@@ -19,8 +20,8 @@ struct TextLabel {
     std::string text;
 };
 
-/// Draws the label over an RGB image in DejaVu Sans; parts outside are cut off. Throws Error(kUnsupported) if
-/// that font is not installed.
-void draw_text(Image& image, const TextLabel& label);
+/// Draws the labels over an RGB image in DejaVu Sans; parts outside are cut off. Throws Error(kUnsupported)
+/// if that font is not installed.
+void draw_text(Image& image, const std::vector<TextLabel>& labels);
 
 }  // namespace imgmesh

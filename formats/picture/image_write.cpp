@@ -4,14 +4,15 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <span>
 #include <string_view>
 
 #include "formats/files/atomic_file.h"
 #include "formats/files/extension.h"
+#include "formats/picture/codecs/codec_client.h"
 #include "formats/picture/color/icc_profile.h"
 #include "formats/picture/encode/picture_encoders.h"
 #include "formats/picture/image_io.h"
-#include "formats/picture/oiio_module.h"
 #include "formats/picture/sample_codes.h"
 #include "libcore/base/error.h"
 #include "libcore/image/color.h"
@@ -179,25 +180,28 @@ void check_shape(const std::string& path, const Format& format, const Image& ima
                     "; write .exr or .tif"));
 }
 
+template <typename T>
+std::span<const std::uint8_t> bytes_of(const std::vector<T>& values) {
+    return {reinterpret_cast<const std::uint8_t*>(values.data()), values.size() * sizeof(T)};
+}
+
 std::vector<std::uint8_t> encode_with_oiio(const std::string& path, const Format& format, const Image& image,
                                            SampleType type) {
-    OiioTask task{format.writer,
-                  std::string(format.extension),
-                  image.width,
-                  image.height,
-                  image.channel_names,
-                  image.channel("A"),
-                  type,
-                  image.data.data(),
-                  image.color_space == ColorSpace::kSrgb,
-                  {}};
+    EncodeTask task{path,
+                    format.writer,
+                    std::string(format.extension),
+                    image.width,
+                    image.height,
+                    image.channel_names,
+                    image.channel("A"),
+                    type,
+                    image.color_space == ColorSpace::kSrgb,
+                    {}};
     if (is_integer(type) && image.color_space != ColorSpace::kSrgb)
         task.icc = icc_from_color_space(image.color_space);
-    std::vector<std::uint8_t> bytes;
-    std::vector<std::uint16_t> words;
-    if (type == kUint8) task.samples = (bytes = codes8_from_floats(image.data)).data();
-    if (type == kUint16) task.samples = (words = codes16_from_floats(image.data)).data();
-    return oiio_module().encode(path, task);
+    if (type == kUint8) return encode_with_codecs(task, codes8_from_floats(image.data));
+    if (type == kUint16) return encode_with_codecs(task, bytes_of(codes16_from_floats(image.data)));
+    return encode_with_codecs(task, bytes_of(image.data));
 }
 
 }  // namespace

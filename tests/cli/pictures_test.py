@@ -321,22 +321,18 @@ class Pictures(CliCase):
         self.assertIn("libOpenEXR", text)  # the log is one
         return text
 
-    def test_the_picture_library_is_loaded_for_its_formats_alone(self):
-        """It would cost 0.2 s at every start."""
+    def test_no_tool_loads_the_library_that_may_crash(self):
+        """OpenImageIO would cost 0.2 s at every start; a process of its own loads it, for formats that need it."""
         picture_files.png(self.folder / "a.png", picture_files.ramp(20, 16))
         for tool, *args in (("imgmesh-build", "a.png", "-o", "a.glb"), ("imgmesh-info", "a.glb"),
                             ("imgmesh-reconstruct", "a.glb", "-o", "b.png"),
                             ("imgmesh-reconstruct", "a.glb", "-o", "b.exr"), ("imgmesh-build", "b.exr", "-o", "b.glb"),
                             ("imgmesh-reconstruct", "a.glb", "-o", "b.webp"), ("imgmesh-convert", "a.glb", "-o", "b.gltf"),
-                            ("imgmesh-segment", "a.glb", "-o", "l.png"), ("imgmesh-compare", "a.png", "a.glb")):
+                            ("imgmesh-segment", "a.glb", "-o", "l.png"), ("imgmesh-compare", "a.png", "a.glb"),
+                            ("imgmesh-reconstruct", "a.glb", "-o", "b.tif"), ("imgmesh-build", "b.tif", "-o", "c.glb"),
+                            ("imgmesh-reconstruct", "a.glb", "-o", "b.jpg"), ("imgmesh-build", "b.jpg", "-o", "d.glb")):
             with self.subTest(args):
                 self.assertNotIn("OpenImageIO", self.loaded(tool, *args))
-        self.assertIn("libOpenImageIO", self.loaded("imgmesh-reconstruct", "a.glb", "-o", "b.tif"))
-        self.assertNotIn("OpenImageIO", self.loaded("imgmesh-build", "b.tif", "-o", "c.glb"))
-        self.run_ok("imgmesh-reconstruct", "a.glb", "-o", "b.jpg")
-        self.assertNotIn("OpenImageIO", self.loaded("imgmesh-build", "b.jpg", "-o", "d.glb"))
-        picture_files.write_float(self.folder / "b.hdr", picture_files.ramp(20, 16))
-        self.assertIn("libOpenImageIO", self.loaded("imgmesh-build", "b.hdr", "-o", "e.glb"))
 
 
 if __name__ == "__main__":

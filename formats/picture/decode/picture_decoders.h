@@ -37,11 +37,12 @@ struct DecodedPicture {
 
 /// Each throws Error(kBadFile) for broken or truncated content and sizes over the limits, before memory is
 /// taken for the pixels, and kUnsupported for kinds of images that imgmesh does not use.
-DecodedPicture decode_with_oiio(const PictureFile& file);
 DecodedPicture decode_bmp(const PictureFile& file);
 DecodedPicture decode_jpeg(const PictureFile& file);
 DecodedPicture decode_pnm(const PictureFile& file);
 DecodedPicture decode_tga(const PictureFile& file);
+/// In another process (codecs/codec_process.h), as the library may crash.
+DecodedPicture decode_with_codecs(const PictureFile& file);
 DecodedPicture decode_png(const PictureFile& file);
 DecodedPicture decode_tiff(const PictureFile& file);
 DecodedPicture decode_webp(const PictureFile& file);
