@@ -17,6 +17,8 @@ namespace imgmesh {
 namespace {
 
 constexpr double kStep = kPositionStep;
+// More than any area in an image: notches at most a pixel deep go before all else.
+constexpr double kStairFirst = 1e12;
 
 // Positive if c lies to the left of a b on screen, where inside is.
 double left_of(const Vec2d& a, const Vec2d& b, const Vec2d& c) {
@@ -170,7 +172,9 @@ class Simplifier {
         if (side_ == OutlineSide::kOut ? turn > 0 || !edge_is_near(a, c)
                                        : !stands_for(previous_[v], next_[v]))
             return {};
-        return Removal{std::abs(turn) / 2, v, {}, 0};
+        // Stairs first, or they would merge into larger stairs.
+        const bool stair = side_ == OutlineSide::kOut && std::abs(turn) <= (c - a).norm();
+        return Removal{stair ? std::abs(turn) / 2 - kStairFirst : std::abs(turn) / 2, v, {}, 0};
     }
 
     // v and the next one become the place where the edges before and after them meet, outside.

@@ -128,7 +128,7 @@ TEST_CASE("simplified_outline: grows only, and stays near") {
             }
         }
     }
-    CHECK(triangulated(simplified_outline(shapes[0], 1.5, OutlineSide::kOut)).faces.size() <= 50);
+    CHECK(triangulated(simplified_outline(shapes[0], 1, OutlineSide::kOut)).faces.size() <= 25);
     // The ring keeps its hole.
     CHECK(simplified_outline(shapes[1], 4, OutlineSide::kOut).size() == 2);
 }
