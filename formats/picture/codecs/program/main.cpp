@@ -62,8 +62,9 @@ void set_up_process() {
 #endif
 }
 
-// Waits until all other threads sleep. One of the libraries starts some, which have nothing to do; while they
-// start they may hold a lock, which a fork in that moment would keep for ever.
+// Waits until all other threads sleep. A library's threads have nothing to do, and OpenImageIO's pool has
+// only just ended one, but as they start and end they hold locks. A fork in that moment would keep such a
+// lock: one job in some hundreds waited for ever.
 void wait_for_threads() {
     constexpr int kSteps = 1000;
     constexpr struct timespec kStep = {0, 1000000};
