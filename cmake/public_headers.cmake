@@ -61,6 +61,7 @@ set(IMGMESH_PUBLIC_HEADERS
   formats/container/validate.h
   formats/export/label_files.h
   formats/export/mesh_export.h
+  formats/exr/exr_metadata.h
   formats/exr/exr_parts.h
   formats/findings/finding_codes.h
   formats/findings/issue.h

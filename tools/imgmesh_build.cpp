@@ -92,6 +92,7 @@ Report build_one(const Job& job, const BuildOptions& o, const Context& context, 
     ContainerOptions container;
     container.draco = o.draco;
     container.overwrite = context.overwrite;
+    container.metadata = read.metadata;
     if (o.texture.wanted)
         container.texture.picture = in_file(job.input, [&] {
             return encode_texture(image, mask, o.texture.type,

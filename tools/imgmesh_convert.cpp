@@ -254,6 +254,7 @@ Report run(const Options& o, Context& context) {
     ContainerOptions options;
     const auto outline = [&] { m = outline_mesh_image(m, level, *o.outline_tolerance, o.outline_side); };
     if (is_container(o.output)) {
+        options.metadata = container.metadata;
         options.texture = chosen_texture(o, m, std::move(container.texture), context);
         keep_levels(o, m, options.texture);
         options.draco = o.draco.value_or(container.facts.draco);

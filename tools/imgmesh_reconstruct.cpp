@@ -125,7 +125,9 @@ Report run(const Options& o, Context& context) {
         const Image image =
             all_channels ? draw_channels(mesh_image, o.level, o.draw) : draw(mesh_image, o.level, o.draw);
         context.progress(0.8, "write");
-        write_image(o.output, image, {context.overwrite, o.depth});
+        const bool whole = o.draw.mode == DrawMode::kMap || o.draw.mode == DrawMode::kGouraud;
+        write_image(o.output, image,
+                    {context.overwrite, o.depth, whole ? container.metadata : ExrMetadata()});
         width = image.width;
         height = image.height;
     }

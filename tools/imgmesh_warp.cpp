@@ -204,12 +204,13 @@ Report run(const Options& o, Context& context) {
         ContainerOptions options;
         options.draco = container.facts.draco;
         options.overwrite = context.overwrite;
+        options.metadata = container.metadata;
         options.texture = container.texture;  // moves along: vertices keep their texture coordinates
         write_container(o.output, warped, options);
     } else if (!o.output.empty()) {
         const Image out = warp_image(*image, field, o.size);
         context.progress(0.8, "write");
-        write_image(o.output, out, {context.overwrite, {}});
+        write_image(o.output, out, {context.overwrite, {}, container.metadata});
         report["width"] = out.width;
         report["height"] = out.height;
     }

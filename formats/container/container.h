@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "formats/exr/exr_metadata.h"
 #include "formats/findings/limits.h"
 #include "formats/gltf/draco_mode.h"
 #include "libcore/mesh/mesh_image.h"
@@ -31,6 +32,7 @@ struct ContainerOptions {
     std::vector<std::string> keep = {};
     bool layers = true;    ///< false: without pixel maps, a plain glTF asset that read_container() refuses
     Texture texture = {};  ///< with the coordinates of all vertices of all levels
+    ExrMetadata metadata = {};  ///< of the source, if it is an EXR; without an exr_metadata_fault()
 };
 
 /// Writes `mesh_image`; the extension of `path` (.glb or .gltf) decides the file variant.
@@ -67,7 +69,8 @@ struct ContainerFacts {
 struct Container {
     MeshImage mesh_image;
     ContainerFacts facts;
-    Texture texture;  ///< as stored, its image file not decoded
+    Texture texture;       ///< as stored, its image file not decoded
+    ExrMetadata metadata;  ///< of the source
 };
 
 /// Reads a container and checks all of it: sizes against `limits` before memory is taken, indices, weights,

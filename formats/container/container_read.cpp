@@ -188,6 +188,7 @@ Container read(const std::string& path, const ContainerLimits& limits, Findings&
     read_texture(asset, buffer, findings, container);
     add_level_facts(asset, buffer, container.facts);
     image.visits = std::move(parts[0].visits);
+    container.metadata = std::move(asset.metadata);
     image.source = std::move(asset.source);
     image.generator = std::move(asset.generator);
     image.parameters = std::move(asset.parameters);

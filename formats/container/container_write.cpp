@@ -155,9 +155,13 @@ std::vector<std::string> container_files(const std::string& path) {
 void write_container(const std::string& path, const MeshImage& mesh_image, const ContainerOptions& options) {
     const FileVariant variant = variant_of(path);
     check_writable(mesh_image, options.texture);
+    const SourceInfo& source = mesh_image.source;
+    const std::string fault = exr_metadata_fault(options.metadata, source.width, source.height);
+    if (!fault.empty()) throw Error(ErrorKind::kInternal, cat("cannot store the metadata: ", fault));
     Asset asset;
     asset.version = kVersion;
     asset.source = mesh_image.source;
+    asset.metadata = options.metadata;
     asset.generator = mesh_image.generator;
     asset.parameters = mesh_image.parameters;
     std::vector<std::uint8_t> buffer;

@@ -54,6 +54,7 @@ inline constexpr Finding kFindings[] = {
     {"ext.member", "a member of IMGMESH_pixel_map is missing or not what it must be"},
     {"ext.value", "a colorSpace, sampleType or mimeType of IMGMESH_pixel_map is unknown"},
     {"ext.channels", "the channels are not 1 to 16 features, each with a name of its own"},
+    {"ext.metadata", "the image's metadata are not attributes of an EXR, or more than 64 kB or 256"},
     {"ext.layers", "the layers have both or neither of uri and bufferView"},
     {"ext.level", "the levels are not lod0, lod1, ... each once"},
     {"draco.header", "not a Draco mesh"},

@@ -70,6 +70,38 @@ SourceInfo read_image_member(const json& image, const ContainerLimits& limits) {
     return source;
 }
 
+ExrMetadata read_metadata_member(const json& image, const SourceInfo& source) {
+    const json* const metadata = find(image, "metadata");
+    if (!metadata) return {};
+    const auto refuse_it = [](const std::string& text) {
+        refuse("ext.metadata", text, at_pointer("metadata"));
+    };
+    if (!metadata->is_object()) refuse_it("\"metadata\" is not an object");
+    if (metadata->size() > kMaxMetadataEntries)
+        refuse_it(cat(metadata->size(), " attributes, at most ", kMaxMetadataEntries));
+    ExrMetadata out;
+    for (const auto& [name, stated] : metadata->items()) {
+        const json* const type = find(stated, "type");
+        const json* const value = find(stated, "value");
+        if (!type || !type->is_string() || !value)
+            refuse_it(cat("attribute ", name, " has not a type and a value"));
+        ExrAttribute attribute{name, type->get<std::string>(), {}, {}};
+        if (value->is_string())
+            attribute.text = value->get<std::string>();
+        else if (value->is_number())
+            attribute.numbers = {value->get<double>()};
+        else if (value->is_array() && value->size() > 1 &&
+                 std::ranges::all_of(*value, [](const json& x) { return x.is_number(); }))
+            attribute.numbers = value->get<std::vector<double>>();
+        else
+            refuse_it(cat("attribute ", name, " is no text, number or list of numbers"));
+        out.push_back(std::move(attribute));
+    }
+    const std::string fault = exr_metadata_fault(out, source.width, source.height);
+    if (!fault.empty()) refuse_it(fault);
+    return out;
+}
+
 void read_build_member(const json& build, Asset& asset) {
     asset.generator = string_member(build, kGenerator, "ext.member");
     for (const auto& [name, value] : build.items()) {

@@ -10,6 +10,9 @@ namespace imgmesh {
 /// Reads the root's "image"; its size is within the limits.
 SourceInfo read_image_member(const nlohmann::json& image, const ContainerLimits& limits);
 
+/// Reads the image's "metadata", which may be missing.
+ExrMetadata read_metadata_member(const nlohmann::json& image, const SourceInfo& source);
+
 /// Reads the root's "build" into generator and parameters.
 void read_build_member(const nlohmann::json& build, Asset& asset);
 

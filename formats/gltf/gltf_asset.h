@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "formats/exr/exr_metadata.h"
 #include "formats/findings/limits.h"
 #include "formats/gltf/byte_range.h"
 #include "formats/gltf/draco_mesh.h"
@@ -45,6 +46,7 @@ struct LevelPlace {
 struct Asset {
     std::string version;  ///< of IMGMESH_pixel_map
     SourceInfo source;
+    ExrMetadata metadata = {};  ///< of the source
     std::string generator;
     std::vector<BuildParameter> parameters;  ///< comes back sorted by name
     std::vector<AssetLevel> levels;          ///< 0 is the finest

@@ -151,7 +151,7 @@ void lint_members(const json& document, const Asset& asset, Findings& findings) 
     const std::string at_root = cat("/extensions/", kPixelMap);
     unknown(root, at_root, {"version", "image", "layers", "build"});
     unknown(child(root, "image"), at_root + "/image",
-            {"width", "height", "colorSpace", "sampleType", "channels", "hasMask"});
+            {"width", "height", "colorSpace", "sampleType", "channels", "hasMask", "metadata"});
     unknown(child(root, "layers"), at_root + "/layers", {"bufferView", "uri", "mimeType"});
     for (const LevelPlace& place : asset.places)
         unknown(extension(element(child(document, "nodes"), place.node), kPixelMap),

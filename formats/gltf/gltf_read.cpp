@@ -318,6 +318,10 @@ Asset asset_from_json(std::string_view text, const ContainerLimits& limits, Find
     asset.has_size = findings.attempt(at_root + "/image", [&] {
         asset.source = read_image_member(member(*root, "image", "ext.member"), limits);
     });
+    if (asset.has_size)
+        findings.attempt(at_root + "/image", [&] {
+            asset.metadata = read_metadata_member(member(*root, "image", "ext.member"), asset.source);
+        });
     findings.attempt(at_root + "/build",
                      [&] { read_build_member(member(*root, "build", "ext.member"), asset); });
     asset.has_buffer = findings.attempt("/buffers", [&] { read_buffer(document, asset); });

@@ -145,6 +145,17 @@ tinygltf::Model gltf_model(const Asset& asset) {
     return model;
 }
 
+json metadata_member(const ExrMetadata& metadata) {
+    json out = json::object();
+    for (const ExrAttribute& attribute : metadata) {
+        json value = attribute.numbers;
+        if (exr_number_count(attribute.type) == 0) value = attribute.text;
+        if (exr_number_count(attribute.type) == 1) value = attribute.numbers[0];
+        out[attribute.name] = {{"type", attribute.type}, {"value", std::move(value)}};
+    }
+    return out;
+}
+
 json root_extension(const Asset& asset, int layers_view) {
     const SourceInfo& source = asset.source;
     json build = json::object();
@@ -161,14 +172,15 @@ json root_extension(const Asset& asset, int layers_view) {
         layers["bufferView"] = layers_view;
     else
         layers["uri"] = uri_from_name(asset.layers_name);
+    json image = {{"width", source.width},
+                  {"height", source.height},
+                  {"colorSpace", color_space_name(source.color_space)},
+                  {"sampleType", kSampleTypes[static_cast<std::size_t>(source.sample_type)]},
+                  {"channels", source.channel_names},
+                  {"hasMask", source.has_mask}};
+    if (!asset.metadata.empty()) image["metadata"] = metadata_member(asset.metadata);
     return {{"version", asset.version},
-            {"image",
-             {{"width", source.width},
-              {"height", source.height},
-              {"colorSpace", color_space_name(source.color_space)},
-              {"sampleType", kSampleTypes[static_cast<std::size_t>(source.sample_type)]},
-              {"channels", source.channel_names},
-              {"hasMask", source.has_mask}}},
+            {"image", std::move(image)},
             {"layers", std::move(layers)},
             {"build", std::move(build)}};
 }

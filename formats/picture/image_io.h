@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "formats/exr/exr_metadata.h"
 #include "libcore/image/image.h"
 
 namespace imgmesh {
@@ -53,6 +54,7 @@ struct ReadImage {
     std::vector<std::string> warnings;  ///< each one sentence without the file's name
     std::optional<ImagePlace> place;    ///< of an EXR that left a choice
     std::int64_t non_finite = 0;        ///< samples that ReadImageOptions::non_finite replaced
+    ExrMetadata metadata;               ///< of an EXR
 };
 
 /// Reads the first image (frame, layer, part with colour) of a PNG, JPEG, TIFF, EXR, WebP, GIF, BMP, PNM,
@@ -79,6 +81,7 @@ Image read_image(const std::string& path, const ReadImageOptions& options = {});
 struct WriteImageOptions {
     bool overwrite = true;                  ///< false: Error(kIo) if the file exists
     std::optional<SampleType> sample_type;  ///< none: the image's, or the nearest that the format can hold
+    ExrMetadata metadata = {};              ///< for an EXR's header
 };
 
 /// Writes in the format of the extension, atomically; integers are rounded and clamped. PNG (8 and 16 bit),
@@ -88,6 +91,10 @@ struct WriteImageOptions {
 /// linear floats become sRGB in integers; other integers stay as encoded, noted by an ICC profile in colour
 /// PNG, JPEG and TIFF, and become sRGB in the rest, which can note none. The same image gives the same bytes.
 ///
+/// An EXR gets the attributes of `metadata`. If its display window is of the image's size, that is the
+/// image's, and pixels outside the data window are left out; RGB is written in the primaries of
+/// chromaticities.
+///
 /// Throws Error: kBadArgument for an extension that cannot be written, and for what its format cannot hold:
 /// the sample type asked for, channels other than grey or colour, transparency (an opaque alpha is left out),
 /// WebP's and JPEG's size; kIo if the file cannot be written.
@@ -96,7 +103,8 @@ void write_image(const std::string& path, const Image& image, const WriteImageOp
 /// The bytes that write_image() would write into a file of that name; only the extension counts. Throws as
 /// write_image() does.
 std::vector<std::uint8_t> encode_image(const std::string& path, const Image& image,
-                                       std::optional<SampleType> sample_type = {});
+                                       std::optional<SampleType> sample_type = {},
+                                       const ExrMetadata& metadata = {});
 
 /// Whether write_image() can write a file of this extension.
 bool can_write_image(const std::string& path);

@@ -211,7 +211,7 @@ bool can_write_image(const std::string& path) {
 }
 
 std::vector<std::uint8_t> encode_image(const std::string& path, const Image& image,
-                                       std::optional<SampleType> sample_type) {
+                                       std::optional<SampleType> sample_type, const ExrMetadata& metadata) {
     const Format* format = find_format(path);
     if (!format) throw unknown_format(path);
     const SampleType type = choose_type(path, *format, image, sample_type);
@@ -222,7 +222,7 @@ std::vector<std::uint8_t> encode_image(const std::string& path, const Image& ima
     if (format->extension == ".png") return encode_png(stored, type);
     if (format->extension != ".exr") return encode_with_oiio(path, *format, stored, type);
     multiply_alpha_in(stored);
-    return encode_exr(stored, type);
+    return encode_exr(std::move(stored), type, metadata);
 }
 
 void write_image(const std::string& path, const Image& image, const WriteImageOptions& options) {
@@ -231,7 +231,7 @@ void write_image(const std::string& path, const Image& image, const WriteImageOp
     choose_type(path, *format, image, options.sample_type);
     check_shape(path, *format, image);
     AtomicFile file(path, options.overwrite);  // first: if it fails, the work would be useless
-    file.write(encode_image(path, image, options.sample_type));
+    file.write(encode_image(path, image, options.sample_type, options.metadata));
     file.commit();
 }
 

@@ -158,6 +158,9 @@ void add_extension_cases(std::map<std::string, Case>& cases) {
     cases["ext.channels"] = json_case([](json& d) {
         root(d)["image"]["channels"] = {"R", "G", "B", "Z", "Z"};
     });
+    cases["ext.metadata"] = json_case([](json& d) {
+        root(d)["image"]["metadata"]["compression"] = {{"type", "int"}, {"value", 1}};
+    });
     cases["ext.layers"] = json_case([](json& d) { root(d)["layers"]["bufferView"] = 0; });
     cases["ext.level"] = json_case([](json& d) { level(d, 0)["part"] = "lod1"; });
     cases["ext.unknown"] = json_case([](json& d) { root(d)["image"]["depth"] = 8; });

@@ -20,6 +20,7 @@
 #include "formats/picture/decode/exr_chroma.h"
 #include "formats/picture/decode/keep_channels.h"
 #include "formats/picture/decode/picture_decoders.h"
+#include "formats/picture/exr_facts.h"
 #include "libcore/base/error.h"
 
 namespace imgmesh {
@@ -188,6 +189,13 @@ DecodedPicture decode_exr(const PictureFile& picture) {
         out.warnings = choice.warnings;
         if (choice.chosen) out.place = {exr_part_name(file, choice.part), choice.layer};
         out.primaries = primaries_of(header);
+
+        // Numbers that are taken for another colour space have no primaries of their own.
+        out.metadata = metadata_of(header, !picture.options.color_space, out.warnings);
+
+        const Imath::Box2i& stored = header.dataWindow();
+        if (!(shown.intersects(stored.min) && shown.intersects(stored.max)))
+            out.warnings.emplace_back("pixels beyond its display window are left out");
 
         const Windows windows(header);
         Imf::InputPart part(file, choice.part);

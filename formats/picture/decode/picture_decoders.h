@@ -32,7 +32,8 @@ struct DecodedPicture {
     std::vector<std::string> warnings;
     bool has_layers = false;                  ///< of an EXR
     std::optional<Primaries> primaries = {};  ///< of linear RGB, if they are not Rec.709's
-    std::optional<ImagePlace> place = {};     ///< in an EXR that left a choice
+    ExrMetadata metadata = {};
+    std::optional<ImagePlace> place = {};  ///< in an EXR that left a choice
 };
 
 /// Each throws Error(kBadFile) for broken or truncated content and sizes over the limits, before memory is

@@ -4,14 +4,16 @@
 #include <cstdint>
 #include <vector>
 
+#include "formats/exr/exr_metadata.h"
 #include "libcore/image/image.h"
 
 namespace imgmesh {
 
 /// Each returns the bytes of a file of an image that is ready for it. EXR: `image` is linear with associated
-/// alpha, `type` kHalf or kFloat. WebP: sRGB, 8 bit, lossless, at most 16383 pixels a side. PNG: one to four
-/// channels, RGB in any colour space, `type` kUint8 or kUint16.
-std::vector<std::uint8_t> encode_exr(const Image& image, SampleType type);
+/// alpha, `type` kHalf or kFloat, and becomes what WriteImageOptions::metadata says. WebP: sRGB, 8 bit,
+/// lossless, at most 16383 pixels a side. PNG: one to four channels, RGB in any colour space, `type` kUint8
+/// or kUint16.
+std::vector<std::uint8_t> encode_exr(Image image, SampleType type, const ExrMetadata& metadata);
 std::vector<std::uint8_t> encode_webp(const Image& image);
 std::vector<std::uint8_t> encode_png(const Image& image, SampleType type);
 
