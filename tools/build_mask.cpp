@@ -4,6 +4,7 @@
 
 #include "libcore/image/mask_value.h"
 #include "tools/common/in_file.h"
+#include "tools/common/read_options.h"
 
 namespace imgmesh {
 namespace {
@@ -18,8 +19,8 @@ std::string code_text(float value, SampleType type) {
 }  // namespace
 
 Mask read_mask(const std::string& path, double threshold, const ImageLimits& limits, const Image& image,
-               const std::string& name) {
-    const Image picture = read_image(path, {.limits = limits});
+               const std::string& name, std::vector<std::string>& warnings) {
+    const Image picture = read_with_warnings(path, {.limits = limits}, warnings).image;
     if (picture.width != image.width || picture.height != image.height)
         throw Error(ErrorKind::kBadFile, cat(path, ": the mask is ", picture.width, "x", picture.height, ", ",
                                              name, " is ", image.width, "x", image.height));

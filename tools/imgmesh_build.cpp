@@ -57,12 +57,14 @@ void keep_alpha(const Image& image, const std::string& input, bool asked, BuildP
 }
 
 // Returns the mask of --mask, or of alpha; empty() for none.
-Mask mask_of(const Image& image, const std::string& input, AlphaUse alpha, const BuildOptions& o) {
+Mask mask_of(const Image& image, const std::string& input, AlphaUse alpha, const BuildOptions& o,
+             std::vector<std::string>& warnings) {
     const auto threshold = [&](double usual) {
         return static_cast<float>(o.alpha_threshold.value_or(usual));
     };
     if (!o.mask.empty())
-        return read_mask(o.mask, o.alpha_threshold.value_or(kOpaqueEnough), o.read.limits, image, input);
+        return read_mask(o.mask, o.alpha_threshold.value_or(kOpaqueEnough), o.read.limits, image, input,
+                         warnings);
     if (alpha == AlphaUse::kKeep) return alpha_mask(image, threshold(kVisibleAlpha));
     return alpha == AlphaUse::kCut ? alpha_mask(image, threshold(kOpaqueEnough)) : Mask();
 }
@@ -87,7 +89,7 @@ Report build_one(const Job& job, const BuildOptions& o, const Context& context, 
     const bool keep = alpha == AlphaUse::kKeep;
     BuildParams params = o.params;
     if (keep) keep_alpha(image, job.input, o.alpha == AlphaUse::kKeep, params, warnings);
-    Mask mask = mask_of(image, job.input, alpha, o);
+    Mask mask = mask_of(image, job.input, alpha, o, warnings);
     const double read_seconds = stage.lap();
     ContainerOptions container;
     container.draco = o.draco;

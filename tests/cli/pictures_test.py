@@ -292,6 +292,14 @@ class Pictures(CliCase):
             report = self.build("in.png", "--mask", name, "--alpha-threshold", threshold)
             self.assertEqual(report["pixels"], inside.sum())
 
+    def test_warnings_of_masks(self):
+        picture_files.png(self.folder / "in.png", picture_files.ramp(3, 2))
+        (self.folder / "mask.pgm").write_text("P2 3 2 1\n1 1 0\n1 2 0\n")  # 2 is above its largest value
+        report = self.report("imgmesh-build", "in.png", "-o", "out.glb", "--mask", "mask.pgm")
+        self.assertEqual(report["images"][0]["pixels"], 4)
+        self.assertEqual(len(report["warnings"]), 1)
+        self.assertTrue(report["warnings"][0].startswith("mask.pgm: samples above"), report["warnings"])
+
     def test_precision_of_the_map(self):
         picture_files.png(self.folder / "in.png", picture_files.ramp(24, 16))
         for precision in ("half", "float"):

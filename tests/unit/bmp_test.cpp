@@ -97,7 +97,8 @@ TEST_CASE("BMP: palettes that are too short, too long, or not there") {
     Bmp bmp{3, 1, 8, 0, 40, {}, three_colors(), FileBytes().put({1, 3, 200, 0}), 3};
     const ReadImage read = read_bytes(bmp.file());
     CHECK(codes(read.image) == Codes{255, 0, 0, 0, 0, 0, 0, 0, 0});
-    CHECK(read.warnings == Warnings{"2 pixels have an index beyond the palette's 3 colours and are black"});
+    CHECK(read.warnings ==
+          Warnings{"pixels with an index beyond the palette's 3 colours, which are black: 2"});
     bmp.colors = 0;  // 256, but the pixels begin after three
     CHECK(codes(read_bytes(bmp.file()).image) == codes(read.image));
     bmp.colors = 4000000000;
@@ -180,7 +181,7 @@ TEST_CASE("BMP: runs of 8 bits, with every code") {
                        color(3, 1), color(0, 0), color(1, 0), color(2, 0), color(3, 0)};
     CHECK(red == Codes{255, 255, 100, 255, 100, 0, 0, 100, 255, 0});
     CHECK(read.warnings ==
-          Warnings{"its runs step over 3 pixels, which have the first colour of the palette"});
+          Warnings{"pixels that its runs step over, which have the palette's first colour: 3"});
 
     // The end is said, or it is where the last pixel is.
     bmp.height = 1;
@@ -198,7 +199,7 @@ TEST_CASE("BMP: runs of 8 bits, with every code") {
     bmp.pixels = FileBytes().put({7, 1, 0, 1});  // as many decoders do: beyond a row nothing is drawn
     CHECK(codes(read_bytes(bmp.file()).image) == Codes{255, 0, 0, 255, 0, 0, 255, 0, 0, 255, 0, 0});
     CHECK(read_bytes(bmp.file()).warnings ==
-          Warnings{"its runs have 3 pixels beyond their row, which were dropped"});
+          Warnings{"pixels of its runs beyond a row, which were dropped: 3"});
     bmp.pixels = FileBytes().put({0, 2, 255, 255, 4, 1, 0, 1});
     CHECK(read_bytes(bmp.file()).warnings.size() == 1);
 }

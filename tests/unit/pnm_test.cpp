@@ -80,7 +80,7 @@ TEST_CASE("PNM: any largest value to 65535") {
     const ReadImage above = read_bytes(FileBytes("P2 3 1 100 100 101 999"));
     CHECK(above.image.data == Floats{1, 1, 1});
     CHECK(above.warnings ==
-          Warnings{"2 samples are above the file's largest value, 100, and were read as it"});
+          Warnings{"samples above the file's largest value, 100, which were read as it: 2"});
 }
 
 TEST_CASE("PNM: headers that cannot be, and sizes that the file does not hold") {

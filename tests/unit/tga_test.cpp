@@ -108,7 +108,7 @@ TEST_CASE("TGA: palettes of every depth, from their first index") {
         tga.pixels = FileBytes().put({4, 5, 6, 7});
         CHECK(codes(read(tga).image) == Codes{0, 0, 0, 255, 0, 0, 132, 132, 132, 0, 0, 0});
         CHECK(read(tga).warnings ==
-              Warnings{"2 pixels have an index beyond the palette's 2 colours and are black"});
+              Warnings{"pixels with an index beyond the palette's 2 colours, which are black: 2"});
         tga.bits = 16;
         tga.pixels = FileBytes().put({5, 0, 6, 0, 6, 0, 5, 0});
         CHECK(codes(read(tga).image) == Codes{255, 0, 0, 132, 132, 132, 132, 132, 132, 255, 0, 0});

@@ -77,10 +77,9 @@ std::vector<std::uint16_t> read_bmp_runs(const std::string& path, const BmpHeade
     const std::int64_t missed = canvas.width * canvas.height - canvas.written;
     if (missed > 0)
         warnings.push_back(
-            cat("its runs step over ", missed, " pixels, which have the first colour of the palette"));
+            cat("pixels that its runs step over, which have the palette's first colour: ", missed));
     if (canvas.dropped > 0)
-        warnings.push_back(
-            cat("its runs have ", canvas.dropped, " pixels beyond their row, which were dropped"));
+        warnings.push_back(cat("pixels of its runs beyond a row, which were dropped: ", canvas.dropped));
     return std::move(canvas.indices);
 }
 

@@ -23,8 +23,8 @@ Image image_from_palette(int width, int height, std::span<const std::uint16_t> i
             image.data[i * channels + c] = static_cast<float>(color[c < colors ? c : 3]) / 255;
     }
     if (beyond > 0)
-        warnings.push_back(cat(beyond, " pixels have an index beyond the palette's ", palette.size(),
-                               " colours and are black"));
+        warnings.push_back(cat("pixels with an index beyond the palette's ", palette.size(),
+                               " colours, which are black: ", beyond));
     return image;
 }
 

@@ -45,8 +45,8 @@ struct Scale {
     }
     void tell(DecodedPicture& out) const {
         if (above > 0)
-            out.warnings.push_back(cat(above, " samples are above the file's largest value, ", largest,
-                                       ", and were read as it"));
+            out.warnings.push_back(
+                cat("samples above the file's largest value, ", largest, ", which were read as it: ", above));
     }
 };
 
