@@ -39,7 +39,7 @@ extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t s
     }
     if (kTarget == Target::kContainer)
         bytes = mutator.glb(bytes);
-    else if (kTarget == Target::kPicture)
+    else if (kTarget == Target::kPicture || kTarget == Target::kSmall)
         bytes = mutator.any(bytes);
     else {
         const std::string text = mutator.json_text({bytes.begin(), bytes.end()});

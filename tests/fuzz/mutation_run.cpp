@@ -1,8 +1,8 @@
 // mutation-run COUNT [SEED [FOLDER]]: COUNT mutated containers, images and files of edits through their
 // readers. Fails on a crash, on a hang of more than 10 s, on more than 2 GiB, and on an exception that no
 // reader documents; the input is then kept in FOLDER (default: the working folder). The same inputs for the
-// same SEED. mutation-run --replay FOLDER: every file there, which is named container-*, picture-* or
-// edits-*.
+// same SEED. mutation-run --replay FOLDER: every file there, which is named container-*, picture-*,
+// small-* or edits-*.
 #include <string.h>
 #include <sys/mman.h>
 #include <sys/resource.h>
@@ -26,6 +26,7 @@ using namespace imgmesh::fuzz;
 
 namespace {
 
+constexpr Target kTargets[] = {Target::kContainer, Target::kPicture, Target::kSmall, Target::kEdits};
 constexpr unsigned kSeconds = 10;
 constexpr rlim_t kBytes = rlim_t{2} << 30;
 constexpr std::uint32_t kBlock = 200;  // inputs for one child process
@@ -36,19 +37,18 @@ constexpr bool kSanitized = true;  // whose shadow memory takes terabytes of add
 constexpr bool kSanitized = false;
 #endif
 
-const char* name_of(Target target) {
-    return target == Target::kContainer ? "container" : target == Target::kPicture ? "picture" : "edits";
-}
-
 Target target_of(std::uint32_t index) {
-    return index % 10 == 9 ? Target::kEdits : index % 10 >= 6 ? Target::kPicture : Target::kContainer;
+    constexpr Target kShares[] = {
+        Target::kContainer, Target::kContainer, Target::kContainer, Target::kContainer, Target::kContainer,
+        Target::kPicture,   Target::kPicture,   Target::kPicture,   Target::kSmall,     Target::kEdits};
+    return kShares[index % std::size(kShares)];
 }
 
 Bytes input(Target target, std::uint32_t seed, const std::vector<Bytes>& good) {
     Mutator mutator(seed);
     const Bytes& start = good[mutator.below(good.size())];
     if (target == Target::kContainer) return mutator.glb(start);
-    if (target == Target::kPicture) return mutator.any(start);
+    if (target == Target::kPicture || target == Target::kSmall) return mutator.any(start);
     const std::string text = mutator.json_text({start.begin(), start.end()});
     return {text.begin(), text.end()};
 }
@@ -115,10 +115,9 @@ int replay(const fs::path& folder) {
         std::ifstream in(files[i], std::ios::binary);
         const Bytes bytes{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
         const std::string name = files[i].filename().string();
-        return std::pair(name.starts_with("container") ? Target::kContainer
-                         : name.starts_with("picture") ? Target::kPicture
-                                                       : Target::kEdits,
-                         bytes);
+        for (const Target target : kTargets)
+            if (name.starts_with(name_of(target))) return std::pair(target, bytes);
+        return std::pair(Target::kEdits, bytes);
     };
     const Progress done = run_all(static_cast<std::uint32_t>(files.size()), at,
                                   [&](std::uint32_t i) { std::cerr << files[i] << std::endl; });
@@ -128,7 +127,7 @@ int replay(const fs::path& folder) {
 
 int mutate(std::uint32_t count, std::uint32_t seed, const fs::path& folder) {
     std::map<Target, std::vector<Bytes>> good;
-    for (const Target target : {Target::kContainer, Target::kPicture, Target::kEdits}) {
+    for (const Target target : kTargets) {
         good[target] = seeds(target);
         for (const Bytes& bytes : good[target])
             if (!feed(target, bytes))

@@ -11,8 +11,10 @@
 #include "formats/container/edit_file.h"
 #include "formats/container/validate.h"
 #include "formats/files/atomic_file.h"
+#include "formats/picture/decode/picture_decoders.h"
 #include "formats/picture/image_io.h"
 #include "libcore/base/error.h"
+#include "tests/fuzz/small_seeds.h"
 #include "tests/support/random_mesh_image.h"
 #include "tests/support/small_pictures.h"
 #include "tests/support/temporary_folder.h"
@@ -98,15 +100,33 @@ Bytes noise_picture(const char* extension, int channels) {
 
 }  // namespace
 
+const char* name_of(Target target) {
+    switch (target) {
+        case Target::kContainer:
+            return "container";
+        case Target::kPicture:
+            return "picture";
+        case Target::kSmall:
+            return "small";
+        case Target::kEdits:
+            break;
+    }
+    return "edits";
+}
+
 bool feed(Target target, std::span<const std::uint8_t> bytes) {
     if (target == Target::kContainer) return feed_container(bytes);
     if (target == Target::kEdits)
         return accepts([&] {
             edits_from_json({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, "fuzz");
         });
-    const MemoryFile file(bytes);
     ImageLimits limits;
     limits.max_pixels = 1 << 22;
+    if (target == Target::kSmall) {
+        std::vector<std::uint8_t> copy(bytes.begin(), bytes.end());
+        return accepts([&] { decode_picture("fuzz.tga", copy, {.limits = limits}); });
+    }
+    const MemoryFile file(bytes);
     return accepts([&] { read_image(file.path(), {.limits = limits}); });
 }
 
@@ -118,6 +138,8 @@ std::vector<Bytes> seeds(Target target) {
             if (entry.path().filename().string().starts_with("imgmesh-warp.edits."))
                 all.push_back(read_file(entry.path().string(), 1 << 20));
         std::sort(all.begin(), all.end());
+    } else if (target == Target::kSmall) {
+        all = small_seeds();
     } else if (target == Target::kPicture) {
         for (const char* extension : {".png", ".jpg", ".tif", ".exr", ".webp", ".bmp", ".ppm"})
             all.push_back(noise_picture(extension, 3));

@@ -11,7 +11,11 @@
 
 namespace imgmesh::fuzz {
 
-enum class Target { kContainer, kPicture, kEdits };
+/// kSmall: the images that no library reads for imgmesh, BMP, TGA and Netpbm.
+enum class Target { kContainer, kPicture, kSmall, kEdits };
+
+/// container, picture, small or edits.
+const char* name_of(Target target);
 
 /// `bytes` through the reader; containers through the validator too, which must agree with it.
 bool feed(Target target, std::span<const std::uint8_t> bytes);
