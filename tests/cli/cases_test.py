@@ -125,6 +125,7 @@ REFUSED = (
 
 # The colour space that the file's own statement leads to.
 STATED = (
+    ("F05-p3-icc.heic", "DisplayP3"),
     ("F05-icc_rec2020_g24.png", "sRGB"),
     ("F05-png-chrm-adobe.png", "AdobeRGB"),
     ("F05-png-cicp-pq.png", "linear"),

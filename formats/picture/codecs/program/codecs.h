@@ -19,6 +19,10 @@ using OfferPicture = std::function<std::span<std::uint8_t>(const CodecPicture&)>
 /// Each decodes the file's `bytes` into the memory that `offer` gives. Throws Error: kBadFile for broken or
 /// truncated content and sizes over the limits, kUnsupported for kinds of images that imgmesh does not use.
 void decode_by_oiio(const DecodeTask& task, std::span<const std::uint8_t> bytes, const OfferPicture& offer);
+/// HEIC and AVIF, of 8 bits, or as 16 bits of more. The library has decoded the image when `offer` is called:
+/// only then its size is certain. It takes no memory for more pixels than the file claims.
+void decode_by_libheif(const DecodeTask& task, std::span<const std::uint8_t> bytes,
+                       const OfferPicture& offer);
 
 /// Returns the bytes of the file. Throws Error as encode_with_codecs() says.
 std::vector<std::uint8_t> encode_by_oiio(const EncodeTask& task, std::span<const std::uint8_t> samples);

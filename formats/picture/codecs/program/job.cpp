@@ -49,7 +49,10 @@ class Job {
                                   : std::min(most, std::uint64_t{1} << 40) * kUsual,
                   data_.size());
         const auto offer = [&](const CodecPicture& picture) { return room_for(picture); };
-        decode_by_oiio(task, data_, offer);
+        if (claim.format == PictureFormat::kHeif)
+            decode_by_libheif(task, data_, offer);
+        else
+            decode_by_oiio(task, data_, offer);
     }
 
     void encode() {

@@ -24,8 +24,6 @@ const char* reader_name(PictureFormat format) {
             return "hdr";
         case PictureFormat::kJpeg2000:
             return "jpeg2000";
-        case PictureFormat::kHeif:
-            return "heif";
         default:
             throw Error(ErrorKind::kInternal, "a format that imgmesh reads itself");
     }
