@@ -36,6 +36,10 @@ void check_contradictions(const CLI::App& app, const BuildParams& p) {
         refuse(map, projection, "the trivial map follows no colour");
     if (map_kind(p) == MapKind::kTracked && rounds > 0)
         refuse(map, typed_rounds(app, rounds), "a tracked map follows the collapse alone");
+    if (p.values && given(app, "--texture"))
+        refuse("--values", "--texture", "values are no colours that a texture could show");
+    if (p.values && given(app, "--color-space"))
+        refuse("--values", "--color-space", "values have no colour space");
     if (p.stop.rms && map_kind(p) == MapKind::kTracked)
         refuse(typed(app, {"--rms"}), map,
                "the RMS is searched over several meshes, a tracked map follows the collapse to one");

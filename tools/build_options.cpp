@@ -144,6 +144,7 @@ void add_build_options(CLI::App& app, BuildOptions& o) {
                     "0.5, or 1/510 where alpha is kept"});
     advanced(app, in_group(threshold, image));
     add_read_options(app, o.read);
+    add_nodata_option(app, o.read);
 
     add_params(app, o);
 
@@ -154,6 +155,11 @@ void add_build_options(CLI::App& app, BuildOptions& o) {
         // file.
         o.params = o.preset;
         for (const auto& set : o.given) set(o.params);
+        o.read.values = o.params.values;
+        if (o.params.values && o.alpha == AlphaUse::kKeep)
+            throw Error(
+                ErrorKind::kBadArgument,
+                "--values and --alpha keep: alpha is a mask beside values, or with --channels one of them");
         check_contradictions(app, o.params);
     });
 }

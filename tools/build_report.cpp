@@ -10,7 +10,7 @@
 
 namespace imgmesh {
 
-Report image_report(const Image& image, const std::string& alpha, const BuildReport& built,
+Report image_report(const Image& image, const std::string& alpha, bool values, const BuildReport& built,
                     const Container& written, const FileSeconds& seconds) {
     Report levels = Report::array();
     const std::vector<std::string> auxiliary = split_names(written.mesh_image.source.channel_names).auxiliary;
@@ -32,7 +32,9 @@ Report image_report(const Image& image, const std::string& alpha, const BuildRep
                   {"color_space", color_space_name(image.color_space)},
                   {"has_light", written.mesh_image.source.gamut == Gamut::kHdr},
                   {"alpha", alpha},
-                  {"pixels", built.pixels}};
+                  {"pixels", built.pixels},
+                  {"values", values},
+                  {"clipped_samples", built.clipped_samples}};
     report.update(levels.front());  // the finest level's figures are the image's
     report.update({{"levels", levels},
                    {"bytes", written.facts.total_bytes},
@@ -64,8 +66,8 @@ void print_build(const Report& report, std::ostream& out) {
         if (image["pixels"] != image["width"].get<std::int64_t>() * image["height"].get<std::int64_t>())
             table.add("masked image", cat(image["pixels"], " pixels"));
         table.add("mesh", cat(image["vertices"], " vertices, ", image["faces"], " faces"));
-        table.add("error",
-                  cat("map ", number("map_rms"), ", Gouraud ", number("gouraud_rms"), " L*u*v* RMS"));
+        table.add("error", cat("map ", number("map_rms"), ", Gouraud ", number("gouraud_rms"),
+                               image["values"] ? " RMS in the values' unit" : " L*u*v* RMS"));
         if (image.contains("channel_rms"))
             for (const auto& [name, rms] : image["channel_rms"].items())
                 table.add(printable_line(name), cat("map ", format_number(rms.get<double>()), " RMS"));

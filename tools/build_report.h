@@ -17,8 +17,8 @@ struct FileSeconds {
 };
 
 /// Returns an image's part of the report. written: the container as a reader gets it; alpha: "none", "kept",
-/// "cut" or "ignored".
-Report image_report(const Image& image, const std::string& alpha, const BuildReport& built,
+/// "cut" or "ignored"; values: those of --values.
+Report image_report(const Image& image, const std::string& alpha, bool values, const BuildReport& built,
                     const Container& written, const FileSeconds& seconds);
 
 void print_build(const Report& report, std::ostream& out);

@@ -72,11 +72,23 @@ void print_quality(const Report& input, std::ostream& out) {
     table.print(out, 4);
 }
 
+void print_channels(const Report& d, TextTable& table) {
+    if (!d.contains("channels")) return;
+    for (const auto& [name, channel] : d["channels"].items())
+        table.add(printable_line(name),
+                  cat("RMS ", number(channel["rms"]), ", largest ", number(channel["max"])));
+}
+
 void print_difference(const Report& d, std::ostream& out) {
     TextTable table;
     std::string pixels = cat(d["pixels"]);
     if (d["in_one_only"] != 0) pixels += cat("; ", d["in_one_only"], " are transparent in one of the two");
     table.add("pixels", pixels);
+    if (!d.contains("rms_luv")) {
+        print_channels(d, table);
+        table.print(out, 4);
+        return;
+    }
     table.add("L*u*v*", cat("RMS ", number(d["rms_luv"]), ", largest ", number(d["max_luv"])));
     if (d["max_alpha"] != 0) {
         table.add("alpha",
@@ -95,10 +107,7 @@ void print_difference(const Report& d, std::ostream& out) {
     const Report& e = d["ciede2000"];
     table.add("CIEDE2000",
               cat("mean ", number(e["mean"]), ", 95 % ", number(e["p95"]), ", largest ", number(e["max"])));
-    if (d.contains("channels"))
-        for (const auto& [name, channel] : d["channels"].items())
-            table.add(printable_line(name),
-                      cat("RMS ", number(channel["rms"]), ", largest ", number(channel["max"])));
+    print_channels(d, table);
     table.print(out, 4);
 }
 

@@ -34,6 +34,9 @@ AlphaUse alpha_use(const Image& image, const BuildOptions& o) {
     const bool left_out =
         !channels.empty() && std::ranges::find(channels, "A", &ChannelChoice::name) == channels.end();
     if (image.channel("A") < 0) return AlphaUse::kIgnore;
+    // Values have a mask beside them, which --channels A makes one of them.
+    if (o.params.values && o.alpha == AlphaUse::kAuto)
+        return o.mask.empty() ? AlphaUse::kCut : AlphaUse::kIgnore;
     if (o.alpha == AlphaUse::kKeep) return AlphaUse::kKeep;
     if (o.alpha == AlphaUse::kIgnore || !o.mask.empty()) return AlphaUse::kIgnore;
     if (o.alpha == AlphaUse::kCut || left_out) return AlphaUse::kCut;
@@ -74,9 +77,17 @@ ReadImageOptions read_options(const BuildOptions& o) {
     ReadImageOptions read = o.read;
     // A texture shows the colour also where other channels are meshed.
     if (o.texture.wanted && !o.params.channels.empty()) return read;
+    if (o.params.values && o.params.channels.empty()) return read;  // all are meshed
     read.channels.emplace();
     for (const ChannelChoice& choice : o.params.channels) read.channels->push_back(choice.name);
     return read;
+}
+
+// The parameters with the names that channels have once they are read.
+BuildParams named_as_read(BuildParams params) {
+    if (params.values)
+        for (ChannelChoice& channel : params.channels) channel.name = value_name(channel.name);
+    return params;
 }
 
 Report build_one(const Job& job, const BuildOptions& o, const Context& context, const Progress& progress,
@@ -87,9 +98,11 @@ Report build_one(const Job& job, const BuildOptions& o, const Context& context, 
     const Image& image = read.image;
     const AlphaUse alpha = alpha_use(image, o);
     const bool keep = alpha == AlphaUse::kKeep;
-    BuildParams params = o.params;
+    BuildParams params = named_as_read(o.params);
     if (keep) keep_alpha(image, job.input, o.alpha == AlphaUse::kKeep, params, warnings);
     Mask mask = mask_of(image, job.input, alpha, o, warnings);
+    const bool missing = !read.data.empty(), mask_is_data = missing && mask.empty();
+    if (missing) mask = in_file(job.input, [&] { return in_both(mask, read.data); });
     const double read_seconds = stage.lap();
     ContainerOptions container;
     container.draco = o.draco;
@@ -104,11 +117,18 @@ Report build_one(const Job& job, const BuildOptions& o, const Context& context, 
         in_file(job.input, [&] { return build_mesh_image(image, params, progress, std::move(mask)); });
     result.mesh_image.generator = context.generator;
     if (result.mesh_image.source.has_mask) {
-        result.mesh_image.parameters.emplace_back("mask", std::string(o.mask.empty() ? "alpha" : "picture"));
-        result.mesh_image.parameters.emplace_back(
-            "alpha-threshold",
-            o.alpha_threshold.value_or(keep && o.mask.empty() ? kVisibleAlpha : kOpaqueEnough));
+        const char* of = mask_is_data ? "nodata" : o.mask.empty() ? "alpha" : "picture";
+        result.mesh_image.parameters.emplace_back("mask", std::string(of));
+        if (!mask_is_data)
+            result.mesh_image.parameters.emplace_back(
+                "alpha-threshold",
+                o.alpha_threshold.value_or(keep && o.mask.empty() ? kVisibleAlpha : kOpaqueEnough));
     }
+    if (result.report.clipped_samples > 0)
+        warnings.push_back(
+            cat(job.input, ": ", result.report.clipped_samples,
+                " samples of its colours are below 0 or too large and were clipped; --values keeps "
+                "numbers as they are"));
     stage.lap();
     if (o.texture.wanted) {
         extend_to_outer_edge(result.mesh_image);
@@ -124,8 +144,8 @@ Report build_one(const Job& job, const BuildOptions& o, const Context& context, 
                       : keep                    ? "kept"
                       : alpha == AlphaUse::kCut ? "cut"
                                                 : "ignored";
-    report.update(
-        image_report(image, use, result.report, written, {read_seconds, write_seconds, whole.lap()}));
+    report.update(image_report(image, use, o.params.values, result.report, written,
+                               {read_seconds, write_seconds, whole.lap()}));
     report.update(read_report(read));
     return report;
 }

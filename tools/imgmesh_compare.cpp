@@ -29,6 +29,8 @@ namespace {
 constexpr double kErrorRange = 20;
 // The scale of PNG plots, whose letters would be coarse at the size that suits an SVG.
 constexpr int kPngScale = 2;
+// The least alpha of a pixel with values.
+constexpr float kVisible = std::numeric_limits<float>::min();
 
 struct Options {
     std::vector<std::string> inputs;
@@ -52,9 +54,15 @@ void add_options(CLI::App& app, Options& o) {
     add_count(app, "--level", o.level, {0, std::numeric_limits<int>::max()},
               {"Level of a container's pyramid, 0 the finest", "0"});
     add_read_options(app, o.read);
+    add_flag(
+        app, "--values", [&o] { o.read.values = true; },
+        "The files hold data, not colours: compare the channels that both have, in their own unit");
+    add_nodata_option(app, o.read);
     add_number(
         app, "--tolerance", o.tolerance, {0},
-        {"Exit with code 7 if the RMS error in L*u*v* of what one sees, alpha included, is larger", "none"});
+        {"Exit with code 7 if the RMS error in L*u*v* of what one sees, alpha included, is larger, or with "
+         "--values that of a channel",
+         "none"});
     add_file(app, "--error-image", o.error_image,
              "Image to write of the errors in L*u*v*, alpha included, from black for none over blue, red and "
              "orange to "
@@ -88,6 +96,9 @@ void check_options(const Options& o) {
         refuse(cat(o.mode ? "--mode" : "--level", ": expected a container (.glb, .gltf) among the files"));
     for (const auto& [name, given] : reading)
         if (given && !pictures) refuse(cat(name, ": expected an image among the files"));
+    if (o.read.values && !pair) refuse("--values: expected two files to compare");
+    if (o.read.values && (o.read.color_space || !o.error_image.empty() || !o.plot.empty()))
+        refuse("--values: values have neither a colour space nor an error image nor a plot");
     if (o.error_range && o.error_image.empty()) refuse("--error-range: expected --error-image as well");
     if (!o.error_image.empty() && !can_write_image(o.error_image))
         refuse(cat("--error-image ", o.error_image, ": expected the name of an image, as in .png"));
@@ -109,8 +120,8 @@ struct Input {
 Input load_picture(const std::string& path, const Options& o, std::vector<std::string>& warnings) {
     ReadImage read = read_with_warnings(path, o.read, warnings);
     const Report facts = read_report(read);
-    Input input{{path}, std::move(read.image), {}, {}};
-    if (!has_color(input.image))
+    Input input{{path}, hidden_outside(read.image, read.data), {}, {}};
+    if (!o.read.values && !has_color(input.image))
         throw Error(ErrorKind::kUnsupported,
                     cat(path, ": the image has no colour: neither channels R, G, B nor Y"));
     input.report = {{"input", path},
@@ -138,7 +149,7 @@ Input load_container(const std::string& path, const Options& o) {
                     {"level", index}};
     if (o.inputs.size() == 2) {
         const DrawMode mode = o.mode.value_or(DrawMode::kMap);
-        if (split_names(m.source.channel_names).color.empty())
+        if (!o.read.values && split_names(m.source.channel_names).color.empty())
             throw Error(ErrorKind::kUnsupported, cat(path, ": the container has no colour"));
         input.image = draw_channels(m, static_cast<int>(index), {mode});
         input.report["mode"] = name_of(mode_choices(), mode);
@@ -150,12 +161,36 @@ Input load_container(const std::string& path, const Options& o) {
     return input;
 }
 
-ImageDifference compare_inputs(const Input& a, const Input& b, const Options& o) {
+void check_same_size(const Image& a, const Image& b, const std::vector<std::string>& names) {
     const auto size = [](const Image& image) { return cat(image.width, " x ", image.height); };
-    if (size(a.image) != size(b.image))
-        throw Error(ErrorKind::kBadFile, cat(o.inputs[0], " has ", size(a.image), " pixels, ", o.inputs[1],
-                                             " has ", size(b.image), "; expected the same size"));
+    if (size(a) != size(b))
+        throw Error(ErrorKind::kBadFile, cat(names[0], " has ", size(a), " pixels, ", names[1], " has ",
+                                             size(b), "; expected the same size"));
+}
+
+ImageDifference compare_inputs(const Input& a, const Input& b, const Options& o) {
+    check_same_size(a.image, b.image, o.inputs);
     return compare_images(a.image, b.image);
+}
+
+// The difference of two files of values. Throws Error(kUnsupported) if no channel can be compared.
+Report value_report(const Image& a, const Image& b, const std::vector<std::string>& names) {
+    check_same_size(a, b, names);
+    Report report = {{"pixels", 0}, {"in_one_only", 0}};
+    for (const auto& [name, rms, max] : compare_channels(a, b))
+        report["channels"][name] = {{"rms", rms}, {"max", max}};
+    if (!report.contains("channels"))
+        throw Error(ErrorKind::kUnsupported,
+                    cat(names[0], " and ", names[1], ": have no channel of values in common, or no pixel"));
+    const Mask in_a = alpha_mask(a, kVisible), in_b = alpha_mask(b, kVisible);
+    std::int64_t both = 0, one = 0;
+    for (std::size_t i = 0; i < a.pixel_count(); ++i) {
+        both += in_a.contains(i) && in_b.contains(i) ? 1 : 0;
+        one += in_a.contains(i) != in_b.contains(i) ? 1 : 0;
+    }
+    report["pixels"] = both;
+    report["in_one_only"] = one;
+    return report;
 }
 
 // panels: those of the errors of two files, or empty; the containers' measures are added.
@@ -205,8 +240,14 @@ Report run(const Options& o, Context& context) {
     context.progress(0.6, "compare");
     std::vector<HistogramPanel> panels;
     std::optional<ImageDifference> difference;
-    if (inputs.size() == 2) {
+    double difference_rms = 0;  // the one that --tolerance limits
+    if (inputs.size() == 2 && o.read.values) {
+        report["difference"] = value_report(inputs[0].image, inputs[1].image, o.inputs);
+        for (const auto& [name, channel] : report["difference"]["channels"].items())
+            difference_rms = std::max(difference_rms, channel["rms"].get<double>());
+    } else if (inputs.size() == 2) {
         difference = compare_inputs(inputs[0], inputs[1], o);
+        difference_rms = difference->rms_visible;
         const Distribution luv = distribution(difference->luv, kLuvErrorBins);
         const Distribution ciede2000 = distribution(difference->ciede2000, kCiede2000Bins);
         panels = {{"error in L*u*v*", {{0, luv}}}, {"CIEDE2000", {{0, ciede2000}}}};
@@ -215,14 +256,15 @@ Report run(const Options& o, Context& context) {
             report["difference"]["channels"][name] = {{"rms", rms}, {"max", max}};
     }
     if (o.tolerance) {
-        const bool within = difference->rms_visible <= *o.tolerance;
+        const bool within = difference_rms <= *o.tolerance;
         report["tolerance"] = *o.tolerance;
         report["within_tolerance"] = within;
         if (!within)
             context.failures.push_back(
-                {ExitCode::kDifferent, cat(o.inputs[0], " and ", o.inputs[1], " differ: RMS ",
-                                           format_number(difference->rms_visible),
-                                           " in L*u*v*, more than --tolerance ", *o.tolerance)});
+                {ExitCode::kDifferent,
+                 cat(o.inputs[0], " and ", o.inputs[1], " differ: RMS ", format_number(difference_rms),
+                     o.read.values ? " in the values' unit" : " in L*u*v*", ", more than --tolerance ",
+                     *o.tolerance)});
     }
 
     context.progress(0.9, "write");

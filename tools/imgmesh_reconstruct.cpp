@@ -90,13 +90,16 @@ void check_size(const SourceInfo& source, double scale) {
 // colour to draw.
 bool writes_channels(const Options& o, const SourceInfo& source) {
     const SplitNames names = split_names(source.channel_names);
-    const bool holds = lower_extension(o.output) == ".exr" &&
+    const std::string extension = lower_extension(o.output);
+    const bool values = names.color.empty();
+    const bool holds = (extension == ".exr" || (values && (extension == ".tif" || extension == ".tiff"))) &&
                        (o.draw.mode == DrawMode::kMap || o.draw.mode == DrawMode::kGouraud);
-    if (names.color.empty() && !holds) {
+    if (values && !holds) {
         std::string list;
         for (const std::string& name : names.auxiliary) list += (list.empty() ? "" : ", ") + name;
-        throw Error(ErrorKind::kUnsupported, cat(o.input, ": has no colour, its channels are ", list,
-                                                 "; they can be written as .exr in mode map or gouraud"));
+        throw Error(ErrorKind::kUnsupported,
+                    cat(o.input, ": has no colour, its channels are ", list,
+                        "; they can be written as .exr or .tif in mode map or gouraud"));
     }
     return holds && !names.auxiliary.empty();
 }

@@ -9,6 +9,7 @@
 
 #include "formats/exr/exr_metadata.h"
 #include "libcore/image/image.h"
+#include "libcore/image/mask.h"
 
 namespace imgmesh {
 
@@ -40,6 +41,13 @@ struct ReadImageOptions {
     /// left out, with a warning.
     std::optional<std::vector<std::string>> channels = {};
     NonFinite non_finite = NonFinite::kRefuse;
+    /// The samples are data, not colours: integers keep their own numbers (of 8 bits 0 to 255), palettes
+    /// their indices, nothing is converted, alpha is not divided out. The image is linear floats. R, G, B or
+    /// Y are named by value_name(), so that they are no colour; alpha stays A, from 0 to 1.
+    bool values = false;
+    /// Pixels are no data where all channels but A have this value, in the file's own numbers; may be NaN.
+    std::optional<double> nodata = {};
+    bool file_nodata = true;  ///< without `nodata`, the value that the file names (GDAL's tag in TIFF)
 };
 
 /// Where the image of an EXR was found.
@@ -54,7 +62,8 @@ struct ReadImage {
     std::vector<std::string> warnings;  ///< each one sentence without the file's name
     std::optional<ImagePlace> place;    ///< of an EXR that left a choice
     std::int64_t non_finite = 0;        ///< samples that ReadImageOptions::non_finite replaced
-    ExrMetadata metadata;               ///< of an EXR
+    ExrMetadata metadata = {};           ///< of an EXR
+    Mask data = {};  ///< the pixels with data; empty() if all have some. The samples of others mean nothing
 };
 
 /// Reads the first image (frame, layer, part with colour) of a PNG, JPEG, TIFF, EXR, WebP, GIF, BMP, PNM,
@@ -89,7 +98,9 @@ struct WriteImageOptions {
 ///
 /// The colours read back are those of `image`: floats are written linear (EXR's with associated alpha), and
 /// linear floats become sRGB in integers; other integers stay as encoded, noted by an ICC profile in colour
-/// PNG, JPEG and TIFF, and become sRGB in the rest, which can note none. The same image gives the same bytes.
+/// PNG, JPEG and TIFF, and become sRGB in the rest, which can note none. Floats without a colour become
+/// a TIFF's bands; where alpha is 0 they are NaN, which the TIFF names as nodata. The same image gives the
+/// same bytes.
 ///
 /// An EXR gets the attributes of `metadata`. If its display window is of the image's size, that is the
 /// image's, and pixels outside the data window are left out; RGB is written in the primaries of

@@ -6,6 +6,7 @@
 #include "formats/files/atomic_file.h"
 #include "formats/picture/color/primaries.h"
 #include "formats/picture/decode/keep_channels.h"
+#include "formats/picture/decode/nodata.h"
 #include "formats/picture/decode/non_finite.h"
 #include "formats/picture/decode/picture_decoders.h"
 #include "formats/picture/image_io.h"
@@ -33,17 +34,25 @@ constexpr std::array<Orientation, 9> kOrientations = {{{false, false, false},  /
                                                        {true, true, true},
                                                        {true, true, false}}};
 
-Image displayed(Image stored, int orientation) {
+void copy_pixel(const Image& from, std::size_t i, Image& to, std::size_t j) {
+    std::copy_n(from.pixel(i), from.channels, to.pixel(j));
+}
+void copy_pixel(const Mask& from, std::size_t i, Mask& to, std::size_t j) {
+    to.values[j] = from.values[i];
+}
+
+template <typename Pixels>
+Pixels displayed(Pixels stored, int orientation) {
     if (orientation < 2 || orientation > 8) return stored;
     const Orientation o = kOrientations[static_cast<std::size_t>(orientation)];
-    Image out = stored;
+    Pixels out = stored;
     if (o.exchange) std::swap(out.width, out.height);
     for (int y = 0; y < out.height; ++y) {
         for (int x = 0; x < out.width; ++x) {
             int from_x = o.exchange ? y : x, from_y = o.exchange ? x : y;
             if (o.backwards_x) from_x = stored.width - 1 - from_x;
             if (o.backwards_y) from_y = stored.height - 1 - from_y;
-            std::copy_n(stored.pixel(from_x, from_y), stored.channels, out.pixel(x, y));
+            copy_pixel(stored, stored.index(from_x, from_y), out, out.index(x, y));
         }
     }
     return out;
@@ -140,6 +149,24 @@ void finish_samples(const std::string& path, bool associated_alpha, bool all_req
                                    ": ", out.non_finite));
 }
 
+// The code that stands for 1 in the image.
+float largest_code(const DecodedPicture& picture, SampleType type) {
+    if (picture.largest_code > 0) return picture.largest_code;
+    return type == SampleType::kUint8 ? 255.0f : type == SampleType::kUint16 ? 65535.0f : 1.0f;
+}
+
+// Turns decoded samples into data: own numbers, and names that are no colours.
+void make_values(Image& image, float largest) {
+    const auto channels = static_cast<std::size_t>(image.channels);
+    const auto alpha = static_cast<std::size_t>(image.channel("A"));  // none is no index
+    if (largest != 1)
+        for (std::size_t i = 0; i < image.data.size(); ++i)
+            if (i % channels != alpha) image.data[i] = std::round(image.data[i] * largest);
+    for (std::string& name : image.channel_names) name = value_name(name);
+    if (image.sample_type != SampleType::kHalf) image.sample_type = SampleType::kFloat;
+    image.color_space = ColorSpace::kLinear;
+}
+
 std::vector<std::uint8_t> read_bytes(const std::string& path, const ImageLimits& limits) {
     // A device or a pipe has no size to check beforehand. No more is read than the pixels could need.
     constexpr std::uint64_t kOther = std::uint64_t{64} << 20;  // profiles, previews, metadata
@@ -181,15 +208,21 @@ ReadImage read_image_file(const std::string& path, const ReadImageOptions& optio
     if (!picture.has_layers && (options.part || options.layer))
         picture.warnings.emplace_back("it has neither parts nor layers, which only EXR images have");
     ReadImage out{std::move(picture.image), std::move(picture.warnings), std::move(picture.place), 0,
-                  std::move(picture.metadata)};
+                  std::move(picture.metadata), {}};
+    const float largest = largest_code(picture, out.image.sample_type);
     const bool inks = picture.color.inks;  // yellow is no luminance
     if (!inks) select_channels(out.image, options);
-    finish_samples(path, picture.associated_alpha, inks, options, out);
-    if (picture.primaries && !options.color_space)
+    out.data = std::move(picture.data);
+    if (options.nodata && !picture.knows_nodata)
+        out.data = take_nodata_out(out.image, *options.nodata, largest);
+    finish_samples(path, picture.associated_alpha && !options.values, inks, options, out);
+    if (picture.primaries && !options.color_space && !options.values)
         convert_primaries(path, *picture.primaries, kRec709Primaries, out.image);
-    settle_color(picture.color, options.color_space, out.image, out.warnings);
+    if (inks || !options.values) settle_color(picture.color, options.color_space, out.image, out.warnings);
     if (inks) select_channels(out.image, options);
+    if (options.values) make_values(out.image, largest);
     out.image = displayed(std::move(out.image), picture.orientation);
+    out.data = displayed(std::move(out.data), picture.orientation);
     return out;
 }
 

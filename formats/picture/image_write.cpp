@@ -16,6 +16,7 @@
 #include "formats/picture/sample_codes.h"
 #include "libcore/base/error.h"
 #include "libcore/image/color.h"
+#include "libcore/image/feature_space.h"
 
 namespace imgmesh {
 namespace {
@@ -57,6 +58,12 @@ const Format* find_format(const std::string& path) {
 
 bool holds(const Format& format, SampleType type) {
     return std::find(format.types.begin(), format.types.end(), type) != format.types.end();
+}
+
+// Floats without a colour are data.
+bool holds_values(const Format& format, SampleType type, const Image& image) {
+    return std::string_view(format.writer) == "tiff" && type == kFloat &&
+           split_names(image.channel_names).color.empty();
 }
 
 Error unknown_format(const std::string& path) {
@@ -216,6 +223,7 @@ std::vector<std::uint8_t> encode_image(const std::string& path, const Image& ima
     if (!format) throw unknown_format(path);
     const SampleType type = choose_type(path, *format, image, sample_type);
     check_shape(path, *format, image);
+    if (holds_values(*format, type, image)) return encode_tiff_values(image);
     Image stored = without_alpha(path, *format, image);
     convert(stored, choose_space(*format, type, image));
     if (format->extension == ".webp") return encode_webp(stored);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "libcore/base/error.h"
 
@@ -41,6 +42,11 @@ SplitNames split_names(const std::vector<std::string>& names) {
     for (const std::string& name : names)
         if (!has(split.color, name.c_str())) split.auxiliary.push_back(name);
     return split;
+}
+
+std::string value_name(const std::string& name) {
+    if (name == "Y") return "value";
+    return name == "R" || name == "G" || name == "B" ? "value." + name : name;
 }
 
 void check_channels(const std::vector<ChannelChoice>& choices) {
@@ -84,6 +90,56 @@ FeatureSpace feature_space(const Image& image, const std::vector<ChannelChoice>&
     return space;
 }
 
+std::int64_t count_clipped(const Image& image, const FeatureSpace& space, const Mask& mask) {
+    if (!space.color) return 0;
+    const float most = space.gamut == Gamut::kHdr ? kMaxHdr : 1;
+    std::int64_t count = 0;
+    for (const std::string& name : split_names(image.channel_names).color) {
+        const int channel = image.channel(name);
+        for (std::size_t i = 0; i < image.pixel_count(); ++i) {
+            const float value = image.pixel(i)[channel];
+            count += mask.contains(i) && (value < 0 || value > most) ? 1 : 0;
+        }
+    }
+    return count;
+}
+
+FeatureSpace value_space(const Image& image, std::vector<ChannelChoice> choices, const Mask& mask) {
+    if (choices.empty())
+        for (const std::string& name : image.channel_names)
+            if (name != "A") choices.push_back({name});
+    check_channels(choices);
+    if (choices.empty()) throw Error(ErrorKind::kUnsupported, "the image has no values beside its alpha");
+    FeatureSpace space;
+    space.color = false;
+    double largest = 0;
+    for (const ChannelChoice& choice : choices) {
+        const int channel = image.channel(choice.name);
+        if (channel < 0)
+            throw Error(ErrorKind::kBadFile, cat("the image has no channel ", choice.name, ", it has ",
+                                                 listed(image.channel_names)));
+        double low = std::numeric_limits<double>::infinity(), high = -low;
+        for (std::size_t i = 0; i < image.pixel_count(); ++i) {
+            if (!mask.contains(i)) continue;
+            low = std::min(low, static_cast<double>(image.pixel(i)[channel]));
+            high = std::max(high, static_cast<double>(image.pixel(i)[channel]));
+        }
+        const double range = high > low ? high - low : 0;
+        largest = std::max(largest, range * choice.weight);
+        // A multiple of a power of two at least as large as the range: differences to it are exact.
+        const double step = range > 0 ? std::exp2(std::ceil(std::log2(range))) : 0;
+        space.auxiliary.push_back(choice.name);
+        space.auxiliary_offset.push_back(
+            static_cast<float>(step > 0 ? std::round((low + high) / 2 / step) * step : low));
+    }
+    constexpr double kRange =
+        100;  // of L*, for which the usual weights of geometry and of the map are chosen
+    if (largest > 0) space.unit = static_cast<float>(std::exp2(std::floor(std::log2(kRange / largest))));
+    for (const ChannelChoice& choice : choices)
+        space.auxiliary_weight.push_back(static_cast<float>(choice.weight) * space.unit);
+    return space;
+}
+
 FeatureImage extract_features(const Image& image, const FeatureSpace& space, const Mask& mask) {
     FeatureImage color;
     if (space.color) color = luv_image(image, space.gamut == Gamut::kHdr ? Range::kHdr : Range::kClipped);
@@ -96,7 +152,8 @@ FeatureImage extract_features(const Image& image, const FeatureSpace& space, con
         for (int c = 0; c < color.channels; ++c) out.data.push_back(space.color_weight * color.pixel(i)[c]);
         for (std::size_t c = 0; c < from.size(); ++c) {
             const float value = image.pixel(i)[from[c]];
-            const float feature = mask.contains(i) ? value * space.auxiliary_weight[c] : 0;
+            const float offset = space.offset(color.channels + as_int(c));
+            const float feature = mask.contains(i) ? (value - offset) * space.auxiliary_weight[c] : 0;
             if (!(std::abs(feature) <= kLargestFeature))
                 throw Error(ErrorKind::kUnsupported,
                             cat("channel ", space.auxiliary[c], " is ", value, " at pixel (", image.x_of(i),

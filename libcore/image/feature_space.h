@@ -20,11 +20,19 @@ struct FeatureSpace {
     float color_weight = 1;               ///< of L*, u* and v*; > 0
     std::vector<std::string> auxiliary;   ///< names of the channels after the colour
     std::vector<float> auxiliary_weight;  ///< of each auxiliary channel; > 0
+    /// Of values: a feature is (value - offset) x weight, and each weight contains `unit`, a power of two
+    /// that brings the largest range to 50 to 100, as that of L*. Errors in the values' own unit are features
+    /// / unit.
+    std::vector<float> auxiliary_offset;  ///< of each auxiliary channel; empty() for 0
+    float unit = 1;
 
     int features() const { return (color ? 3 : 0) + as_int(auxiliary.size()); }
     float weight(int feature) const {
         if (color && feature < 3) return color_weight;
         return auxiliary_weight[as_index(feature - (color ? 3 : 0))];
+    }
+    float offset(int feature) const {
+        return auxiliary_offset.empty() ? 0 : auxiliary_offset[as_index(feature - (color ? 3 : 0))];
     }
 };
 
@@ -35,6 +43,10 @@ struct SplitNames {
     int features() const { return (color.empty() ? 0 : 3) + as_int(auxiliary.size()); }
 };
 SplitNames split_names(const std::vector<std::string>& names);
+
+/// Returns the name of a channel that is data and no colour: "value" for Y, "value.R" and so on for R, G and
+/// B, all others as they are.
+std::string value_name(const std::string& name);
 
 /// A channel of an image as a feature.
 struct ChannelChoice {
@@ -56,11 +68,21 @@ void check_channels(const std::vector<ChannelChoice>& choices);
 FeatureSpace feature_space(const Image& image, const std::vector<ChannelChoice>& choices,
                            const Mask& mask = {});
 
+/// Returns how many samples of the colour inside the mask are clipped by extract_features(): below 0, or
+/// above the largest of the space's gamut.
+std::int64_t count_clipped(const Image& image, const FeatureSpace& space, const Mask& mask = {});
+
+/// Returns the space of an image of values, none of which is a colour: that of the chosen channels, or of all
+/// but A if none is chosen. Offsets and the unit come from the values inside the mask. Throws as
+/// feature_space() does.
+FeatureSpace value_space(const Image& image, std::vector<ChannelChoice> choices, const Mask& mask = {});
+
 /// The largest value of an auxiliary feature: the determinants of the quadrics of a whole image still fit
 /// floats.
 inline constexpr float kLargestFeature = 1e5f;
 
-/// Returns the image in its `space`: L*u*v* and the values of the auxiliary channels, each times its weight.
+/// Returns the image in its `space`: L*u*v* and the values of the auxiliary channels, each less its offset,
+/// times its weight.
 /// Auxiliary channels are 0 outside `mask`. Linear RGB is clipped to the gamut's range. Throws
 /// Error(kUnsupported) for a feature inside the mask above kLargestFeature or not finite.
 FeatureImage extract_features(const Image& image, const FeatureSpace& space, const Mask& mask = {});

@@ -45,6 +45,34 @@ bool has_soft_alpha(const Image& image) {
     return double(soft) > kShare * double(visible) || (visible > 0 && opaque == 0);
 }
 
+Mask in_both(const Mask& a, const Mask& b) {
+    if (a.empty() || b.empty()) return a.empty() ? b : a;
+    if (a.width != b.width || a.height != b.height)
+        throw Error(ErrorKind::kBadFile,
+                    cat("the mask is ", a.width, "x", a.height, ", the image is ", b.width, "x", b.height));
+    Mask both = a;
+    for (std::size_t i = 0; i < both.size(); ++i) both[i] = a[i] != 0 && b[i] != 0 ? 1 : 0;
+    return both;
+}
+
+Image hidden_outside(const Image& image, const Mask& mask) {
+    if (mask.empty()) return image;
+    const int alpha = image.channel("A");
+    Image out = image;
+    if (alpha < 0) {
+        ++out.channels;
+        out.channel_names.emplace_back("A");
+        out.data.clear();
+        for (std::size_t i = 0; i < image.pixel_count(); ++i) {
+            out.data.insert(out.data.end(), image.pixel(i), image.pixel(i) + image.channels);
+            out.data.push_back(1);
+        }
+    }
+    for (std::size_t i = 0; i < image.pixel_count(); ++i)
+        if (!mask.contains(i)) out.pixel(i)[alpha < 0 ? image.channels : alpha] = 0;
+    return out;
+}
+
 Mask image_mask(const Image& image, float threshold) {
     return thresholded(image, threshold, mask_value(image, threshold));
 }

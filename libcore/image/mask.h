@@ -28,6 +28,12 @@ inline constexpr float kVisibleAlpha = 0.5f / 255;
 /// a channel A.
 bool has_soft_alpha(const Image& image);
 
+/// Returns the pixels inside both masks, of one size; empty() counts as all.
+Mask in_both(const Mask& a, const Mask& b);
+
+/// Returns the image with alpha 0 outside the mask, 1 inside if it has no alpha yet.
+Image hidden_outside(const Image& image, const Mask& mask);
+
 /// Returns the pixels where the image of a mask is at least `threshold`. Its alpha counts, unless it has none
 /// or all of it is opaque; then Y counts, or the mean of R, G and B, as encoded. Never empty(): all pixels
 /// may be inside. Throws Error(kUnsupported) for an image with none of these channels.

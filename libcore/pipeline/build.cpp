@@ -26,7 +26,10 @@ namespace imgmesh {
 namespace {
 
 // Returns the channels of the mesh under their names in the file.
-std::vector<std::string> used_channels(const Image& image, const std::vector<ChannelChoice>& choices) {
+std::vector<std::string> used_channels(const Image& image, const BuildParams& params,
+                                       const FeatureSpace& space) {
+    const std::vector<ChannelChoice>& choices = params.channels;
+    if (params.values) return space.auxiliary;
     if (choices.empty()) return split_names(image.channel_names).color;
     std::vector<std::string> names;
     for (const ChannelChoice& choice : choices) names.push_back(choice.name);
@@ -38,7 +41,7 @@ std::vector<std::string> used_channels(const Image& image, const std::vector<Cha
 void take_weights_out(BaseMesh& mesh, const FeatureSpace& space) {
     for (Id v = 0; v < mesh.vertex_count(); ++v) {
         float* f = mesh.feature_of(v);
-        for (int c = 0; c < space.features(); ++c) f[c] /= space.weight(c);
+        for (int c = 0; c < space.features(); ++c) f[c] = f[c] / space.weight(c) + space.offset(c);
         if (!space.color || space.color_weight == 1) continue;
         const Vec3f color = quantized_color(Vec3f(f), space.gamut);
         std::copy(color.data(), color.data() + 3, f);
@@ -59,6 +62,14 @@ void limit_alpha(BaseMesh& mesh, const FeatureImage& feature, const FeatureSpace
     }
     for (Id v = 0; v < mesh.vertex_count(); ++v)
         mesh.feature_of(v)[c] = std::clamp(mesh.feature_of(v)[c], least, most);
+}
+
+// Returns the parameters with errors in features instead of values' own unit.
+BuildParams in_features(BuildParams params, double unit) {
+    if (params.stop.rms) *params.stop.rms *= unit;
+    if (params.stop.error) *params.stop.error *= unit * unit;
+    for (double& error : params.levels.errors) error *= unit * unit;
+    return params;
 }
 
 // Maps the progress of a part to [begin, end] of the whole.
@@ -121,7 +132,8 @@ struct Pipeline {
         refinement.exchange = params.exchange;
         refinement.min_quality = params.min_quality;
         refinement.max_face_area = limits.max_face_area;
-        Level level{std::move(collapsed.mesh), {}, collapsed.error * params.color_weight};
+        const double unit = static_cast<double>(space.unit);
+        Level level{std::move(collapsed.mesh), {}, collapsed.error * params.color_weight / (unit * unit)};
         const double middle = refinement.rounds > 0 ? begin + 0.7 * (end - begin) : begin;
         if (refinement.rounds > 0 || params.objective == Objective::kRgb)
             refine_level(level.mesh, feature, mask, params.objective, refinement,
@@ -139,6 +151,8 @@ struct Pipeline {
         figures = {map_rms(level.mesh, level.map, feature), map_rms(level.mesh, trivial, feature), {}};
         for (int c = space.color ? 3 : 0; c < space.features(); ++c)
             figures.auxiliary_rms.push_back(feature_rms(level.mesh, level.map, feature, c) / space.weight(c));
+        figures.map_rms /= unit;
+        figures.gouraud_rms /= unit;
         take_weights_out(level.mesh, space);
         report.seconds.map += watch.lap();
         return level;
@@ -203,7 +217,9 @@ class RmsMeshes : public MeasuredMeshes {
         collapses_ = collapsed.collapses;
         level_ = pipeline_.finish(std::move(collapsed), limits_, {}, figures_, 0.7, 1);
         least_ = std::min(least_, figures_.map_rms);
-        return {static_cast<std::int64_t>(level_.mesh.vertex_count()), figures_.map_rms};
+        // The search is in features.
+        return {static_cast<std::int64_t>(level_.mesh.vertex_count()),
+                figures_.map_rms * static_cast<double>(pipeline_.space.unit)};
     }
     void keep() override {
         mesh_image_.levels.clear();
@@ -263,7 +279,8 @@ void build_to_rms(const Pipeline& pipeline, SimplifyParams& limits, MeshImage& m
     RmsMeshes meshes(pipeline, grid, limits, mesh_image);
     if (!search_rms(std::max(std::int64_t{4}, vertices), std::llround(guess), rms, meshes))
         throw Error(ErrorKind::kUnsupported,
-                    cat("rms is ", rms, ", but the least that could be reached is ", meshes.least()));
+                    cat("rms is ", rms / static_cast<double>(pipeline.space.unit),
+                        ", but the least that could be reached is ", meshes.least()));
 }
 
 }  // namespace
@@ -279,7 +296,8 @@ BuildResult build_mesh_image(const Image& image, const BuildParams& asked, const
     Stopwatch watch;
     // Values outside the colours that a container holds would mislead the fit: L*u*v* of negative linear RGB
     // has no bound.
-    const FeatureSpace space = feature_space(image, asked.channels, mask);
+    const FeatureSpace space =
+        asked.values ? value_space(image, asked.channels, mask) : feature_space(image, asked.channels, mask);
     const bool refinable =
         space.color && space.features() == 3 && space.color_weight == 1 && space.gamut == Gamut::kDisplay;
     BuildParams params = asked;
@@ -293,13 +311,15 @@ BuildResult build_mesh_image(const Image& image, const BuildParams& asked, const
 
     BuildResult result;
     result.report.seconds.collapse = watch.lap();
+    result.report.clipped_samples = count_clipped(image, space, mask);
     result.report.pixels = mask.empty() ? static_cast<std::int64_t>(image.pixel_count()) : mask.count();
     const auto pixels = static_cast<double>(result.report.pixels);
-    const std::vector<SimplifyTarget> targets = collapse_targets(params, pixels);
-    SimplifyParams collapse = collapse_params(params, targets.front(), pixels);
+    const BuildParams scaled = in_features(params, static_cast<double>(space.unit));
+    const std::vector<SimplifyTarget> targets = collapse_targets(scaled, pixels);
+    SimplifyParams collapse = collapse_params(scaled, targets.front(), pixels);
     const std::vector<Level>& levels = result.mesh_image.levels;
     if (params.max_cluster) collapse.max_face_area = static_cast<float>(*params.max_cluster);
-    const Pipeline pipeline{feature, space, mask, params, result.report, progress};
+    const Pipeline pipeline{feature, space, mask, scaled, result.report, progress};
     for (;;) {
         if (params.stop.rms)
             build_to_rms(pipeline, collapse, result.mesh_image);
@@ -321,7 +341,7 @@ BuildResult build_mesh_image(const Image& image, const BuildParams& asked, const
                                 image.height,
                                 image.color_space,
                                 image.sample_type,
-                                used_channels(image, params.channels),
+                                used_channels(image, params, space),
                                 !mask.empty(),
                                 space.gamut};
     result.mesh_image.parameters = list_params(closed_params(params, collapse, levels.front().map.precision));

@@ -15,7 +15,8 @@ namespace imgmesh {
 
 /// Figures of a level, measured on what a reader of the container gets.
 struct LevelReport {
-    double map_rms = 0;                 ///< through the pixel map [L*u*v*, or features with their weights]
+    /// through the pixel map [L*u*v*, or features with their weights; of values in their unit]
+    double map_rms = 0;
     double gouraud_rms = 0;             ///< of the base mesh drawn without the map, in the same unit
     std::vector<double> auxiliary_rms;  ///< of each auxiliary channel, through the map [its own unit]
 };
@@ -29,7 +30,8 @@ struct BuildSeconds {
 
 struct BuildReport {
     BuildSeconds seconds;
-    std::int64_t pixels = 0;  ///< meshed pixels: those inside the mask, or all
+    std::int64_t pixels = 0;           ///< meshed pixels: those inside the mask, or all
+    std::int64_t clipped_samples = 0;  ///< of those pixels' colour: no container holds them
     std::int64_t collapses = 0;
     std::int64_t rejected = 0;  ///< collapses that the tracked map has rejected
     std::vector<LevelReport> levels;

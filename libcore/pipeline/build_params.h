@@ -54,7 +54,10 @@ inline constexpr int kMaxRefine = 1000;
 /// All of it. Defaults are those of the preset "default".
 struct BuildParams {
     std::vector<ChannelChoice> channels;  ///< the feature space; none: the image's colour
-    StopParams stop;                      ///< of the finest level
+    /// Channels are values, not colours: none becomes L*u*v* or is clipped, `channels` are by default all but
+    /// A, and errors (in StopParams, PyramidParams and reports) are in the values' unit.
+    bool values = false;
+    StopParams stop;  ///< of the finest level
     PyramidParams levels;
     Metric metric = SimplifyParams().metric;
     Solver solver = SimplifyParams().solver;

@@ -27,6 +27,7 @@ constexpr ParamListing kLevels = {"where more than 1",
 constexpr ParamListing kGeometry = {"unless the metric is hoppe",
                                     [](const BuildParams& p) { return p.metric != Metric::kHoppe; }};
 constexpr ParamListing kQuality = {"where above 0", [](const BuildParams& p) { return p.min_quality > 0; }};
+constexpr ParamListing kValues = {"where given", [](const BuildParams& p) { return p.values; }};
 constexpr ParamListing kVisits = {"where given", [](const BuildParams& p) { return p.visits; }};
 
 std::vector<Param> make_table() {
@@ -48,6 +49,13 @@ std::vector<Param> make_table() {
          .help = "Channels that the mesh follows, each perhaps with a weight, as in R,G,B,depth.Z:0.5",
          .otherwise = "the colour",
          .listed = kWhereGiven},
+        {.name = "values",
+         .group = image,
+         .everyday = true,
+         .kind = access<FlagParam>(&B::values),
+         .help = "Images are data, as heights, not colours: numbers are those of the files, integers too, "
+                 "nothing is clipped, and errors are in their unit",
+         .listed = kValues},
 
         {.name = "density",
          .group = size,

@@ -16,20 +16,22 @@ namespace {
 // Rows of one block: enough work to be worth handing over, few enough for every thread to get some.
 constexpr int kGrainRows = 16;
 
-// The origin of a channel of the result: a channel of the colour drawing, or a feature of the mesh.
+// The origin of a channel of the result: a channel of the colour drawing, a feature of the mesh, or, without
+// either, whether there is a face.
 struct Origin {
     std::string name;
     int drawn = -1;
     int feature = -1;
 };
 
-std::vector<Origin> origins(const SplitNames& names, const Image& drawn) {
+std::vector<Origin> origins(const SplitNames& names, const Image& drawn, bool has_mask) {
     std::vector<Origin> out;
     // Grey is drawn as R = G = B.
     for (const std::string& name : names.color)
         out.push_back({name, drawn.channel(name == "Y" ? "G" : name), -1});
-    if (drawn.channel("A") >= 0 && std::ranges::count(names.auxiliary, "A") == 0)
-        out.push_back({"A", drawn.channel("A"), -1});
+    const bool masked = names.color.empty() ? has_mask : drawn.channel("A") >= 0;
+    if (masked && std::ranges::count(names.auxiliary, "A") == 0)
+        out.push_back({"A", names.color.empty() ? -1 : drawn.channel("A"), -1});
     int feature = names.color.empty() ? 0 : 3;
     for (const std::string& name : names.auxiliary) out.push_back({name, -1, feature++});
     return out;
@@ -52,7 +54,7 @@ Image draw_channels(const MeshImage& mesh_image, int level_index, const DrawPara
         raster = bounded_raster(mesh, sample_grid(source.width, source.height, scale));
     const PixelMap& map = params.mode == DrawMode::kGouraud ? raster : level.map;
 
-    const std::vector<Origin> from = origins(names, drawn);
+    const std::vector<Origin> from = origins(names, drawn, source.has_mask);
     Image out = make_image(map.width, map.height, as_int(from.size()));
     out.color_space = names.color.empty() ? ColorSpace::kLinear : drawn.color_space;
     out.sample_type = source.sample_type;
@@ -67,6 +69,8 @@ Image draw_channels(const MeshImage& mesh_image, int level_index, const DrawPara
                         *to++ = drawn.pixel(x, y)[origin.drawn];
                     } else if (coord.face == kNone) {
                         *to++ = 0;
+                    } else if (origin.feature < 0) {
+                        *to++ = 1;
                     } else {
                         const auto [a, b, c] = mesh.faces[coord.face];
                         *to++ = (1 - coord.u - coord.v) * mesh.feature_of(a)[origin.feature] +

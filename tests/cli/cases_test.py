@@ -200,6 +200,19 @@ class Cases(CliCase):
         for points in (np.array(frame["vertices"]), np.array(obj, float)):
             self.assertEqual(np.ptp(points, axis=0).tolist(), [40, 32])
 
+    def test_values(self):
+        for name in ("F16-dem-int16.tif", "F16-dem-float.tif") if FOLDER else ():
+            with self.subTest(name):
+                report = self.build(FOLDER / name, "--values", "--faces", "100000")
+                self.assertEqual(report["clipped_samples"], 0)
+                self.run_ok("imgmesh-reconstruct", "out.glb", "-o", "back.tif", "--overwrite")
+                found = self.report("imgmesh-compare", FOLDER / name, "back.tif", "--values", "--tolerance", "0.01")
+                self.assertEqual(found["difference"]["in_one_only"], 0)
+                self.assertEqual(found["difference"]["pixels"], report["pixels"])
+                colors = self.report("imgmesh-build", FOLDER / name, "-o", "out.glb", "--overwrite")
+                self.assertGreater(colors["images"][0]["clipped_samples"], 0)
+                self.assertIn("clipped", colors["warnings"][-1])
+
     def test_compared(self):
         for case in COMPARED if FOLDER else ():
             for pair in ((case.name, case.other), (case.other, case.name)):

@@ -11,6 +11,7 @@
 #include "formats/container/edit_file.h"
 #include "formats/container/validate.h"
 #include "formats/files/atomic_file.h"
+#include "formats/files/byte_reader.h"
 #include "formats/picture/decode/picture_decoders.h"
 #include "formats/picture/image_io.h"
 #include "libcore/base/error.h"
@@ -122,12 +123,18 @@ bool feed(Target target, std::span<const std::uint8_t> bytes) {
         });
     ImageLimits limits;
     limits.max_pixels = 1 << 22;
+    const auto as_data = [](std::span<const std::uint8_t> content) {
+        return text_of(content).starts_with("II") || text_of(content).starts_with("MM");
+    };
     if (target == Target::kSmall) {
         std::vector<std::uint8_t> copy(bytes.begin(), bytes.end());
         return accepts([&] { decode_picture("fuzz.tga", copy, {.limits = limits}); });
     }
     const MemoryFile file(bytes);
-    return accepts([&] { read_image(file.path(), {.limits = limits}); });
+    const bool accepted = accepts([&] { read_image(file.path(), {.limits = limits}); });
+    // TIFF has readings of its own for data.
+    if (as_data(bytes)) accepts([&] { read_image(file.path(), {.limits = limits, .values = true}); });
+    return accepted;
 }
 
 std::vector<Bytes> seeds(Target target) {
@@ -146,6 +153,11 @@ std::vector<Bytes> seeds(Target target) {
         for (const char* extension : {".png", ".tif", ".exr", ".webp"})
             all.push_back(noise_picture(extension, 4));
         all.push_back(noise_picture(".png", 1));
+        std::vector<std::string> names;
+        for (const auto& entry : std::filesystem::directory_iterator(IMGMESH_TEST_DATA "/tiff"))
+            names.push_back(entry.path().string());
+        std::sort(names.begin(), names.end());
+        for (const std::string& name : names) all.push_back(read_file(name, 1 << 20));
     } else {
         const TemporaryFolder folder;
         std::uint32_t seed = 1;

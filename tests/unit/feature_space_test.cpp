@@ -154,3 +154,53 @@ TEST_CASE("light: colours without an upper bound stay, others become light that 
         CHECK(in_gamut(tamed, Gamut::kHdr) == tamed);
     }
 }
+
+// Heights around 8000 with a range of 20: the range becomes 80 = 20 x 4, and the offset 8000 is a multiple of
+// 32.
+TEST_CASE("feature space: values lose their offset, and their range becomes that of L*, without rounding") {
+    Image image = make_image(3, 1, 2);
+    image.channel_names = {"value", "A"};
+    image.data = {8000, 1, 8020, 1, 8007.5f, 1};
+    const FeatureSpace space = value_space(image, {});
+    CHECK(space.auxiliary == Names{"value"});
+    CHECK_FALSE(space.color);
+    CHECK(space.unit == 4);
+    CHECK(space.offset(0) == 8000);
+    CHECK(extract_features(image, space).data == std::vector<float>{0, 80, 30});
+    // Values outside of the mask count for nothing.
+    Mask mask(image, 1);
+    mask[1] = 0;
+    CHECK(value_space(image, {}, mask).unit == 8);
+    // Any range and any place: features stay small, and come back to the last bit of the largest value.
+    std::mt19937 random(5);
+    for (const float low : {-1e30f, -32768.0f, 0.0f, 1e-20f, 300.0f, 2e9f})
+        for (const float range : {1e-25f, 0.1f, 255.0f, 65535.0f, 4e9f, 1e32f}) {
+            INFO(low << " + " << range);
+            Image any = make_image(40, 1, 1);
+            any.channel_names = {"height"};
+            for (float& x : any.data) x = low + range * static_cast<float>(random() % 1000) / 1000;
+            const FeatureSpace of = value_space(any, {});
+            const FeatureImage features = extract_features(any, of);
+            for (std::size_t i = 0; i < any.data.size(); ++i) {
+                CHECK(std::abs(features.data[i]) <= 200);
+                const float back = features.data[i] / of.weight(0) + of.offset(0);
+                CHECK(std::abs(back - any.data[i]) <= std::max(std::abs(low), range) * 2.4e-7f);
+            }
+        }
+    CHECK(value_space(image, {{"value", 10}}).weight(0) == 5);  // 10 x 0.5
+    CHECK(value_space(image, {{"value", 10}}).unit == 0.5f);
+}
+
+TEST_CASE("feature space: what is clipped is counted") {
+    Image image = make_image(2, 2, 3);
+    image.sample_type = SampleType::kFloat;
+    image.color_space = ColorSpace::kLinear;
+    image.data = {0.5f, -0.1f, 0, 0, 0, 1, 1, 1, 1, -1, -1, -1};
+    CHECK(count_clipped(image, feature_space(image, {})) == 4);
+    Mask mask(image, 1);
+    mask[3] = 0;
+    CHECK(count_clipped(image, feature_space(image, {}, mask), mask) == 1);
+    image.data[0] = 2;  // HDR, which is kept
+    CHECK(count_clipped(image, feature_space(image, {}, mask), mask) == 1);
+    CHECK(count_clipped(image, value_space(image, {{"R"}})) == 0);
+}

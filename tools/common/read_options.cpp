@@ -1,5 +1,6 @@
 #include "tools/common/read_options.h"
 
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <utility>
@@ -52,6 +53,22 @@ Report read_report(const ReadImage& read) {
     if (read.place) report = {{"part", read.place->part}, {"layer", read.place->layer}};
     if (read.non_finite > 0) report["non_finite"] = read.non_finite;
     return report;
+}
+
+void add_nodata_option(CLI::App& app, ReadImageOptions& options) {
+    const auto take = [&options](const std::string& text) {
+        options.file_nodata = false;
+        options.nodata.reset();
+        if (text == "none") return;
+        options.nodata = text == "nan" ? std::numeric_limits<double>::quiet_NaN()
+                                       : parse_number("--nodata", text, {-kNoLimit, kNoLimit});
+    };
+    CLI::Option* const option = add_value(
+        app, "--nodata", "X", take,
+        {"Value of the pixels that are no data, in the file's own numbers, or nan: they lie outside "
+         "the mask where all channels but alpha have it; none ignores the value that a TIFF names",
+         "what a TIFF names (GDAL)"});
+    in_group(option, "Image");
 }
 
 }  // namespace imgmesh

@@ -19,6 +19,9 @@ namespace imgmesh {
 void add_read_options(CLI::App& app, ReadImageOptions& options, CLI::Option* image = nullptr,
                       bool has_limits = false);
 
+/// Adds --nodata.
+void add_nodata_option(CLI::App& app, ReadImageOptions& options);
+
 /// Reads an image, and moves its warnings to `warnings`, each after the file's name.
 ReadImage read_with_warnings(const std::string& path, const ReadImageOptions& options,
                              std::vector<std::string>& warnings);

@@ -34,6 +34,9 @@ struct DecodedPicture {
     std::optional<Primaries> primaries = {};  ///< of linear RGB, if they are not Rec.709's
     ExrMetadata metadata = {};
     std::optional<ImagePlace> place = {};  ///< in an EXR that left a choice
+    Mask data = {};                        ///< see ReadImage; set by decoders that know of such pixels
+    float largest_code = 0;     ///< that has become 1; 1 for own numbers, 0 for 255 or 65535 by the type
+    bool knows_nodata = false;  ///< options.nodata has been dealt with
 };
 
 /// Each throws Error(kBadFile) for broken or truncated content and sizes over the limits, before memory is

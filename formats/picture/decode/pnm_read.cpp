@@ -95,6 +95,7 @@ DecodedPicture read_pnm(Pnm& in, int kind) {
         read_codes(in.text.rest(), scale, out.image);
     }
     scale.tell(out);
+    out.largest_code = static_cast<float>(scale.largest);
     return out;
 }
 
@@ -183,6 +184,7 @@ DecodedPicture read_pam(Pnm& in) {
     out.color.inks = header.type.starts_with("CMYK");
     read_codes(in.text.rest(), scale, out.image);
     scale.tell(out);
+    out.largest_code = static_cast<float>(scale.largest);
     return out;
 }
 

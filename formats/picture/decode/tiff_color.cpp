@@ -246,12 +246,17 @@ void image_from_samples(const TiffFile& file, const TiffLayout& layout, std::vec
     out.image.data = std::move(samples);
 }
 
-void values_from_samples(const TiffFile&, const TiffLayout& layout, std::vector<float> samples,
-                         DecodedPicture& out) {
+Names sample_names(const TiffLayout& layout) {
+    Names names = value_names(layout);
+    const int alpha = alpha_of(layout);
+    for (std::size_t i = 0; i < layout.extras.size(); ++i)
+        names.push_back(static_cast<int>(i) == alpha ? "A" : cat("channel", names.size()));
+    return names;
+}
+
+void values_from_samples(const TiffLayout& layout, std::vector<float> samples, DecodedPicture& out) {
     set_shape(layout, layout.samples, out.image);
-    out.image.channel_names = value_names(layout);
-    name_extras(layout, out);
-    out.associated_alpha = false;  // values are as stored
+    out.image.channel_names = sample_names(layout);
     out.image.data = std::move(samples);
     const int alpha = alpha_of(layout);
     if (alpha < 0) return;

@@ -17,7 +17,9 @@ void image_from_samples(const TiffFile& file, const TiffLayout& layout, std::vec
 
 /// The same for values: all samples keep their own numbers, whatever they would mean as colours. Only alpha
 /// is divided by its largest code.
-void values_from_samples(const TiffFile& file, const TiffLayout& layout, std::vector<float> samples,
-                         DecodedPicture& out);
+void values_from_samples(const TiffLayout& layout, std::vector<float> samples, DecodedPicture& out);
+
+/// Returns the names that those samples get.
+std::vector<std::string> sample_names(const TiffLayout& layout);
 
 }  // namespace imgmesh

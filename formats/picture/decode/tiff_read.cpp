@@ -4,7 +4,7 @@
 #include <cstdlib>
 #include <string_view>
 
-#include "formats/files/one_line.h"
+#include "formats/picture/decode/nodata.h"
 #include "formats/picture/decode/tiff_color.h"
 #include "formats/picture/decode/tiff_samples.h"
 
@@ -61,6 +61,19 @@ void state_color(const TiffFile& file, const TiffLayout& layout, DecodedPicture&
     warn_of_curve(file, layout, out.warnings);
 }
 
+// The same as for images, on the file's own numbers; alpha is not among them.
+Mask take_nodata_out(std::vector<float>& samples, const TiffLayout& layout, double nodata) {
+    Image image;
+    image.width = static_cast<int>(layout.width);
+    image.height = static_cast<int>(layout.height);
+    image.channels = layout.samples;
+    image.channel_names = sample_names(layout);
+    image.data = std::move(samples);
+    Mask mask = imgmesh::take_nodata_out(image, nodata);
+    samples = std::move(image.data);
+    return mask;
+}
+
 }  // namespace
 
 DecodedPicture decode_tiff(const PictureFile& picture) {
@@ -71,17 +84,25 @@ DecodedPicture decode_tiff(const PictureFile& picture) {
         out.warnings.emplace_back(
             "every image of the TIFF is flagged as a thumbnail or a mask; the first is read");
     const TiffLayout layout = tiff_layout(file, picture.options.limits);
-    const std::optional<double> nodata = nodata_of(file);
-    std::optional<float> fill;
-    if (nodata) fill = static_cast<float>(*nodata);
+    const ReadImageOptions& options = picture.options;
+    const std::optional<double> of_file = nodata_of(file);
+    std::optional<float> fill;  // GDAL leaves blocks out that hold nothing else
+    if (of_file) fill = static_cast<float>(*of_file);
     std::vector<float> samples = read_samples(file, layout, fill);
-    if (layout.kind == TiffSamples::kSigned)
+    const std::optional<double> nodata = options.nodata || !options.file_nodata ? options.nodata : of_file;
+    if (nodata) out.data = take_nodata_out(samples, layout, *nodata);
+    out.knows_nodata = true;
+    if (options.values) out.largest_code = 1;
+    if (options.values)
+        values_from_samples(layout, std::move(samples), out);
+    else
+        image_from_samples(file, layout, std::move(samples), out);
+    if (!options.values && layout.kind == TiffSamples::kSigned)
         out.warnings.push_back(cat("the samples are signed integers, which are values rather than colours; ",
                                    "as colours, the largest, ", std::ldexp(1.0, layout.bits - 1) - 1,
                                    ", is 1"));
-    image_from_samples(file, layout, std::move(samples), out);
     out.orientation = file.defaulted_tag<std::uint16_t>(TIFFTAG_ORIENTATION, ORIENTATION_TOPLEFT);
-    state_color(file, layout, out);
+    if (!options.values) state_color(file, layout, out);
     return out;
 }
 

@@ -17,4 +17,9 @@ std::vector<std::uint8_t> encode_exr(Image image, SampleType type, const ExrMeta
 std::vector<std::uint8_t> encode_webp(const Image& image);
 std::vector<std::uint8_t> encode_png(const Image& image, SampleType type);
 
+/// Data without a colour as a float TIFF, grey or in bands, with deflate. Where alpha is 0 the numbers are
+/// NaN, which the file names as GDAL's nodata; alpha itself is not stored. The same image gives the same
+/// bytes.
+std::vector<std::uint8_t> encode_tiff_values(const Image& image);
+
 }  // namespace imgmesh
