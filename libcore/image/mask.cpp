@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "libcore/base/error.h"
+
 #include "libcore/image/mask_value.h"
 
 namespace imgmesh {
