@@ -62,7 +62,7 @@ struct ReadImage {
     std::vector<std::string> warnings;  ///< each one sentence without the file's name
     std::optional<ImagePlace> place;    ///< of an EXR that left a choice
     std::int64_t non_finite = 0;        ///< samples that ReadImageOptions::non_finite replaced
-    ExrMetadata metadata = {};           ///< of an EXR
+    ExrMetadata metadata = {};          ///< of an EXR
     Mask data = {};  ///< the pixels with data; empty() if all have some. The samples of others mean nothing
 };
 

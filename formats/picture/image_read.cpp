@@ -207,7 +207,8 @@ ReadImage read_image_file(const std::string& path, const ReadImageOptions& optio
     DecodedPicture picture = decode_picture(path, bytes, options);
     if (!picture.has_layers && (options.part || options.layer))
         picture.warnings.emplace_back("it has neither parts nor layers, which only EXR images have");
-    ReadImage out{std::move(picture.image), std::move(picture.warnings), std::move(picture.place), 0,
+    ReadImage out{std::move(picture.image),    std::move(picture.warnings),
+                  std::move(picture.place),    0,
                   std::move(picture.metadata), {}};
     const float largest = largest_code(picture, out.image.sample_type);
     const bool inks = picture.color.inks;  // yellow is no luminance

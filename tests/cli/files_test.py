@@ -77,7 +77,7 @@ class Unreadable(CliCase):
 
     def test_containers_are_no_pictures_and_the_other_way_round(self):
         self.run_ok("imgmesh-build", "good.png", "-o", "c.glb", "-q")
-        self.assert_error("imgmesh-build", ["c.glb", "-o", "out.glb"], 4, "c.glb")
+        self.assert_error("imgmesh-build", ["c.glb", "-o", "out.glb"], 5, "c.glb", "imgmesh-reconstruct")
         self.assert_error("imgmesh-info", ["good.png"], 4, "good.png")
 
 

@@ -170,7 +170,7 @@ class Pictures(CliCase):
         self.assertEqual(self.build("in.png")["alpha"], "none")
 
     def test_alpha_cuts(self):
-        """By default: outside there is nothing, inside is the picture. Half is the threshold."""
+        """Outside there is nothing, inside is the picture. Half is the threshold."""
         rgba = np.concatenate([picture_files.ramp(24, 16), np.ones((16, 24, 1))], axis=-1)
         rgba[4:9, 6:12, 3] = 127 / 255  # a hole
         rgba[:, 20:, 3] = 0
@@ -178,7 +178,7 @@ class Pictures(CliCase):
         picture_files.png(self.folder / "in.png", rgba)
         inside = rgba[..., 3] > 0.5
         for args, draco in (((), "edgebreaker"), (("--draco", "sequential"), ""), (("--draco", "none"), "")):
-            report, back = self.round_trip("in.png", "--density", "100", *args)
+            report, back = self.round_trip("in.png", "--alpha", "cut", "--density", "100", *args)
             self.assertEqual((report["alpha"], report["pixels"]), ("cut", inside.sum()))
             self.assertEqual(back.shape, (16, 24, 4))
             np.testing.assert_array_equal(back[..., 3] > 0, inside)

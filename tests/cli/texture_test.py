@@ -178,7 +178,7 @@ class Texture(CliCase):
                  (["-o", "x.glb", "--texture-type", "png"], 2, "--texture"),
                  (["-o", "x.glb", "--texture", "--texture-type", "gif"], 2, "jpeg"),
                  (["-o", "x.glb", "--texture", "--image", "none.png"], 3, "none.png"),
-                 (["-o", "x.glb", "--texture", "--image", "plain.glb"], 4, "plain.glb"),
+                 (["-o", "x.glb", "--texture", "--image", "plain.glb"], 5, "plain.glb"),
                  (["-o", "x.glb", "--texture", "--image", "small.png"], 4, "small.png", "48x32")]
         for args, code, *words in wrong:
             self.assert_error("imgmesh-convert", ["plain.glb", *args], code, *words)

@@ -117,7 +117,7 @@ class Usage(CliCase):
                                       ("--metric", "qem", "flattened, hoppe, garland"),
                                       ("--solver", "qr", "svd, lu, closed"),
                                       ("--colors", "raw", "fitted, quadric"),
-                                      ("--color-space", "CMYK", "sRGB, linear"), ("--alpha", "keep", "cut, ignore")):
+                                      ("--color-space", "CMYK", "sRGB, linear"), ("--alpha", "half", "cut, ignore")):
             self.assert_error("imgmesh-build", ["in.png", "-o", "out.glb", option, value], 2, option, value, listed)
         self.assert_error("imgmesh-reconstruct", ["in.glb", "-o", "o.png", "--mode", "depth"], 2, "--mode", "wire")
         self.assert_error("imgmesh-reconstruct", ["in.glb", "-o", "o.png", "--depth", "12"], 2, "--depth", "16")
