@@ -9,24 +9,29 @@
 namespace imgmesh {
 namespace {
 
-// The code of an integer sample, of its largest.
+// The code of an integer sample, of its largest. Samples of 32 bits may be smaller than any code.
 std::string code_text(float value, SampleType type) {
     const int most = type == SampleType::kUint8 ? 255 : type == SampleType::kUint16 ? 65535 : 0;
+    const auto code = static_cast<long>(value * static_cast<float>(most) + 0.5f);
     if (most == 0) return cat(value);
-    return cat(static_cast<long>(value * static_cast<float>(most) + 0.5f), " of ", most);
+    return code == 0 && value > 0 ? cat(value, " of 1") : cat(code, " of ", most);
 }
 
 }  // namespace
 
 Mask read_mask(const std::string& path, double threshold, const ImageLimits& limits, const Image& image,
                const std::string& name, std::vector<std::string>& warnings) {
-    const Image picture = read_with_warnings(path, {.limits = limits}, warnings).image;
+    std::vector<std::string> own;
+    const Image picture = read_with_warnings(path, {.limits = limits}, own).image;
     if (picture.width != image.width || picture.height != image.height)
         throw Error(ErrorKind::kBadFile, cat(path, ": the mask is ", picture.width, "x", picture.height, ", ",
                                              name, " is ", image.width, "x", image.height));
     const auto least = static_cast<float>(threshold);
     Mask mask = in_file(path, [&] { return image_mask(picture, least); });
-    if (mask.count() > 0) return mask;
+    if (mask.count() > 0) {
+        warnings.insert(warnings.end(), own.begin(), own.end());
+        return mask;
+    }
     const float largest = largest_mask_value(picture, least);
     const std::string found = cat(path, ": no pixel is inside the mask: its largest value is ",
                                   code_text(largest, picture.sample_type));

@@ -23,8 +23,8 @@ void add_read_options(CLI::App& app, ReadImageOptions& options, CLI::Option* ima
     };
     advanced(app, add(add_choice(app, "--color-space", options.color_space, color_space_choices(),
                                  {"Colour space of the images, whatever their files say", ""})));
-    name("--part", options.part,
-         {"Part of an EXR, by its name or its number from 0", "the first with colour"});
+    advanced(app, name("--part", options.part,
+                       {"Part of an EXR, by its name or its number from 0", "the first with colour"}));
     name("--layer", options.layer,
          {"Layer of an EXR: all before the last dot of its channels' names, as in ViewLayer.Combined",
           "the unnamed one if it has colour, else the first that has"});
@@ -68,7 +68,7 @@ void add_nodata_option(CLI::App& app, ReadImageOptions& options) {
         {"Value of the pixels that are no data, in the file's own numbers, or nan: they lie outside "
          "the mask where all channels but alpha have it; none ignores the value that a TIFF names",
          "what a TIFF names (GDAL)"});
-    in_group(option, "Image");
+    advanced(app, in_group(option, "Image"));
 }
 
 }  // namespace imgmesh

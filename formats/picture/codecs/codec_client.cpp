@@ -11,8 +11,18 @@
 namespace imgmesh {
 namespace {
 
-SharedMemory input_of(const std::vector<std::uint8_t>& header, std::span<const std::uint8_t> data) {
-    SharedMemory input(data_offset(header.size()) + data.size());
+// Shared memory counts as a file where the size of files is limited.
+SharedMemory memory_for(const std::string& path, std::uint64_t size) {
+    try {
+        return SharedMemory(size);
+    } catch (const Error& error) {
+        throw Error(error.kind(), cat(path, ": ", error.what()));
+    }
+}
+
+SharedMemory input_of(const std::string& path, const std::vector<std::uint8_t>& header,
+                      std::span<const std::uint8_t> data) {
+    SharedMemory input = memory_for(path, data_offset(header.size()) + data.size());
     std::copy(header.begin(), header.end(), input.bytes().begin());
     std::copy(data.begin(), data.end(),
               input.bytes().begin() + static_cast<std::ptrdiff_t>(data_offset(header.size())));
@@ -77,8 +87,8 @@ DecodedPicture decode_with_codecs(const PictureFile& file) {
             offer.data_bytes != samples * bytes_of_sample(static_cast<SampleType>(offer.sample_type)))
             throw Error(name.kind, cat(name.who, " gave a wrong answer"));
     };
-    const JobResult result =
-        codec_process().run(name, CodecJob::kDecode, input_of(header, file.bytes), header.size(), accept);
+    const JobResult result = codec_process().run(
+        name, CodecJob::kDecode, input_of(file.path, header, file.bytes), header.size(), accept);
     if (result.offer.kind != ReplyKind::kOffer) throw Error(name.kind, cat(name.who, " gave no image"));
 
     CodecPicture picture = picture_of(name, result);
@@ -105,8 +115,8 @@ std::vector<std::uint8_t> encode_with_codecs(const EncodeTask& task, std::span<c
         if (offer.header_bytes != 0 || offer.data_bytes > most)
             throw Error(name.kind, cat(name.who, " gave a wrong answer"));
     };
-    const JobResult result =
-        codec_process().run(name, CodecJob::kEncode, input_of(header, samples), header.size(), accept);
+    const JobResult result = codec_process().run(name, CodecJob::kEncode,
+                                                 input_of(task.path, header, samples), header.size(), accept);
     const auto bytes = result.memory.bytes().first(static_cast<std::size_t>(result.offer.data_bytes));
     return {bytes.begin(), bytes.end()};
 }
@@ -117,7 +127,7 @@ void draw_text(Image& image, const std::vector<TextLabel>& labels) {
         wire_from(TextTask{image.width, image.height, image.channels, labels});
     const std::span<const std::uint8_t> samples{reinterpret_cast<const std::uint8_t*>(image.data.data()),
                                                 image.data.size() * sizeof(float)};
-    const SharedMemory input = input_of(header, samples);
+    const SharedMemory input = input_of("text", header, samples);
     codec_process().run(name, CodecJob::kText, input, header.size(), [&](const ReplyMessage&) {
         throw Error(name.kind, cat(name.who, " gave a wrong answer"));
     });

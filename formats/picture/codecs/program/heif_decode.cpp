@@ -80,12 +80,11 @@ void decode_by_libheif(const DecodeTask& task, std::span<const std::uint8_t> byt
     check(heif_context_get_primary_image_handle(context.get(), &primary));
     const Handle handle(primary);
     // A grid has a size of its own beside the one that the file claims and imgmesh has checked; only a lie is
-    // larger.
-    const double pixels =
-        std::max(static_cast<double>(task.claim.width) * static_cast<double>(task.claim.height),
-                 static_cast<double>(heif_image_handle_get_ispe_width(primary)) *
-                     static_cast<double>(heif_image_handle_get_ispe_height(primary)));
-    heif_context_set_maximum_image_size_limit(context.get(), static_cast<int>(std::ceil(std::sqrt(pixels))));
+    // larger. The library refuses sides that reach the limit.
+    const std::int64_t longest = std::max({task.claim.width, task.claim.height,
+                                           std::int64_t{heif_image_handle_get_ispe_width(primary)},
+                                           std::int64_t{heif_image_handle_get_ispe_height(primary)}});
+    heif_context_set_maximum_image_size_limit(context.get(), static_cast<int>(longest + 1));
 
     const bool alpha = heif_image_handle_has_alpha_channel(primary);
     const int bits = heif_image_handle_get_luma_bits_per_pixel(primary);
