@@ -33,7 +33,8 @@ void take_elements(const V& value, std::size_t count, const Element*, Numbers& o
 // One function for each direction, over types whose values are rows of one kind of number.
 template <typename Value, typename Element>
 struct Plain {
-    static constexpr std::size_t kCount = sizeof(Value) / sizeof(Element);
+    static constexpr std::size_t kCount =
+        sizeof(Value) / sizeof(Element);  // NOLINT(bugprone-sizeof-expression): pointers are no values here
     static bool take(const Imf::Attribute& attribute, Numbers& out) {
         const auto* const typed = dynamic_cast<const Imf::TypedAttribute<Value>*>(&attribute);
         if (!typed) return false;

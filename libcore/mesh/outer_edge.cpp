@@ -8,6 +8,7 @@
 
 #include "libcore/base/parallel.h"
 #include "libcore/mesh/adjacency.h"
+#include "libcore/mesh/unfolded_moves.h"
 
 namespace imgmesh {
 namespace {
@@ -274,7 +275,11 @@ std::vector<Vec2f> outer_positions(const BaseMesh& mesh, const PixelMap& map) {
 }
 
 void extend_to_outer_edge(MeshImage& mesh_image) {
-    for (Level& level : mesh_image.levels) level.mesh.position = outer_positions(level.mesh, level.map);
+    for (Level& level : mesh_image.levels) {
+        std::vector<Vec2f> position = outer_positions(level.mesh, level.map);
+        take_back_folds(level.mesh, level.map, position);
+        level.mesh.position = std::move(position);
+    }
 }
 
 }  // namespace imgmesh

@@ -61,11 +61,15 @@ std::pair<std::int64_t, std::int64_t> uncovered(const BaseMesh& mesh, const Pixe
     return {bare, all};
 }
 
+void move_out(MeshImage& m) {
+    for (Level& level : m.levels) level.mesh.position = outer_positions(level.mesh, level.map);
+}
+
 // bare_share: of the samples, that may lie outside.
 void check_covered(const Image& image, const Mask& mask, double density, double bare_share) {
     MeshImage m = built(image, mask, density);
     const Level before = m.levels[0];
-    extend_to_outer_edge(m);
+    move_out(m);
     const auto& [mesh, map, error] = m.levels[0];
     const auto [bare, all] = uncovered(mesh, map);
     CAPTURE(all);
@@ -73,7 +77,7 @@ void check_covered(const Image& image, const Mask& mask, double density, double 
     CHECK(double(bare) <= bare_share * double(all));
     CHECK(area(mesh) > area(before.mesh));
     // What covers its pixels stays.
-    extend_to_outer_edge(m);
+    move_out(m);
     CHECK(m.levels[0].mesh.position == mesh.position);
     for (const Vec2f& p : mesh.position) {
         CHECK(snapped(p.x()) == p.x());
@@ -89,7 +93,7 @@ TEST_CASE("outer edge: rectangles are exactly as large as their pixels") {
                                PixelRect{0, 0, 64, 48}, PixelRect{3, 3, 5, 5}})
         for (const double density : {0.5, 5.0, 100.0}) {
             MeshImage m = built(image, rectangle(64, 48, r), density);
-            extend_to_outer_edge(m);
+            move_out(m);
             CHECK(area(m.levels[0].mesh) == r.width() * r.height());
             for (const Vec2f& p : m.levels[0].mesh.position) {
                 CHECK(p.x() >= static_cast<float>(r.left) - 0.5f);
@@ -103,7 +107,7 @@ TEST_CASE("outer edge: rectangles are exactly as large as their pixels") {
 TEST_CASE("outer edge: sides of one pixel") {
     for (const auto& [width, height] : {std::pair{1, 1}, std::pair{1, 9}, std::pair{9, 1}}) {
         MeshImage m = built(random_image(width, height, 2), {}, 100);
-        extend_to_outer_edge(m);
+        move_out(m);
         CHECK(area(m.levels[0].mesh) == width * height);
     }
 }
@@ -125,5 +129,32 @@ TEST_CASE("outer edge: every pixel square inside is covered, for masks of any sh
         for (const Mask* mask : {&disc, &ring, &diamond, &blobs}) check_covered(image, *mask, density, 0);
         // Holes and single pixels everywhere.
         check_covered(image, noise, density, 0.01);
+    }
+}
+
+TEST_CASE("outer edge: maps are moved without a fold, and most of the edge is reached") {
+    const Image image = random_image(60, 50, 3);
+    std::mt19937 random(7);
+    for (const double density : {1.0, 6.0, 40.0}) {
+        Mask disc{60, 50, {}}, noise = disc;
+        for (int y = 0; y < 50; ++y)
+            for (int x = 0; x < 60; ++x) {
+                disc.values.push_back(std::hypot(x - 29.3, y - 24.8) < 22);
+                noise.values.push_back(random() % 3 > 0);
+            }
+        for (const Mask* mask : {&disc, &noise}) {
+            MeshImage m = built(image, *mask, density);
+            const Level before = m.levels[0];
+            MeshImage folded = m;
+            move_out(folded);
+            extend_to_outer_edge(m);
+            const auto& [mesh, map, error] = m.levels[0];
+            CHECK(map_quality(before.mesh, before.map).flipped_triangles == 0);
+            CHECK(map_quality(mesh, map).flipped_triangles == 0);
+            CHECK(mesh_quality(mesh).flipped_faces == 0);
+            const double whole = area(folded.levels[0].mesh) - area(before.mesh);
+            CAPTURE(density);
+            CHECK(area(mesh) - area(before.mesh) >= (mask == &disc ? 0.3 : 0.1) * whole);
+        }
     }
 }

@@ -61,7 +61,7 @@ std::vector<Row> read_rows(Imf::InputPart& part, const ExrChoice& choice) {
         }
         // The outermost samples go on beyond the edges. The last one is at an even pixel.
         std::fill_n(padded.begin(), kSide, padded[kSide]);
-        const auto last = static_cast<std::size_t>(kSide + (width - 1) / 2 * 2);
+        const auto last = static_cast<std::size_t>(kSide) + static_cast<std::size_t>((width - 1) / 2) * 2;
         for (std::size_t i = last + 1; i < padded.size(); ++i) {
             padded[i].r = padded[last].r;
             padded[i].b = padded[last].b;

@@ -261,8 +261,9 @@ void values_from_samples(const TiffLayout& layout, std::vector<float> samples, D
     const int alpha = alpha_of(layout);
     if (alpha < 0) return;
     const auto step = static_cast<std::size_t>(layout.samples);
-    for (auto i = static_cast<std::size_t>(layout.color_samples() + alpha); i < out.image.data.size();
-         i += step)
+    const std::size_t first =
+        static_cast<std::size_t>(layout.color_samples()) + static_cast<std::size_t>(alpha);
+    for (std::size_t i = first; i < out.image.data.size(); i += step)
         out.image.data[i] /= largest_code(layout);
 }
 
