@@ -277,7 +277,7 @@ std::vector<Vec2f> outer_positions(const BaseMesh& mesh, const PixelMap& map) {
 void extend_to_outer_edge(MeshImage& mesh_image) {
     for (Level& level : mesh_image.levels) {
         std::vector<Vec2f> position = outer_positions(level.mesh, level.map);
-        take_back_folds(level.mesh, level.map, position);
+        if (mesh_image.source.has_mask) take_back_folds(level.mesh, level.map, position);
         level.mesh.position = std::move(position);
     }
 }

@@ -30,13 +30,13 @@ class Limit {
 
 }  // namespace
 
-void limit_job(std::uint64_t samples, std::uint64_t input_bytes) {
+void limit_job(std::uint64_t samples, [[maybe_unused]] std::uint64_t input_bytes) {
     static const Limit memory(RLIMIT_AS), time(RLIMIT_CPU);
     samples = std::min(samples, std::uint64_t{1} << 44);  // no sum below overflows
+#ifndef IMGMESH_SANITIZED                                 // whose shadow memory takes terabytes of addresses
     constexpr std::uint64_t kRest = std::uint64_t{512} << 20;
     // JPEG 2000's wavelets take 4 bytes a sample three times over; HEIF's decoder keeps some images.
     constexpr std::uint64_t kBytesOfSample = 32;
-#ifndef IMGMESH_SANITIZED  // whose shadow memory takes terabytes of addresses
     unsigned long pages = 0;
     if (std::FILE* file = std::fopen("/proc/self/statm", "re")) {
         if (std::fscanf(file, "%lu", &pages) == 1)
