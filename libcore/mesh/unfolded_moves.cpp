@@ -3,6 +3,7 @@
 #include <array>
 
 #include "libcore/mesh/grid_area.h"
+#include "libcore/mesh/mapped_position.h"
 
 namespace imgmesh {
 namespace {
@@ -45,13 +46,6 @@ class Moves {
                            position[face[2]].cast<double>());
     }
 
-    Vec2d place(const PixelCoord& coord, const std::vector<Vec2f>& position) const {
-        const auto [a, b, c] = mesh_.faces[coord.face];
-        const double u = coord.u, v = coord.v;
-        return (1 - u - v) * position[a].cast<double>() + u * position[b].cast<double>() +
-               v * position[c].cast<double>();
-    }
-
     // Checks the four triangles of a cell of 2 x 2 pixels, on both diagonals, as map_quality() does.
     bool check_cell(int x, int y) {
         const std::array<const PixelCoord*, 4> corners = {&map_.at(x, y), &map_.at(x, y + 1),
@@ -72,8 +66,8 @@ class Moves {
     }
 
     double area_of(const std::array<const PixelCoord*, 3>& pixels, const std::vector<Vec2f>& position) const {
-        return grid_area2(place(*pixels[0], position), place(*pixels[2], position),
-                          place(*pixels[1], position));
+        const auto place = [&](std::size_t i) { return mapped_position(mesh_.faces, position, *pixels[i]); };
+        return grid_area2(place(0), place(2), place(1));
     }
 
     const BaseMesh& mesh_;

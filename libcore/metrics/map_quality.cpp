@@ -7,6 +7,7 @@
 #include "libcore/base/parallel.h"
 #include "libcore/base/parallel_vector.h"
 #include "libcore/mesh/grid_area.h"
+#include "libcore/mesh/mapped_position.h"
 #include "libcore/metrics/metrics.h"
 
 namespace imgmesh {
@@ -15,12 +16,9 @@ namespace {
 constexpr int kGrainRows = 32;
 
 // Returns where the map places a pixel; NaN for one without a face.
-Vec2d mapped_position(const BaseMesh& mesh, const PixelCoord& coord) {
+Vec2d position_or_nan(const BaseMesh& mesh, const PixelCoord& coord) {
     if (coord.face >= mesh.faces.size()) return Vec2d::Constant(std::numeric_limits<double>::quiet_NaN());
-    const auto [a, b, c] = mesh.faces[coord.face];
-    const double u = coord.u, v = coord.v;
-    return (1 - u - v) * mesh.position[a].cast<double>() + u * mesh.position[b].cast<double>() +
-           v * mesh.position[c].cast<double>();
+    return mapped_position(mesh.faces, mesh.position, coord);
 }
 
 // The mapped positions of some rows of pixels.
@@ -32,7 +30,7 @@ struct MappedRows {
         : first(begin), places(map.width, end - begin, {}) {
         places.values.reserve(places.pixel_count());
         for (int y = begin; y < end; ++y)
-            for (const PixelCoord& coord : map.row(y)) places.values.push_back(mapped_position(mesh, coord));
+            for (const PixelCoord& coord : map.row(y)) places.values.push_back(position_or_nan(mesh, coord));
     }
     const Vec2d& at(int x, int y) const { return places.at(x, y - first); }
 };
@@ -91,7 +89,7 @@ std::vector<Vec2d> mapped_positions(const BaseMesh& mesh, const PixelMap& map) {
     std::vector<Vec2d> image = parallel_vector<Vec2d>(map.size(), Vec2d::Zero());
     parallel_blocks(0, map.height, kGrainRows, [&](int first, int last) {
         for (int y = first; y < last; ++y)
-            for (int x = 0; x < map.width; ++x) image[map.index(x, y)] = mapped_position(mesh, map.at(x, y));
+            for (int x = 0; x < map.width; ++x) image[map.index(x, y)] = position_or_nan(mesh, map.at(x, y));
     });
     return image;
 }

@@ -9,6 +9,7 @@
 #include "libcore/base/parallel.h"
 #include "libcore/base/parallel_vector.h"
 #include "libcore/mesh/grid_area.h"
+#include "libcore/mesh/mapped_position.h"
 #include "libcore/mesh/weight_grid.h"
 
 namespace imgmesh {
@@ -72,10 +73,7 @@ class Storing {
   private:
     Vec2d position(const PixelCoord& coord) const {
         if (coord.face == kNone) return Vec2d::Constant(std::numeric_limits<double>::quiet_NaN());
-        const auto [a, b, c] = mesh_.faces[coord.face];
-        const double u = coord.u, v = coord.v;
-        return (1 - u - v) * mesh_.position[a].cast<double>() + u * mesh_.position[b].cast<double>() +
-               v * mesh_.position[c].cast<double>();
+        return mapped_position(mesh_.faces, mesh_.position, coord);
     }
     Vec2d position(int x, int y) const { return position(map_.at(x, y)); }
 
