@@ -43,7 +43,7 @@ CodecPicture picture_of(const JobName& name, const JobResult& result) {
         if (picture.channel_names.size() == static_cast<std::size_t>(result.offer.channels)) return picture;
     } catch (const std::runtime_error&) {
     }
-    throw Error(name.kind, cat(name.who, " gave a wrong answer"));
+    throw wrong_answer(name);
 }
 
 std::vector<float> samples_of(const JobResult& result) {
@@ -85,7 +85,7 @@ DecodedPicture decode_with_codecs(const PictureFile& file) {
                              static_cast<std::uint64_t>(offer.channels);
         if (offer.sample_type > static_cast<std::uint32_t>(SampleType::kFloat) ||
             offer.data_bytes != samples * bytes_of_sample(static_cast<SampleType>(offer.sample_type)))
-            throw Error(name.kind, cat(name.who, " gave a wrong answer"));
+            throw wrong_answer(name);
     };
     const JobResult result = codec_process().run(
         name, CodecJob::kDecode, input_of(file.path, header, file.bytes), header.size(), accept);
@@ -112,8 +112,7 @@ std::vector<std::uint8_t> encode_with_codecs(const EncodeTask& task, std::span<c
     // No format takes twice the bytes of the samples and room for a header and profile.
     const std::uint64_t most = 2 * samples.size() + task.icc.size() + (std::uint64_t{1} << 20);
     const auto accept = [&](const ReplyMessage& offer) {
-        if (offer.header_bytes != 0 || offer.data_bytes > most)
-            throw Error(name.kind, cat(name.who, " gave a wrong answer"));
+        if (offer.header_bytes != 0 || offer.data_bytes > most) throw wrong_answer(name);
     };
     const JobResult result = codec_process().run(name, CodecJob::kEncode,
                                                  input_of(task.path, header, samples), header.size(), accept);
@@ -128,9 +127,8 @@ void draw_text(Image& image, const std::vector<TextLabel>& labels) {
     const std::span<const std::uint8_t> samples{reinterpret_cast<const std::uint8_t*>(image.data.data()),
                                                 image.data.size() * sizeof(float)};
     const SharedMemory input = input_of("text", header, samples);
-    codec_process().run(name, CodecJob::kText, input, header.size(), [&](const ReplyMessage&) {
-        throw Error(name.kind, cat(name.who, " gave a wrong answer"));
-    });
+    codec_process().run(name, CodecJob::kText, input, header.size(),
+                        [&](const ReplyMessage&) { throw wrong_answer(name); });
     // The labels are drawn into the input itself.
     std::memcpy(image.data.data(), input.bytes().data() + data_offset(header.size()), samples.size());
 }

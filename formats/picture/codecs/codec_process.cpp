@@ -28,10 +28,6 @@ constexpr int kMostStarts = 3;
 constexpr std::uint64_t kMostHeader = std::uint64_t{64} << 20;
 constexpr std::uint64_t kMostData = std::uint64_t{1} << 44;
 
-Error wrong_answer(const JobName& name) {
-    return {name.kind, cat(name.who, " gave a wrong answer")};
-}
-
 Error failure(const JobName& name, const ReplyMessage& reply) {
     if (reply.kind == ReplyKind::kError) {
         std::string text(reply.text, ::strnlen(reply.text, sizeof(reply.text)));
@@ -71,6 +67,10 @@ ReplyMessage next_reply(const JobName& name, int socket, seconds patience) {
 }
 
 }  // namespace
+
+Error wrong_answer(const JobName& name) {
+    return {name.kind, cat(name.who, " gave a wrong answer")};
+}
 
 std::shared_ptr<CodecServer> CodecProcess::server() {
     const std::lock_guard lock(mutex_);

@@ -20,6 +20,9 @@ struct JobName {
     ErrorKind kind;  ///< of a crash or a senseless answer
 };
 
+/// The error of a job whose answer makes no sense.
+Error wrong_answer(const JobName& name);
+
 /// What a job left: its memory, and what it said about it.
 struct JobResult {
     SharedMemory memory;  ///< empty if nothing was offered

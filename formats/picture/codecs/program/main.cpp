@@ -64,7 +64,7 @@ void set_up_process() {
 
 // Waits until all other threads sleep. A library's threads have nothing to do, and OpenImageIO's pool has
 // only just ended one, but as they start and end they hold locks. A fork in that moment would keep such a
-// lock: one job in some hundreds waited for ever.
+// lock, and jobs were seen to wait for ever for one.
 void wait_for_threads() {
     constexpr int kSteps = 1000;
     constexpr struct timespec kStep = {0, 1000000};
