@@ -8,8 +8,10 @@
 #include "libcore/mesh/raster.h"
 #include "libcore/metrics/metrics.h"
 #include "libcore/pipeline/build.h"
+#include "tests/support/face_areas.h"
 
 using namespace imgmesh;
+using test::area_of_faces;
 
 namespace {
 
@@ -33,16 +35,6 @@ MeshImage built(const Image& image, const Mask& mask, double density) {
     BuildParams params;
     params.stop.density = density;
     return build_mesh_image(image, params, {}, mask).mesh_image;
-}
-
-double area(const BaseMesh& mesh) {
-    double twice = 0;
-    for (const auto& [a, b, c] : mesh.faces) {
-        const double face = signed_area2(mesh.position[a], mesh.position[b], mesh.position[c]);
-        CHECK(face > 0);
-        twice += face;
-    }
-    return twice / 2;
 }
 
 // Samples of 4 x 4 in every pixel square inside that no face covers, of all.
@@ -75,7 +67,7 @@ void check_covered(const Image& image, const Mask& mask, double density, double 
     CAPTURE(all);
     CAPTURE(density);
     CHECK(double(bare) <= bare_share * double(all));
-    CHECK(area(mesh) > area(before.mesh));
+    CHECK(area_of_faces(mesh) > area_of_faces(before.mesh));
     // What covers its pixels stays.
     move_out(m);
     CHECK(m.levels[0].mesh.position == mesh.position);
@@ -94,7 +86,7 @@ TEST_CASE("outer edge: rectangles are exactly as large as their pixels") {
         for (const double density : {0.5, 5.0, 100.0}) {
             MeshImage m = built(image, rectangle(64, 48, r), density);
             move_out(m);
-            CHECK(area(m.levels[0].mesh) == r.width() * r.height());
+            CHECK(area_of_faces(m.levels[0].mesh) == r.width() * r.height());
             for (const Vec2f& p : m.levels[0].mesh.position) {
                 CHECK(p.x() >= static_cast<float>(r.left) - 0.5f);
                 CHECK(p.x() <= static_cast<float>(r.right) - 0.5f);
@@ -108,7 +100,7 @@ TEST_CASE("outer edge: sides of one pixel") {
     for (const auto& [width, height] : {std::pair{1, 1}, std::pair{1, 9}, std::pair{9, 1}}) {
         MeshImage m = built(random_image(width, height, 2), {}, 100);
         move_out(m);
-        CHECK(area(m.levels[0].mesh) == width * height);
+        CHECK(area_of_faces(m.levels[0].mesh) == width * height);
     }
 }
 
@@ -152,9 +144,9 @@ TEST_CASE("outer edge: maps are moved without a fold, and most of the edge is re
             CHECK(map_quality(before.mesh, before.map).flipped_triangles == 0);
             CHECK(map_quality(mesh, map).flipped_triangles == 0);
             CHECK(mesh_quality(mesh).flipped_faces == 0);
-            const double whole = area(folded.levels[0].mesh) - area(before.mesh);
+            const double whole = area_of_faces(folded.levels[0].mesh) - area_of_faces(before.mesh);
             CAPTURE(density);
-            CHECK(area(mesh) - area(before.mesh) >= (mask == &disc ? 0.3 : 0.1) * whole);
+            CHECK(area_of_faces(mesh) - area_of_faces(before.mesh) >= (mask == &disc ? 0.3 : 0.1) * whole);
         }
     }
 }

@@ -9,8 +9,10 @@
 #include "libcore/base/error.h"
 #include "libcore/mesh/raster.h"
 #include "libcore/mesh/triangulate.h"
+#include "tests/support/face_areas.h"
 
 using namespace imgmesh;
+using test::area_of_faces;
 
 namespace {
 
@@ -27,16 +29,6 @@ Mask shape(int width, int height, Inside inside) {
     for (int y = 0; y < height; ++y)
         for (int x = 0; x < width; ++x) mask.values.push_back(inside(x, y));
     return mask;
-}
-
-double area(const BaseMesh& mesh) {
-    double twice = 0;
-    for (const auto& [a, b, c] : mesh.faces) {
-        const double face = signed_area2(mesh.position[a], mesh.position[b], mesh.position[c]);
-        CHECK(face > 0);
-        twice += face;
-    }
-    return twice / 2;
 }
 
 // Samples (4 x 4 a pixel) inside the mask that no face covers.
@@ -83,14 +75,14 @@ TEST_CASE("mask_contours: a pixel, a ring, and pixels that touch at a corner") {
     REQUIRE(ring.size() == 2);
     CHECK(ring[0].size() == 4);
     CHECK(ring[1].size() == 4);
-    CHECK(area(triangulated(ring)) == 8);
+    CHECK(area_of_faces(triangulated(ring)) == 8);
     CHECK(triangulated(ring).faces.size() == 8);
     const auto corner = mask_contours(drawn({"#.", ".#"}));
     REQUIRE(corner.size() == 2);
     CHECK(corner[0].size() == 4);
     CHECK(corner[1].size() == 4);
     // A hole that touches the outside at a corner is an outline of its own all the same.
-    CHECK(area(triangulated(mask_contours(drawn({"####", "##.#", "###.", "####"})))) == 14);
+    CHECK(area_of_faces(triangulated(mask_contours(drawn({"####", "##.#", "###.", "####"})))) == 14);
 }
 
 TEST_CASE("triangulated: the contour of any mask, with its own area") {
@@ -98,7 +90,7 @@ TEST_CASE("triangulated: the contour of any mask, with its own area") {
     for (int round = 0; round < 30; ++round) {
         const Mask mask = shape(14, 11, [&](int, int) { return random() % 4 > 0; });
         const BaseMesh mesh = triangulated(mask_contours(mask));
-        CHECK(area(mesh) == double(mask.count()));
+        CHECK(area_of_faces(mesh) == double(mask.count()));
         CHECK(uncovered(mesh, mask) == 0);
     }
 }
@@ -118,7 +110,7 @@ TEST_CASE("simplified_outline: grows only, and stays near") {
             CAPTURE(tolerance);
             CHECK(uncovered(mesh, mask) == 0);
             CHECK(farthest(mesh, mask) <= tolerance + 1e-6);
-            CHECK(area(mesh) >= double(mask.count()));
+            CHECK(area_of_faces(mesh) >= double(mask.count()));
             CHECK(mesh.faces.size() <= before);
             before = mesh.faces.size() + 2;
             for (const Vec2f& p : mesh.position) {
@@ -140,8 +132,8 @@ TEST_CASE("simplified_outline: on either side the vertices of the contour are ne
         const auto out = simplified_outline(disc, tolerance, OutlineSide::kOut);
         REQUIRE(both.size() == 1);
         CHECK(both[0].size() <= out[0].size() + 4);
-        CHECK(area(triangulated(both)) < area(triangulated(out)));
-        CHECK(std::abs(area(triangulated(both)) - double(disc.count())) < tolerance * 190);
+        CHECK(area_of_faces(triangulated(both)) < area_of_faces(triangulated(out)));
+        CHECK(std::abs(area_of_faces(triangulated(both)) - double(disc.count())) < tolerance * 190);
     }
     CHECK_THROWS_AS(simplified_outline(Mask{3, 3, std::vector<std::uint8_t>(9)}, 1, OutlineSide::kOut),
                     Error);

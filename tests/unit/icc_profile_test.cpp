@@ -8,8 +8,10 @@
 #include <vector>
 
 #include "formats/picture/color/icc_profile.h"
+#include "tests/support/icc_bytes.h"
 
 using namespace imgmesh;
+using test::saved;
 using Bytes = std::vector<std::uint8_t>;
 
 namespace {
@@ -20,16 +22,6 @@ constexpr ColorSpace kSpaces[] = {ColorSpace::kSrgb,    ColorSpace::kLinear,   C
 constexpr cmsCIExyY kD65 = {0.3127, 0.3290, 1};
 constexpr cmsCIExyYTRIPLE kSrgbPrimaries = {{0.64, 0.33, 1}, {0.30, 0.60, 1}, {0.15, 0.06, 1}};
 constexpr cmsCIExyYTRIPLE kRec2020Primaries = {{0.708, 0.292, 1}, {0.170, 0.797, 1}, {0.131, 0.046, 1}};
-
-Bytes saved(cmsHPROFILE profile, double version = 4.3) {
-    cmsSetProfileVersion(profile, version);
-    cmsUInt32Number size = 0;
-    REQUIRE(cmsSaveProfileToMem(profile, nullptr, &size));
-    Bytes bytes(size);
-    REQUIRE(cmsSaveProfileToMem(profile, bytes.data(), &size));
-    cmsCloseProfile(profile);
-    return bytes;
-}
 
 // A profile of three curves, which it frees.
 Bytes matrix_profile(const cmsCIExyYTRIPLE& primaries, std::array<cmsToneCurve*, 3> curves,

@@ -9,8 +9,10 @@
 #include "formats/picture/color/icc_profile.h"
 #include "formats/picture/color/stated_color.h"
 #include "libcore/image/color.h"
+#include "tests/support/icc_bytes.h"
 
 using namespace imgmesh;
+using test::saved;
 using Bytes = std::vector<std::uint8_t>;
 using Texts = std::vector<std::string>;
 
@@ -20,16 +22,6 @@ constexpr cmsCIExyY kD65 = {0.3127, 0.3290, 1};
 constexpr cmsCIExyY kD50 = {0.3457, 0.3585, 1};
 constexpr cmsCIExyYTRIPLE kRec2020 = {{0.708, 0.292, 1}, {0.170, 0.797, 1}, {0.131, 0.046, 1}};
 constexpr cmsCIExyYTRIPLE kProPhoto = {{0.7347, 0.2653, 1}, {0.1596, 0.8404, 1}, {0.0366, 0.0001, 1}};
-
-Bytes saved(cmsHPROFILE profile, double version = 4.3) {
-    cmsSetProfileVersion(profile, version);
-    cmsUInt32Number size = 0;
-    REQUIRE(cmsSaveProfileToMem(profile, nullptr, &size));
-    Bytes bytes(size);
-    REQUIRE(cmsSaveProfileToMem(profile, bytes.data(), &size));
-    cmsCloseProfile(profile);
-    return bytes;
-}
 
 Bytes matrix_profile(const cmsCIExyY& white, const cmsCIExyYTRIPLE& primaries, double gamma,
                      double version = 4.3) {
