@@ -4,7 +4,8 @@ target_compile_options(imgmesh_compiler INTERFACE -Wall -Wextra -Wshadow -Wconve
 if(CMAKE_CXX_COMPILER_ID STREQUAL GNU AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
   # False alarms of g++ 12 where it has inlined std::string (such as GCC bug 105651): they come and go with what else
   # a file includes, so no change of the code keeps them away.
-  target_compile_options(imgmesh_compiler INTERFACE -Wno-restrict -Wno-array-bounds -Wno-stringop-overflow)
+  target_compile_options(imgmesh_compiler INTERFACE -Wno-restrict -Wno-array-bounds -Wno-stringop-overflow
+    -Wno-stringop-overread)
 endif()
 if(CMAKE_CXX_COMPILER_ID MATCHES Clang)
   # Eigen's and the standard library's sizes are signed and unsigned, and braces may be left out around the first member
