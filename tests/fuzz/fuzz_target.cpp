@@ -1,24 +1,35 @@
-// One libFuzzer target per reader (IMGMESH_FUZZ_TARGET), with the mutations of mutate.h beside libFuzzer's
-// own. With an empty corpus it starts from seeds().
+// libFuzzer's program for all readers, with the mutations of mutate.h beside libFuzzer's own. The name that
+// it is started by tells the reader: fuzz-png and so on. With an empty corpus it starts from seeds().
 #include <algorithm>
 #include <cstdlib>
 #include <cstring>
 #include <exception>
+#include <filesystem>
 #include <iostream>
+#include <optional>
+#include <string>
 
 #include "tests/fuzz/targets.h"
 
 using namespace imgmesh::fuzz;
 
 namespace {
-constexpr Target kTarget = Target::IMGMESH_FUZZ_TARGET;
+std::optional<Target> target;
+}
+
+extern "C" int LLVMFuzzerInitialize(int*, char*** argv) {
+    const std::string name = std::filesystem::path((*argv)[0]).filename().string();
+    if (name.starts_with("fuzz-")) target = target_of(name.substr(5));
+    if (target) return 0;
+    std::cerr << name << " is no reader's name: run fuzz-png or another of its kind" << std::endl;
+    std::exit(2);
 }
 
 extern "C" std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size, std::size_t max_size);
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     try {
-        feed(kTarget, {data, size});
+        feed(*target, {data, size});
     } catch (const std::exception& e) {
         std::cerr << e.what() << std::endl;
         std::abort();
@@ -28,7 +39,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
 
 extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size, std::size_t max_size,
                                                unsigned int seed) {
-    static const std::vector<Bytes> good = seeds(kTarget);
+    static const std::vector<Bytes> good = seeds(*target);
     Mutator mutator(seed);
     Bytes bytes(data, data + size);
     if (size < 16 || mutator.below(64) == 0) bytes = good[mutator.below(good.size())];
@@ -37,14 +48,7 @@ extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t s
         std::copy_n(bytes.begin(), std::min(bytes.size(), max_size), data);
         return LLVMFuzzerMutate(data, std::min(bytes.size(), max_size), max_size);
     }
-    if (kTarget == Target::kContainer)
-        bytes = mutator.glb(bytes);
-    else if (kTarget == Target::kPicture || kTarget == Target::kSmall)
-        bytes = mutator.any(bytes);
-    else {
-        const std::string text = mutator.json_text({bytes.begin(), bytes.end()});
-        bytes.assign(text.begin(), text.end());
-    }
+    bytes = mutated(*target, bytes, mutator);
     const std::size_t length = std::min(bytes.size(), max_size);
     std::copy_n(bytes.begin(), length, data);
     return length;

@@ -21,6 +21,8 @@ class Mutator {
     /// A .glb: a value of its JSON, bytes of its Draco meshes, of its EXR's header or pixels, or bytes
     /// anywhere.
     Bytes glb(const Bytes& file);
+    /// A PNG: chunks, what is compressed in them, and their order; with right checksums.
+    Bytes png(const Bytes& file);
     /// Any file: bits, bytes, numbers, lengths, with the head of the file more often than the rest.
     Bytes any(const Bytes& file);
     /// JSON text: values, names, or characters.

@@ -16,7 +16,10 @@ FileBytes noise(std::size_t count) {
     return out;
 }
 
-void add_bmp(std::vector<Bytes>& all) {
+}  // namespace
+
+std::vector<Bytes> bmp_seeds() {
+    std::vector<Bytes> all;
     const auto add = [&](const Bmp& bmp) { all.push_back(bmp.file().bytes); };
     const int width = 7, height = 5;
     for (const std::uint32_t header : {12u, 16u, 40u, 52u, 56u, 64u, 108u, 124u})
@@ -38,9 +41,11 @@ void add_bmp(std::vector<Bytes>& all) {
     FileBytes png;
     png.bytes = red_png();
     add({1, 1, 0, 5, 40, {}, {}, png});
+    return all;
 }
 
-void add_tga(std::vector<Bytes>& all) {
+std::vector<Bytes> tga_seeds() {
+    std::vector<Bytes> all;
     const int width = 7, height = 5;
     for (const int type : {1, 2, 3})
         for (const int bits : {8, 15, 16, 24, 32}) {
@@ -64,9 +69,11 @@ void add_tga(std::vector<Bytes>& all) {
             tga.id = "an image";
             all.push_back(tga.file().bytes);
         }
+    return all;
 }
 
-void add_netpbm(std::vector<Bytes>& all) {
+std::vector<Bytes> netpbm_seeds() {
+    std::vector<Bytes> all;
     const auto add = [&](std::string_view header, std::size_t pixels) {
         all.push_back(FileBytes(header).put(noise(pixels)).bytes);
     };
@@ -82,15 +89,6 @@ void add_netpbm(std::vector<Bytes>& all) {
     add("P7\nWIDTH 7\nHEIGHT 5\nDEPTH 4\nMAXVAL 255\nTUPLTYPE RGB_ALPHA\nENDHDR\n", 140);
     add("P7\nWIDTH 7\nHEIGHT 5\nDEPTH 2\nMAXVAL 999\nTUPLTYPE GRAYSCALE_ALPHA\nENDHDR\n", 140);
     add("P7\nWIDTH 3\nHEIGHT 2\nDEPTH 5\nMAXVAL 255\nTUPLTYPE CMYK_ALPHA\nENDHDR\n", 30);
-}
-
-}  // namespace
-
-std::vector<Bytes> small_seeds() {
-    std::vector<Bytes> all;
-    add_bmp(all);
-    add_tga(all);
-    add_netpbm(all);
     return all;
 }
 

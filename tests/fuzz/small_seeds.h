@@ -7,7 +7,9 @@
 
 namespace imgmesh::fuzz {
 
-/// One file for each header, coding and depth that the readers know.
-std::vector<Bytes> small_seeds();
+/// Each returns one file for each header, coding and depth that the reader knows.
+std::vector<Bytes> bmp_seeds();
+std::vector<Bytes> tga_seeds();
+std::vector<Bytes> netpbm_seeds();
 
 }  // namespace imgmesh::fuzz

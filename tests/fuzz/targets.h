@@ -1,26 +1,52 @@
-// What is fed with hostile bytes. Each returns whether the input was accepted, and throws for anything but
-// the Errors that its reader documents.
+// What is fed with hostile bytes: one target for each decoder, and for the other readers.
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "tests/fuzz/mutate.h"
 
 namespace imgmesh::fuzz {
 
-/// kSmall: the images that no library reads for imgmesh, BMP, TGA and Netpbm.
-enum class Target { kContainer, kPicture, kSmall, kEdits };
+/// kGif to kHeif are the formats of imgmesh-codecs, decoded in this process. kProfile is an ICC profile
+/// alone, kConfig a file for --config.
+enum class Target {
+    kContainer,
+    kPng,
+    kJpeg,
+    kTiff,
+    kExr,
+    kWebp,
+    kBmp,
+    kTga,
+    kPnm,
+    kGif,
+    kHdr,
+    kJp2,
+    kHeif,
+    kProfile,
+    kEdits,
+    kConfig
+};
+inline constexpr Target kLastTarget = Target::kConfig;
 
-/// container, picture, small or edits.
+/// container, png, and so on.
 const char* name_of(Target target);
+std::optional<Target> target_of(std::string_view name);
 
-/// `bytes` through the reader; containers through the validator too, which must agree with it.
+/// Passes `bytes` through the reader; containers through the validator too, which must agree with it. Returns
+/// whether they were accepted. Throws for anything but the Errors that the reader documents. An image of
+/// another format than the target's counts as refused.
 bool feed(Target target, std::span<const std::uint8_t> bytes);
 
 /// Good inputs to start from.
 std::vector<Bytes> seeds(Target target);
+
+/// Changes an input in the way that suits the target.
+Bytes mutated(Target target, const Bytes& bytes, Mutator& mutator);
 
 }  // namespace imgmesh::fuzz
