@@ -12,10 +12,12 @@
 #include "libcore/pipeline/build.h"
 #include "tools/build_jobs.h"
 #include "tools/build_mask.h"
+#include "tools/build_memory.h"
 #include "tools/build_options.h"
 #include "tools/build_report.h"
 #include "tools/common/in_file.h"
 #include "tools/common/joint_progress.h"
+#include "tools/common/memory.h"
 #include "tools/common/output.h"
 #include "tools/common/read_options.h"
 #include "tools/common/tool_main.h"
@@ -90,8 +92,8 @@ BuildParams named_as_read(BuildParams params) {
     return params;
 }
 
-Report build_one(const Job& job, const BuildOptions& o, const Context& context, const Progress& progress,
-                 std::vector<std::string>& warnings) {
+Report build_one(const Job& job, const BuildOptions& o, const Context& context, MemoryGate& gate,
+                 const Progress& progress, std::vector<std::string>& warnings) {
     Stopwatch whole, stage;
     check_output(job.output, context.overwrite);
     const ReadImage read = read_with_warnings(job.input, read_options(o), warnings);
@@ -100,6 +102,10 @@ Report build_one(const Job& job, const BuildOptions& o, const Context& context, 
     const bool keep = alpha == AlphaUse::kKeep;
     BuildParams params = named_as_read(o.params);
     if (keep) keep_alpha(image, job.input, o.alpha == AlphaUse::kKeep, params, warnings);
+    const double bytes = build_memory(image, params);
+    check_memory(cat(job.input, ": a build of ", image.width, "x", image.height, " pixels"), bytes,
+                 context.max_memory);
+    const MemoryGate::Share share(gate, bytes);
     Mask mask = mask_of(image, job.input, alpha, o, warnings);
     const bool missing = !read.data.empty(), mask_is_data = missing && mask.empty();
     if (missing) mask = in_file(job.input, [&] { return in_both(mask, read.data); });
@@ -150,13 +156,17 @@ Report build_one(const Job& job, const BuildOptions& o, const Context& context, 
     return report;
 }
 
-Report run(const BuildOptions& o, Context& context) {
+Report run(const BuildOptions& given, Context& context) {
+    BuildOptions o = given;
+    o.read.limits.max_memory = context.max_memory;
+    o.read.limits.work_bytes = build_bytes_of_pixel(o.params);
     const std::vector<Job> jobs = plan_jobs(o);
     if (!fs::path(o.output).has_filename()) make_folder(o.output);
 
     std::vector<Report> images(jobs.size());
     std::vector<std::optional<Failure>> failures(jobs.size());
     std::vector<std::vector<std::string>> warnings(jobs.size());
+    MemoryGate gate(context.max_memory);
     JointProgress progress(jobs.size(), context.progress);
     parallel_blocks(0, static_cast<int>(jobs.size()), 1, [&](int begin, int) {
         const auto i = static_cast<std::size_t>(begin);
@@ -164,7 +174,7 @@ Report run(const BuildOptions& o, Context& context) {
             const auto show = [&](double fraction, std::string_view stage) {
                 progress.show(i, fraction, stage);
             };
-            images[i] = build_one(jobs[i], o, context, show, warnings[i]);
+            images[i] = build_one(jobs[i], o, context, gate, show, warnings[i]);
         } catch (...) {
             // A bad image does not stop the others.
             failures[i] = current_failure();

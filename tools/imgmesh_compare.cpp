@@ -13,6 +13,8 @@
 #include "libcore/metrics/error_image.h"
 #include "libcore/recon/draw_channels.h"
 #include "tools/common/container_input.h"
+#include "tools/common/limits.h"
+#include "tools/common/memory.h"
 #include "tools/common/names.h"
 #include "tools/common/options.h"
 #include "tools/common/output.h"
@@ -24,6 +26,10 @@ namespace fs = std::filesystem;
 using namespace imgmesh;
 
 namespace {
+
+// Measures of a container, and the comparison of two images, take this [bytes a pixel]; measured as in
+// docs/limits.md.
+constexpr double kQualityBytes = 34, kPairBytes = 28, kChannelBytes = 8;
 
 // Kodak photographs at 1 % vertices have an RMS of 4.5. Their usual errors are dark, visible ones bright.
 constexpr double kErrorRange = 20;
@@ -37,6 +43,7 @@ struct Options {
     std::optional<DrawMode> mode;
     std::optional<std::int64_t> level;
     ReadImageOptions read;
+    ContainerLimits limits;
     std::optional<double> tolerance;
     std::string error_image;
     std::optional<double> error_range;
@@ -53,7 +60,8 @@ void add_options(CLI::App& app, Options& o) {
     add_choice(app, "--mode", o.mode, mode_choices(), {"How a container is drawn", "map"});
     add_count(app, "--level", o.level, {0, std::numeric_limits<int>::max()},
               {"Level of a container's pyramid, 0 the finest", "0"});
-    add_read_options(app, o.read);
+    add_read_options(app, o.read, nullptr, true);
+    add_container_limits(app, o.limits);
     add_flag(
         app, "--values", [&o] { o.read.values = true; },
         "The files hold data, not colours: compare the channels that both have, in their own unit");
@@ -117,8 +125,14 @@ struct Input {
     Report report;
 };
 
-Input load_picture(const std::string& path, const Options& o, std::vector<std::string>& warnings) {
-    ReadImage read = read_with_warnings(path, o.read, warnings);
+Input load_picture(const std::string& path, const Options& o, Context& context) {
+    ReadImageOptions options = image_options(o.read, o.limits, context.max_memory);
+    options.limits.work_bytes = kPairBytes;
+    ReadImage read = read_with_warnings(path, options, context.warnings);
+    check_memory(cat(path, ": a comparison of ", read.image.width, "x", read.image.height, " pixels"),
+                 kProgramMemory + static_cast<double>(read.image.pixel_count()) *
+                                      (kChannelBytes * read.image.channels + kPairBytes),
+                 context.max_memory);
     const Report facts = read_report(read);
     Input input{{path}, hidden_outside(read.image, read.data), {}, {}};
     if (!o.read.values && !has_color(input.image))
@@ -133,9 +147,10 @@ Input load_picture(const std::string& path, const Options& o, std::vector<std::s
     return input;
 }
 
-Input load_container(const std::string& path, const Options& o) {
-    const Container container = read_container(path);
+Input load_container(const std::string& path, const Options& o, const Context& context) {
+    const Container container = read_container(path, container_limits(o.limits, context.max_memory));
     const MeshImage& m = container.mesh_image;
+    check_work(path, m, kQualityBytes + (o.inputs.size() == 2 ? kPairBytes : 0), context.max_memory);
     const auto index = static_cast<std::size_t>(o.level.value_or(0));
     check_level("--level", o.level.value_or(0), path, m);
     const Level& level = m.levels[index];
@@ -230,8 +245,8 @@ Report run(const Options& o, Context& context) {
     Report reports = Report::array();
     for (const std::string& path : o.inputs) {
         context.progress(0.3 * static_cast<double>(inputs.size()), "read");
-        inputs.push_back(is_container(path) ? load_container(path, o)
-                                            : load_picture(path, o, context.warnings));
+        inputs.push_back(is_container(path) ? load_container(path, o, context)
+                                            : load_picture(path, o, context));
         check_distinct(inputs.back().files, {o.error_image, o.plot});
         reports.push_back(inputs.back().report);
     }

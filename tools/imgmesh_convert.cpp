@@ -17,6 +17,7 @@
 #include "tools/common/container_input.h"
 #include "tools/common/in_file.h"
 #include "tools/common/limits.h"
+#include "tools/common/memory.h"
 #include "tools/common/names.h"
 #include "tools/common/options.h"
 #include "tools/common/output.h"
@@ -30,6 +31,9 @@ namespace fs = std::filesystem;
 using namespace imgmesh;
 
 namespace {
+
+// Reading and writing take this, beside the container itself [bytes a pixel]; measured as in docs/limits.md.
+constexpr double kTextureBytes = 46, kImageBytes = 34, kContainerBytes = 24, kTextBytes = 8;
 
 // More than a container can have; its own number is checked when it has been read.
 constexpr CountRange kLevelRange = {0, 1000};
@@ -145,6 +149,12 @@ void check_options(const Options& o) {
                                                      ", expected the finest first and each once"));
 }
 
+// Returns what making the output takes.
+double bytes_of_pixel(const Options& o) {
+    if (is_container(o.output)) return o.texture.wanted.value_or(false) ? kTextureBytes : kContainerBytes;
+    return lower_extension(o.output) == ".png" ? kImageBytes : kTextBytes;
+}
+
 void keep_levels(const Options& o, MeshImage& m, Texture& texture) {
     if (o.levels.empty()) return;
     std::vector<Level> kept;
@@ -176,9 +186,8 @@ Texture chosen_texture(const Options& o, MeshImage& m, Texture kept, Context& co
                         cat("--texture: ", o.input, " has no colour; --image names an image that has"));
         image = draw(m, 0, {});
     } else {
-        ReadImageOptions options = o.read;
+        ReadImageOptions options = image_options(o.read, o.limits, context.max_memory);
         options.channels.emplace();  // the colour and alpha
-        options.limits.max_pixels = o.limits.max_pixels;
         image = read_source_image(o.image, source, o.input, options, context.warnings);
     }
     Mask mask;
@@ -243,13 +252,14 @@ Report run(const Options& o, Context& context) {
     check_options(o);
     check_output(o.output, context.overwrite);
     context.progress(0, "read");
-    Container container = read_container(o.input, o.limits);
+    Container container = read_container(o.input, container_limits(o.limits, context.max_memory));
     MeshImage& m = container.mesh_image;
     check_distinct(container.facts.files, {o.output});
     if (o.texture.wanted.value_or(false) && !o.image.empty())
         check_distinct({o.image}, container_files(o.output));
     const int level = o.level.value_or(0);
     check_level("--level", level, o.input, m);
+    check_work(o.input, m, bytes_of_pixel(o), context.max_memory);
     context.progress(0.5, "write");
     ContainerOptions options;
     const auto outline = [&] { m = outline_mesh_image(m, level, *o.outline_tolerance, o.outline_side); };

@@ -8,6 +8,7 @@
 #include "libcore/image/color.h"
 #include "libcore/metrics/metrics.h"
 #include "tools/common/limits.h"
+#include "tools/common/memory.h"
 #include "tools/common/names.h"
 #include "tools/common/options.h"
 #include "tools/common/text.h"
@@ -16,6 +17,10 @@
 using namespace imgmesh;
 
 namespace {
+
+// Reading and measuring take this, beside the container itself [bytes a pixel]; measured as in
+// docs/limits.md.
+constexpr double kInfoBytes = 8;
 
 struct Options {
     std::string input;
@@ -120,7 +125,7 @@ Report place_report(const Place& place) {
 Report validate(const Options& o, Context& context) {
     std::map<Severity, std::uint64_t> counts;
     Report findings = Report::array();
-    for (const Issue& issue : validate_container(o.input, o.limits)) {
+    for (const Issue& issue : validate_container(o.input, container_limits(o.limits, context.max_memory))) {
         const Finding& finding = *issue.finding;
         ++counts[finding.severity];
         const bool fails = finding.severity == Severity::kError ||
@@ -143,7 +148,13 @@ Report validate(const Options& o, Context& context) {
 
 Report run(const Options& o, Context& context) {
     Report report = {{"input", o.input}};
-    report.update(o.validate ? validate(o, context) : facts_report(read_container(o.input, o.limits)));
+    if (o.validate) {
+        report.update(validate(o, context));
+        return report;
+    }
+    const Container container = read_container(o.input, container_limits(o.limits, context.max_memory));
+    check_work(o.input, container.mesh_image, kInfoBytes, context.max_memory);
+    report.update(facts_report(container));
     return report;
 }
 

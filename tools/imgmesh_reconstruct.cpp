@@ -13,6 +13,7 @@
 #include "libcore/recon/draw_channels.h"
 #include "tools/common/container_input.h"
 #include "tools/common/limits.h"
+#include "tools/common/memory.h"
 #include "tools/common/names.h"
 #include "tools/common/options.h"
 #include "tools/common/output.h"
@@ -22,6 +23,9 @@
 using namespace imgmesh;
 
 namespace {
+
+// Drawing and writing take this for each pixel drawn [bytes]; measured as in docs/limits.md.
+constexpr double kDrawBytes = 7, kDrawChannelBytes = 9;
 
 struct Options {
     std::string input;
@@ -86,6 +90,15 @@ void check_size(const SourceInfo& source, double scale) {
                         " pixels, more than ", limits.max_side, " a side or ", limits.max_pixels, " in all"));
 }
 
+// Returns what reading and drawing take [bytes].
+double draw_memory(const Options& o, const MeshImage& mesh_image, bool all_channels) {
+    const SourceInfo& source = mesh_image.source;
+    const auto channels = static_cast<double>(all_channels ? source.channel_names.size() : 3);
+    const double pixels = static_cast<double>(source.width) * source.height;
+    return container_memory(
+        mesh_image, pixels * o.draw.scale * o.draw.scale * (kDrawBytes + kDrawChannelBytes * channels));
+}
+
 // Returns whether all channels are written, not only the colour. Throws Error(kUnsupported) if there is no
 // colour to draw.
 bool writes_channels(const Options& o, const SourceInfo& source) {
@@ -110,7 +123,7 @@ Report run(const Options& o, Context& context) {
     check_output(o.output, context.overwrite);
 
     context.progress(0, "read");
-    const Container container = read_container(o.input, o.limits);
+    const Container container = read_container(o.input, container_limits(o.limits, context.max_memory));
     check_distinct(container.facts.files, {o.output});
     const MeshImage& mesh_image = container.mesh_image;
     const SourceInfo& source = mesh_image.source;
@@ -125,6 +138,9 @@ Report run(const Options& o, Context& context) {
         write_text(o.output, draw_svg(mesh_image, o.level, o.draw.mode), context.overwrite);
     } else {
         check_size(source, o.draw.scale);
+        check_memory(cat(o.input, ": a drawing of ", source.width * o.draw.scale, "x",
+                         source.height * o.draw.scale, " pixels"),
+                     draw_memory(o, mesh_image, all_channels), context.max_memory);
         const Image image =
             all_channels ? draw_channels(mesh_image, o.level, o.draw) : draw(mesh_image, o.level, o.draw);
         context.progress(0.8, "write");

@@ -16,6 +16,8 @@
 #include "tools/common/choices.h"
 #include "tools/common/container_input.h"
 #include "tools/common/help.h"
+#include "tools/common/limits.h"
+#include "tools/common/memory.h"
 #include "tools/common/options.h"
 #include "tools/common/output.h"
 #include "tools/common/read_options.h"
@@ -28,6 +30,10 @@ using namespace imgmesh;
 
 namespace {
 
+// Reading, segmenting and writing take this, beside the container itself [bytes a pixel]; measured as in
+// docs/limits.md.
+constexpr double kSegmentBytes = 66;
+
 struct Options {
     std::string input, output;
     SegmentParams params;
@@ -36,6 +42,7 @@ struct Options {
     int level = 0;
     std::string image, outlines, flat, ucm, report, mesh;
     ReadImageOptions read;
+    ContainerLimits limits;
 };
 
 Choices<DistanceRule> distance_choices() {
@@ -71,7 +78,8 @@ void add_options(CLI::App& app, Options& o) {
         in_group(add_file(app, "--image", o.image,
                           "Image itself, to measure and draw on instead of the reconstruction"),
                  files);
-    add_read_options(app, o.read, image);
+    add_read_options(app, o.read, image, true);
+    add_container_limits(app, o.limits);
     o.read.channels.emplace();  // the colour and alpha
     in_group(
         add_file(app, "--outlines", o.outlines, "Image to write with the regions' borders drawn over it"),
@@ -125,7 +133,8 @@ void check_options(const Options& o) {
 
 FeatureImage picture_of(const Options& o, const MeshImage& mesh_image, const Level& level, Context& context) {
     if (o.image.empty()) return reconstruct_luv(level);
-    return luv_image(read_source_image(o.image, mesh_image.source, o.input, o.read, context.warnings),
+    return luv_image(read_source_image(o.image, mesh_image.source, o.input,
+                                       image_options(o.read, o.limits, context.max_memory), context.warnings),
                      Range::kClipped);
 }
 
@@ -148,7 +157,7 @@ Report run(const Options& o, Context& context) {
     for (const std::string& output : outputs_of(o)) check_output(output, context.overwrite);
 
     context.progress(0, "read");
-    const Container container = read_container(o.input);
+    const Container container = read_container(o.input, container_limits(o.limits, context.max_memory));
     std::vector<std::string> inputs = container.facts.files;
     if (!o.image.empty()) inputs.push_back(o.image);
     check_distinct(inputs, outputs_of(o));
@@ -158,6 +167,7 @@ Report run(const Options& o, Context& context) {
     check_level("--level", o.level, o.input, mesh_image);
     const Level& level = mesh_image.levels[static_cast<std::size_t>(o.level)];
 
+    check_work(o.input, mesh_image, kSegmentBytes, context.max_memory);
     SegmentParams params = o.params;
     params.threshold = o.threshold.value_or(params.threshold);
     params.compactness = o.compactness.value_or(params.compactness);

@@ -19,6 +19,8 @@
 #include "libcore/warp/warp_mesh.h"
 #include "tools/common/choices.h"
 #include "tools/common/container_input.h"
+#include "tools/common/limits.h"
+#include "tools/common/memory.h"
 #include "tools/common/options.h"
 #include "tools/common/output.h"
 #include "tools/common/read_options.h"
@@ -30,10 +32,14 @@ using namespace imgmesh;
 
 namespace {
 
+// What warping takes [bytes a pixel]; measured as in docs/limits.md.
+constexpr double kFieldBytes = 24, kImageBytes = 17, kMapBytes = 26;
+
 struct Options {
     std::string input;
     std::string image;
     ReadImageOptions read;
+    ContainerLimits limits;
     std::string output;
     std::string displacement;
     std::string edits;
@@ -84,7 +90,8 @@ OutputSize parse_size(const std::string& name, const std::string& text) {
 void add_options(CLI::App& app, Options& o) {
     add_input(app, "CONTAINER", o.input, "Container to read (.glb, .gltf)");
     CLI::Option* const image = add_file(app, "--image", o.image, "Image that the container was made from");
-    add_read_options(app, o.read, image);
+    add_read_options(app, o.read, image, true);
+    add_container_limits(app, o.limits);
     add_file(app, "-o,--output", o.output,
              "Edited image to write (.png, .exr, .tif, ...), or edited container (.glb, .gltf)");
     add_file(app, "--displacement", o.displacement,
@@ -147,6 +154,17 @@ std::vector<VertexMoves> solve(const MeshImage& mesh_image, const WarpEdits& edi
     return solve_edits(mesh_image, edits);
 }
 
+// Returns what reading, the field of moves, and drawing and writing take [bytes].
+double warp_memory(const Options& o, const MeshImage& mesh_image) {
+    const SourceInfo& source = mesh_image.source;
+    const double pixels = static_cast<double>(source.width) * source.height;
+    const double drawn = o.size.width > 0 ? static_cast<double>(o.size.width) * o.size.height : pixels;
+    double bytes = pixels * kFieldBytes;
+    if (!o.image.empty()) bytes += (pixels + drawn) * kImageBytes;
+    if (!o.displacement.empty()) bytes += drawn * kMapBytes;
+    return container_memory(mesh_image, bytes);
+}
+
 std::int64_t moved_vertices(const std::vector<VertexMoves>& moves) {
     std::int64_t count = 0;
     for (const VertexMoves& level : moves)
@@ -177,7 +195,7 @@ Report run(const Options& o, Context& context) {
 
     context.progress(0, "read");
     const WarpEdits edits = all_edits(o);
-    const Container container = read_container(o.input);
+    const Container container = read_container(o.input, container_limits(o.limits, context.max_memory));
     const MeshImage& mesh_image = container.mesh_image;
     const SourceInfo& source = mesh_image.source;
     std::vector<std::string> read = container.facts.files;
@@ -185,8 +203,12 @@ Report run(const Options& o, Context& context) {
         if (!path.empty()) read.push_back(path);
     check_distinct(read, written_files(o));
     check_separate(written_files(o));
+    check_memory(cat(o.input, ": warping ", source.width, "x", source.height, " pixels"),
+                 warp_memory(o, mesh_image), context.max_memory);
     std::optional<Image> image;
-    if (!o.image.empty()) image = read_source_image(o.image, source, o.input, o.read, context.warnings);
+    if (!o.image.empty())
+        image = read_source_image(o.image, source, o.input,
+                                  image_options(o.read, o.limits, context.max_memory), context.warnings);
 
     context.progress(0.3, "solve");
     const std::vector<VertexMoves> moves = solve(mesh_image, edits, o);

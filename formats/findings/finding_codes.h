@@ -33,6 +33,7 @@ inline constexpr Finding kFindings[] = {
     {"limits.pixels", "the image, or all levels together, are larger than the limit"},
     {"limits.faces", "a mesh has more faces than the limit, or than its image can have"},
     {"limits.levels", "more levels than the limit, or none"},
+    {"limits.memory", "the levels take more memory than the limit"},
     {"limits.json", "the JSON is longer than 64 MiB, or has more than 262,144 values"},
     {"glb.header", "not a glTF 2.0 binary header"},
     {"glb.length", "the length in the header is not the file's"},

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 
 namespace imgmesh {
 
@@ -14,6 +15,8 @@ struct ContainerLimits {
     std::int64_t max_faces = std::int64_t{1} << 28;  ///< of each level
     int max_levels = 32;                             ///< of the pyramid
     int max_json_depth = 64;                         ///< of objects and arrays in each other
+    /// Of the maps and meshes of all levels [bytes]. The files' own bytes and what is drawn come on top.
+    std::uint64_t max_memory = std::numeric_limits<std::uint64_t>::max();
 };
 
 }  // namespace imgmesh

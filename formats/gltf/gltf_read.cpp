@@ -17,6 +17,8 @@
 #include "formats/gltf/gltf_names.h"
 #include "formats/gltf/gltf_texture.h"
 #include "libcore/base/error.h"
+#include "libcore/image/feature_space.h"
+#include "libcore/mesh/pixel_map.h"
 
 namespace imgmesh {
 namespace {
@@ -249,6 +251,9 @@ void read_levels(const json& document, const tinygltf::Model& model, const Conta
     if (pixels * parts.size() > static_cast<std::uint64_t>(limits.max_pixels))
         refuse("limits.pixels", cat(parts.size(), " levels of ", asset.source.width, "x", asset.source.height,
                                     " pixels, at most ", limits.max_pixels, " in all"));
+    const int features = split_names(asset.source.channel_names).features();
+    const double vertex_bytes = sizeof(Vec2f) + sizeof(float) * static_cast<double>(features);
+    double memory = 0;
     for (std::size_t k = 0; k < parts.size(); ++k) {
         const auto part =
             std::find_if(parts.begin(), parts.end(), [&](const auto& p) { return p.first == level_name(k); });
@@ -270,9 +275,15 @@ void read_levels(const json& document, const tinygltf::Model& model, const Conta
             asset.texture = view_range(model, texture->view, asset.buffer_length);
             asset.texture_type = texture->type;
         });
+        const double mesh_bytes = static_cast<double>(level.faces) * sizeof(std::array<Id, 3>) +
+                                  static_cast<double>(level.vertices) * vertex_bytes;
+        memory += static_cast<double>(pixels) * sizeof(PixelCoord) + mesh_bytes;
         asset.levels.push_back(std::move(level));
         asset.places.push_back({node, static_cast<std::uint64_t>(std::max(mesh, 0)), at_mesh});
     }
+    if (memory > static_cast<double>(limits.max_memory))
+        refuse("limits.memory", cat("the levels take ", static_cast<std::uint64_t>(memory),
+                                    " bytes of memory, at most ", limits.max_memory, " are to be taken"));
 }
 
 void read_layers_member(const json& layers, const tinygltf::Model& model, Asset& asset) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -18,6 +19,9 @@ struct ImageLimits {
     std::int64_t max_pixels = std::int64_t{1} << 28;  ///< 268 megapixels
     int max_side = 65535;
     int max_channels = 64;
+    /// Of the samples, as stored and as floats, and of what the caller does with the image [bytes].
+    std::uint64_t max_memory = std::numeric_limits<std::uint64_t>::max();
+    double work_bytes = 0;  ///< what the caller's work takes for each pixel beside 8 for each channel; >= 0
 };
 
 /// What becomes of samples that are infinite or no number.

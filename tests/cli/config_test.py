@@ -81,6 +81,12 @@ class Config(CliCase):
 
     def test_too_long(self):
         self.assert_error("imgmesh-build", ["in.png", "-o", "out.glb", "--config", "/dev/zero"], 2, "/dev/zero", "1048576")
+        longest = 1 << 20
+        text = "faces = 40\n#"
+        self.config(text + "x" * (longest - len(text)))
+        self.run_ok("imgmesh-build", "in.png", "-o", "out.glb", "-q", "--config", "c.toml")
+        (self.folder / "out.glb").unlink()
+        self.refused(text + "x" * (longest + 1 - len(text)), "c.toml", "1048576")
 
     def test_given_twice(self):
         self.refused('faces = 40\ndraco = "none"\nfaces = 50\n', "c.toml:3", "'faces'")

@@ -149,6 +149,7 @@ void add_gltf_cases(std::map<std::string, Case>& cases) {
 
 void add_extension_cases(std::map<std::string, Case>& cases) {
     cases["limits.pixels"] = limited("--max-pixels 8");
+    cases["limits.memory"] = limited("--max-memory 100");
     cases["limits.faces"] = json_case([](json& d) { level(d, 0)["faces"] = 19; });
     cases["limits.levels"] = json_case([](json& d) { d["nodes"][0].erase("extensions"); });
     cases["ext.missing"] = json_case([](json& d) { d.erase("extensions"); });

@@ -222,6 +222,8 @@ TEST_CASE("refusals: bytes, chunks, depth and limits") {
     CHECK(limits([](ContainerLimits& l) { l.max_pixels = 600; }) == "");
     CHECK(limits([](ContainerLimits& l) { l.max_pixels = 599; }) == "limits.pixels");  // of two levels
     CHECK(limits([](ContainerLimits& l) { l.max_pixels = 299; }) == "limits.pixels");
+    CHECK(limits([](ContainerLimits& l) { l.max_memory = 1'000'000; }) == "");
+    CHECK(limits([](ContainerLimits& l) { l.max_memory = 2 * 300 * 12; }) == "limits.memory");
     CHECK(limits([](ContainerLimits& l) { l.max_faces = 20; }) == "limits.faces");
     CHECK(limits([](ContainerLimits& l) { l.max_levels = 1; }) == "limits.levels");
     CHECK(limits([](ContainerLimits& l) { l.max_json_depth = 3; }) == "json.depth");

@@ -20,4 +20,16 @@ void add_container_limits(CLI::App& app, ContainerLimits& limits) {
     add("--max-json-depth", limits.max_json_depth, 1000, "Refuse JSON that is nested deeper");
 }
 
+ContainerLimits container_limits(ContainerLimits limits, std::uint64_t max_memory) {
+    limits.max_memory = max_memory;
+    return limits;
+}
+
+ReadImageOptions image_options(ReadImageOptions read, const ContainerLimits& limits,
+                               std::uint64_t max_memory) {
+    if (limits.max_pixels != ContainerLimits().max_pixels) read.limits.max_pixels = limits.max_pixels;
+    read.limits.max_memory = max_memory;
+    return read;
+}
+
 }  // namespace imgmesh

@@ -20,6 +20,7 @@
 #include "tools/common/config_file.h"
 #include "tools/common/help.h"
 #include "tools/common/huge_pages.h"
+#include "tools/common/memory.h"
 #include "tools/common/options.h"
 #include "tools/common/progress_bar.h"
 #include "tools/common/text.h"
@@ -51,6 +52,7 @@ struct CommonOptions {
     bool quiet = false;
     bool overwrite = true;
     std::optional<int> threads;  // none: all
+    std::optional<std::uint64_t> max_memory;
 };
 
 std::string exit_code_table() {
@@ -74,6 +76,13 @@ void add_common_options(CLI::App& app, CommonOptions& common) {
     in_group(add_count(app, "--threads", common.threads, {1, kMaxThreads},
                        {"Largest number of threads; results are the same for any number", "all"}),
              group);
+    const auto memory = [&common](const std::string& text) {
+        common.max_memory = parse_memory("--max-memory", text);
+    };
+    advanced(app, in_group(add_value(app, "--max-memory", "SIZE", memory,
+                                     {"Refuse work that is estimated to take more memory, as in 2G",
+                                      "three quarters of what there is"}),
+                           "Limits"));
     in_group(add_config_option(app), group);
     app.footer(exit_code_table());
 }
@@ -129,6 +138,7 @@ ExitCode run_parsed(const Tool& tool, const CommonOptions& common) {
     Context context;
     context.generator = tool.name + " " IMGMESH_VERSION;
     context.overwrite = common.overwrite;
+    context.max_memory = common.max_memory.value_or(usual_max_memory());
     ProgressBar bar(!common.quiet && ::isatty(STDERR_FILENO));
     context.progress = [&bar](double fraction, std::string_view stage) { bar.show(fraction, stage); };
 

@@ -1,6 +1,7 @@
 // The frame of every command line tool: common options, errors, exit codes, the report.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <iosfwd>
 #include <nlohmann/json_fwd.hpp>
@@ -31,9 +32,10 @@ Failure current_failure();
 
 /// What a run gets besides its tool's own options.
 struct Context {
-    std::string generator;  ///< "imgmesh-build 0.1.0"
-    bool overwrite = true;  ///< of --overwrite, --no-overwrite
-    Progress progress;      ///< never empty; may be called from any thread
+    std::string generator;         ///< "imgmesh-build 0.1.0"
+    bool overwrite = true;         ///< of --overwrite, --no-overwrite
+    std::uint64_t max_memory = 0;  ///< of --max-memory [bytes]
+    Progress progress;             ///< never empty; may be called from any thread
     /// What did not stop the run, but what its user should know, with the file's name. Each becomes a warning
     /// line and an element of the report's "warnings".
     std::vector<std::string> warnings;

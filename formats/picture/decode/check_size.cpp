@@ -1,3 +1,6 @@
+#include <algorithm>
+#include <cmath>
+
 #include "formats/picture/decode/picture_probe.h"
 #include "libcore/base/error.h"
 
@@ -6,6 +9,12 @@ namespace {
 
 Error broken(const std::string& path, const std::string& what) {
     return Error(ErrorKind::kBadFile, cat(path, ": ", what));
+}
+
+// Rounded up for what is needed and for what may be taken alike.
+std::string megabytes(double bytes) {
+    constexpr double kMost = 1e18;  // no limit
+    return cat(static_cast<std::int64_t>(std::ceil(std::min(bytes, kMost) / 1e6)), " MB");
 }
 
 }  // namespace
@@ -27,6 +36,20 @@ void check_size(const std::string& path, std::int64_t width, std::int64_t height
     if (width * height * channels > 4 * limits.max_pixels)
         throw broken(path, cat("the image is ", width, "x", height, " with ", channels, " channels, at most ",
                                4 * limits.max_pixels, " samples are read"));
+    constexpr double kSampleBytes = 8;
+    const double bytes = static_cast<double>(width * height) *
+                         (kSampleBytes * static_cast<double>(channels) + limits.work_bytes);
+    if (bytes > static_cast<double>(limits.max_memory))
+        throw broken(
+            path, cat("the image is ", width, "x", height, " with ", channels, " channels, for which about ",
+                      megabytes(bytes), " of memory are needed, at most ",
+                      megabytes(static_cast<double>(limits.max_memory)), " may be taken"));
+}
+
+void check_block_size(const std::string& path, std::int64_t width, std::int64_t height, std::int64_t channels,
+                      ImageLimits limits) {
+    limits.work_bytes = 0;
+    check_size(path, width, height, channels, limits);
 }
 
 }  // namespace imgmesh

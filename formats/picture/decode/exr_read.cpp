@@ -57,7 +57,7 @@ void check_part(const std::string& path, const Imf::Header& header, std::int64_t
                                              " pixels, more than imgmesh reads"));
     if (header.hasTileDescription()) {
         const Imf::TileDescription& tile = header.tileDescription();
-        check_size(path, tile.xSize, tile.ySize, channels, limits);
+        check_block_size(path, tile.xSize, tile.ySize, channels, limits);
         const std::int64_t row = (width + tile.xSize) * tile.ySize;
         if (row > limits.max_pixels)
             throw Error(ErrorKind::kBadFile, cat(path, ": a row of the EXR's tiles has ", row,

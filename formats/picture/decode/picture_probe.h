@@ -25,8 +25,12 @@ struct PictureClaim {
 /// imgmesh knows by name alone.
 PictureClaim probe_picture(const std::string& path, std::span<const std::uint8_t> bytes);
 
-/// Throws Error(kBadFile) if the size is not positive or over the limits.
+/// Throws Error(kBadFile) if the size is not positive or over the limits, that of memory included.
 void check_size(const std::string& path, std::int64_t width, std::int64_t height, std::int64_t channels,
                 const ImageLimits& limits);
+
+/// check_size() of a tile, with which the caller does no work.
+void check_block_size(const std::string& path, std::int64_t width, std::int64_t height, std::int64_t channels,
+                      ImageLimits limits);
 
 }  // namespace imgmesh

@@ -205,7 +205,7 @@ void set_blocks(const TiffFile& file, TiffLayout& layout, const ImageLimits& lim
     }
     layout.block_width = file.tag<std::uint32_t>(TIFFTAG_TILEWIDTH, 0);
     layout.block_height = file.tag<std::uint32_t>(TIFFTAG_TILELENGTH, 0);
-    check_size(file.path(), layout.block_width, layout.block_height, layout.samples, limits);
+    check_block_size(file.path(), layout.block_width, layout.block_height, layout.samples, limits);
     // A small image may lie in one large tile, but not in one for whose sake memory runs out.
     constexpr std::int64_t kLargeTile = std::int64_t{1} << 22;
     if (layout.block_width * layout.block_height > std::max(kLargeTile, 4 * layout.width * layout.height))

@@ -52,7 +52,8 @@ void check_spec(const std::string& path, const OIIO::ImageSpec& spec, const Imag
         throw Error(ErrorKind::kUnsupported, cat(path, ": deep and volume images are not supported"));
     check_size(path, spec.width, spec.height, spec.nchannels, limits);
     // One tile is held at a time.
-    if (spec.tile_width > 0) check_size(path, spec.tile_width, spec.tile_height, spec.nchannels, limits);
+    if (spec.tile_width > 0)
+        check_block_size(path, spec.tile_width, spec.tile_height, spec.nchannels, limits);
 }
 
 // Some readers call the fourth channel alpha by name only, and GIF's counts it wrongly.
