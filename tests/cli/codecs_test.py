@@ -8,6 +8,7 @@ import signal
 import stat
 import struct
 import subprocess
+import sys
 import threading
 import time
 
@@ -160,8 +161,8 @@ class Survival(CliCase):
         self.assert_error_lines("imgmesh-build", result, 3, 1)
 
 
-class NothingForeign(CliCase):
-    """Which program is started, with what, and what it loads."""
+class Installed(CliCase):
+    """A tool with another program of codecs than its own."""
 
     def setUp(self):
         super().setUp()
@@ -180,6 +181,10 @@ class NothingForeign(CliCase):
     def run_installed(self, *args, **kwargs):
         return subprocess.run([self.folder / "bin/imgmesh-build", *args, "-o", "x.glb", "-q"], cwd=self.folder,
                               capture_output=True, text=True, check=False, **kwargs)
+
+
+class NothingForeign(Installed):
+    """Which program is started, with what, and what it loads."""
 
     def test_started_for_its_formats_alone_and_beside_the_tool(self):
         self.install(f"echo run >> {self.folder}/mark; echo 'no such library: libx.so' >&2; exit 127")
@@ -229,11 +234,80 @@ class NothingForeign(CliCase):
         self.run_ok("imgmesh-reconstruct", "a.glb", "-o", "b.bmp", "-q", env=env)
         self.assertEqual(list(self.folder.rglob("*.loaded")), [])
 
+    def test_a_start_that_fails_by_a_signal_is_tried_again(self):
+        """Somebody, or a system without memory, ends the program before it has taken any job."""
+        self.install(f'echo run >> {self.folder}/mark; test "$(wc -l < {self.folder}/mark)" = 3 || kill -ABRT $$; '
+                     f"exec {CODECS}")
+        self.assertEqual(self.run_installed("a.gif").returncode, 0)
+        self.install(f"echo run >> {self.folder}/mark; echo 'no memory' >&2; kill -ABRT $$")
+        (self.folder / "mark").unlink()
+        result = self.run_installed("a.gif")
+        self.assertEqual(result.returncode, 5)
+        self.assertEqual(result.stderr, "imgmesh-build: error: cannot start imgmesh-codecs: no memory\n")
+        self.assertEqual((self.folder / "mark").read_text(), "run\n" * 3)
+
     def test_not_for_people(self):
         result = subprocess.run([CODECS], capture_output=True, text=True, check=False, close_fds=True)
         self.assertEqual(result.returncode, 2)
         self.assertIn("a part of imgmesh", result.stderr)
         self.assertTrue(CODECS.stat().st_mode & stat.S_IXUSR)
+
+
+# A program that takes one job and answers with what it is told to, whatever that means.
+LIAR = """
+import array, os, socket, struct, sys, time
+server = socket.socket(fileno=3)
+message, files, _, _ = server.recvmsg(4096, 4096)
+numbers = array.array("i", files[0][2][:8])
+job = socket.socket(fileno=numbers[0])
+def reply(kind, code=0, sample_type=0, size=(0, 0, 0), header=0, data=0, text=b"", magic=0x48434D49):
+    try:
+        job.send(struct.pack("<IIiIqqqQQ8192s", magic, kind, code, sample_type, *size, header, data, text))
+    except OSError:
+        sys.exit()  # nobody listens any more
+STARTED, OFFER, DONE, ERROR, NO_MEMORY, DIED = range(6)
+"""
+
+
+class Liar(Installed):
+    """What the program says is checked, as what a file says is."""
+
+    def answer(self, script):
+        self.install(f"exec {sys.executable} -I -c '{LIAR}{script}'")
+        return self.run_installed("a.gif")
+
+    def test_answers_that_make_no_sense(self):
+        started = "reply(STARTED); "
+        for script, code, words in (
+                ("reply(STARTED, magic=7)", 4, "wrong answer"),
+                ("reply(DONE)", 4, "wrong answer"),
+                ("job.send(b\"short\"); time.sleep(1)", 5, "cannot start"),
+                (started + "reply(DONE)", 4, "gave no image"),
+                (started + "reply(9)", 4, "wrong answer"),
+                (started, 4, "was ended"),
+                (started + "reply(NO_MEMORY)", 4, "too much memory"),
+                (started + "reply(DIED, 11)", 4, "signal 11"),
+                (started + f"reply(DIED, {int(signal.SIGXCPU)})", 4, "took too long"),
+                (started + "reply(ERROR, 99, text=b\"x\")", 4, "wrong answer"),
+                (started + "reply(ERROR, 3, text=b\"\\033[31m\\n\" + b\"y\" * 8185)", 4, "yyy"),
+                # Sizes beyond all limits, of no image, and of fewer or more bytes than its pixels.
+                (started + "reply(OFFER, size=(60000, 60000, 3), header=9, data=3 * 60000**2)", 4, "60000x60000"),
+                (started + "reply(OFFER, size=(-1, 20, 3), header=9, data=0)", 4, "-1x20"),
+                (started + "reply(OFFER, size=(30, 20, 3), header=9, data=1799)", 4, "wrong answer"),
+                (started + "reply(OFFER, sample_type=77, size=(30, 20, 3), header=9, data=1800)", 4, "wrong answer"),
+                (started + "reply(OFFER, size=(30, 20, 3), header=1 << 40, data=1800)", 4, "wrong answer"),
+                # The header, which stays empty, names no channels.
+                (started + "reply(OFFER, size=(30, 20, 3), header=9, data=1800); job.recv(9); reply(DONE)", 4,
+                 "wrong answer"),
+                (started + "reply(OFFER, size=(30, 20, 3), header=9, data=1800); job.recv(9); reply(OFFER)", 4,
+                 "wrong answer")):
+            with self.subTest(script):
+                result = self.answer(script)
+                self.assertEqual(result.returncode, code, result.stderr)
+                self.assertEqual(result.stderr.count("\n"), 1, result.stderr)
+                self.assertTrue(result.stderr[:-1].isprintable(), result.stderr)
+                self.assertIn(words, result.stderr)
+                self.assertFalse((self.folder / "x.glb").exists())
 
 
 if __name__ == "__main__":

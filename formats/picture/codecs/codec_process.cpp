@@ -20,8 +20,9 @@ constexpr seconds kToStart{120};
 constexpr seconds kToOffer{1200};
 constexpr seconds kToFinish{4 * 3600};
 
-// A program that ends by itself, having nothing to do, may do so in the moment of a new job. More often it
-// cannot be accident.
+// A program that ends by itself, having nothing to do, may do so in the moment of a new job, and one may be
+// ended from outside: no image gets near it, jobs are processes of their own. More often it cannot be
+// accident.
 constexpr int kMostStarts = 3;
 
 // Names, profiles and warnings; and what no image within any limits takes.
@@ -110,11 +111,12 @@ JobResult CodecProcess::run(const JobName& name, CodecJob job, const SharedMemor
             break;
         }
         forget(running);
-        const std::string reason =
-            received == Received::kTimeout ? "it does not answer" : running->reason_of_end();
-        if (!reason.empty() || start == kMostStarts)
+        const CodecServer::End end = received == Received::kTimeout
+                                         ? CodecServer::End{.reason = "it does not answer"}
+                                         : running->end();
+        if ((!end.reason.empty() && !end.by_signal) || start == kMostStarts)
             throw Error(ErrorKind::kUnsupported,
-                        cat("cannot start imgmesh-codecs: ", reason.empty() ? "it ends" : reason));
+                        cat("cannot start imgmesh-codecs: ", end.reason.empty() ? "it ends" : end.reason));
     }
 
     JobResult result;

@@ -120,15 +120,16 @@ int CodecServer::reap() {
     return status;
 }
 
-std::string CodecServer::reason_of_end() {
+CodecServer::End CodecServer::end() {
     if (!is_ours()) return {};
     const int status = reap();
     if (status == 0) return {};
+    const bool by_signal = WIFSIGNALED(status);
     std::array<char, 400> text{};
     const ssize_t n = complaints_ ? ::pread(complaints_.get(), text.data(), text.size() - 1, 0) : 0;
-    if (n > 0) return one_line(std::string(text.data(), static_cast<std::size_t>(n)));
-    if (WIFSIGNALED(status)) return cat("ended by signal ", WTERMSIG(status));
-    return cat("exit code ", WEXITSTATUS(status));
+    if (n > 0) return {one_line(std::string(text.data(), static_cast<std::size_t>(n))), by_signal};
+    return {by_signal ? cat("ended by signal ", WTERMSIG(status)) : cat("exit code ", WEXITSTATUS(status)),
+            by_signal};
 }
 
 }  // namespace imgmesh

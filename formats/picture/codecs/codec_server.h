@@ -22,9 +22,13 @@ class CodecServer {
     int socket() const { return socket_.get(); }
     /// Whether this process has started it, and is not a copy of the one that has.
     bool is_ours() const;
-    /// Waits for the end of a program that has closed its socket. Returns why it did not start, in one line;
-    /// empty if it ended in good order.
-    std::string reason_of_end();
+    /// Why a program has ended.
+    struct End {
+        std::string reason;      ///< in one line; empty if it ended in good order
+        bool by_signal = false;  ///< from outside, or a crash: another start may go better
+    };
+    /// Waits for the end of a program that has closed its socket.
+    End end();
 
   private:
     int reap();

@@ -16,6 +16,7 @@
 #include <csignal>
 #include <cstdio>
 #include <ctime>
+#include <exception>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -55,11 +56,30 @@ void set_up_process() {
     ::sigemptyset(&child);
     ::sigaddset(&child, SIGCHLD);
     ::sigprocmask(SIG_BLOCK, &child, nullptr);
+}
+
+// What libraries say of images is not for people. Only now: of what ends this program before, imgmesh tells.
+void be_silent() {
 #ifndef IMGMESH_SANITIZED  // which writes there what it has found
     const int nowhere = ::open("/dev/null", O_WRONLY | O_CLOEXEC);
     ::dup2(nowhere, STDERR_FILENO);
     ::close(nowhere);
 #endif
+}
+
+// Whether another thread than this one is at work. Threads may end while their folder is read, so none of the
+// steps may throw: the operator ++ of an iterator would.
+bool other_threads_work() {
+    std::error_code failed;
+    std::filesystem::directory_iterator thread("/proc/self/task", failed);
+    if (failed) return false;  // nobody knows
+    for (; !failed && thread != std::filesystem::directory_iterator(); thread.increment(failed)) {
+        if (thread->path().filename() == std::to_string(::getpid())) continue;
+        std::ifstream file(thread->path() / "stat");
+        const std::string text{std::istreambuf_iterator<char>(file), {}};
+        if (text.find(") S ") == std::string::npos) return true;
+    }
+    return bool(failed);
 }
 
 // Waits until all other threads sleep. A library's threads have nothing to do, and OpenImageIO's pool has
@@ -69,15 +89,7 @@ void wait_for_threads() {
     constexpr int kSteps = 1000;
     constexpr struct timespec kStep = {0, 1000000};
     for (int step = 0; step < kSteps; ++step) {
-        std::error_code failed;
-        bool busy = false;
-        for (const auto& thread : std::filesystem::directory_iterator("/proc/self/task", failed)) {
-            if (thread.path().filename() == std::to_string(::getpid())) continue;
-            std::ifstream file(thread.path() / "stat");
-            const std::string text{std::istreambuf_iterator<char>(file), {}};
-            busy = busy || text.find(") S ") == std::string::npos;
-        }
-        if (!busy) return;
+        if (!other_threads_work()) return;
         ::nanosleep(&kStep, nullptr);
     }
 }
@@ -175,7 +187,13 @@ int main() {
         return 2;
     }
     set_up_process();
-    prepare_oiio();
-    wait_for_threads();
+    try {
+        prepare_oiio();
+        wait_for_threads();
+    } catch (const std::exception& error) {  // no memory, or no further thread
+        std::fprintf(stderr, "%s\n", error.what());
+        return 1;
+    }
+    be_silent();
     Server().serve();
 }
