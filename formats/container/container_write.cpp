@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <array>
+#include <deque>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -41,8 +42,8 @@ void check_writable(const MeshImage& image, const Texture& texture) {
         throw Error(ErrorKind::kInternal, "cannot store the mesh image: its parts do not fit each other");
 }
 
-// Stores the mesh of `level` in `buffer` and rewrites `map` for the mesh that a reader will get. `coords` are
-// those of its texture; empty if there is none.
+// Stores the mesh of `level` in `buffer`. Draco's coder changes it: for the mesh that a reader will get,
+// `map` is then a rewritten copy of the level's. `coords` are those of its texture; empty if there is none.
 AssetLevel store_level(const Level& level, const StoredLayout& layout, std::span<const Vec2f> coords,
                        DracoMode mode, std::vector<std::uint8_t>& buffer, PixelMap& map) {
     StoredMesh mesh = stored_from_base(level.mesh, layout);
@@ -61,6 +62,7 @@ AssetLevel store_level(const Level& level, const StoredLayout& layout, std::span
         DracoMesh draco = encode_draco_mesh(mesh, mode);
         out.is_draco = true;
         out.draco = append_values(buffer, draco.bytes);
+        map = level.map;
         remap_pixels(match_faces(mesh, draco.decoded), map);
         mesh = std::move(draco.decoded);
     }
@@ -118,7 +120,8 @@ void write_gltf(const std::string& path, Asset& asset, const std::vector<std::ui
     switch_over.emplace();
     bin.place();
     if (exr) exr->place();
-    gltf.commit();
+    gltf.place();  // at once, among whatever files: its companions are in their place
+    gltf.keep();
     bin.keep();
     if (exr) exr->keep();
     for (const std::string& file : old_files) {
@@ -165,15 +168,19 @@ void write_container(const std::string& path, const MeshImage& mesh_image, const
     asset.generator = mesh_image.generator;
     asset.parameters = mesh_image.parameters;
     std::vector<std::uint8_t> buffer;
-    std::vector<LayerPart> parts;
+    std::vector<LayerView> parts;
+    std::deque<PixelMap> rewritten;
     const Texture& texture = options.texture;
     for (const Level& level : mesh_image.levels) {
-        parts.push_back({level_name(parts.size()), level.map, {}, {}});
         std::span<const Vec2f> coords;
         if (!texture.picture.empty()) coords = texture.coords[asset.levels.size()];
+        PixelMap& map = rewritten.emplace_back();
         asset.levels.push_back(
-            store_level(level, layout_of(asset.source), coords, options.draco, buffer, parts.back().map));
-        parts.back().topology = asset.levels.back().topology;
+            store_level(level, layout_of(asset.source), coords, options.draco, buffer, map));
+        parts.push_back({level_name(parts.size()),
+                         options.draco == DracoMode::kOff ? &level.map : &map,
+                         {},
+                         asset.levels.back().topology});
     }
     parts.front().visits = mesh_image.visits;
     if (!texture.picture.empty()) {

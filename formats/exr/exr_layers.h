@@ -20,9 +20,18 @@ struct LayerPart {
     std::string topology;    ///< hash of the map's mesh; empty if the file has none
 };
 
+/// A part to encode, whose pixels lie elsewhere.
+struct LayerView {
+    std::string name;
+    const PixelMap* map;
+    std::span<const Id> visits;
+    std::string topology;
+};
+
 /// Encodes parts of one size: scanlines, ZIP, channels face.id (UINT), bary.u and bary.v (HALF or FLOAT by
 /// map.precision) and visit.count (UINT). The same parts give the same bytes. Throws Error(kInternal) for a
 /// weight off the grid of its precision or outside the simplex, which would not survive.
+std::vector<std::uint8_t> encode_exr_layers(const std::vector<LayerView>& parts);
 std::vector<std::uint8_t> encode_exr_layers(const std::vector<LayerPart>& parts);
 
 /// What a reader knows about the EXR before it opens it.

@@ -68,14 +68,14 @@ class ExrFile {
     exr_context_t context_ = nullptr;
 };
 
-bool has_halves(const LayerPart& part) {
-    return part.map.precision == WeightPrecision::kHalf;
+bool has_halves(const LayerView& part) {
+    return part.map->precision == WeightPrecision::kHalf;
 }
 
-void add_part(exr_context_t file, const LayerPart& part) {
+void add_part(exr_context_t file, const LayerView& part) {
     int index = 0;
     check(exr_add_part(file, part.name.c_str(), EXR_STORAGE_SCANLINE, &index));
-    check(exr_initialize_required_attr_simple(file, index, part.map.width, part.map.height,
+    check(exr_initialize_required_attr_simple(file, index, part.map->width, part.map->height,
                                               EXR_COMPRESSION_ZIP));
     check(exr_attr_set_string(file, index, kVersionName, kLayersVersion));
     if (!part.topology.empty()) check(exr_attr_set_string(file, index, kTopologyName, part.topology.c_str()));
@@ -96,14 +96,14 @@ void put(std::uint8_t*& out, T value) {
 }
 
 // Puts the rows [first, last) in a block's order: row by row, in each row channel by channel, sorted by name.
-void fill_block(const LayerPart& part, int first, int last, Bytes& block) {
+void fill_block(const LayerView& part, int first, int last, Bytes& block) {
     const bool halves = has_halves(part);
-    const auto width = static_cast<std::size_t>(part.map.width);
+    const auto width = static_cast<std::size_t>(part.map->width);
     const std::size_t pixel_bytes = (halves ? 4 : 8) + 4 + (part.visits.empty() ? 0 : 4);
     block.resize(width * static_cast<std::size_t>(last - first) * pixel_bytes);
     std::uint8_t* out = block.data();
     for (int y = first; y < last; ++y) {
-        const std::span<const PixelCoord> row = part.map.row(y);
+        const std::span<const PixelCoord> row = part.map->row(y);
         const auto weights = [&](float PixelCoord::*weight) {
             if (halves)
                 for (const PixelCoord& c : row) put(out, half(c.*weight).bits());
@@ -120,8 +120,8 @@ void fill_block(const LayerPart& part, int first, int last, Bytes& block) {
     }
 }
 
-void write_part(exr_context_t file, int index, const LayerPart& part) {
-    const int height = part.map.height, blocks = (height + kBlockRows - 1) / kBlockRows;
+void write_part(exr_context_t file, int index, const LayerView& part) {
+    const int height = part.map->height, blocks = (height + kBlockRows - 1) / kBlockRows;
     std::array<Bytes, kGroupBlocks> packed;
     for (int group = 0; group < blocks; group += kGroupBlocks) {
         const int end = std::min(blocks, group + kGroupBlocks);
@@ -140,12 +140,12 @@ void write_part(exr_context_t file, int index, const LayerPart& part) {
     }
 }
 
-void check_writable(const LayerPart& part) {
+void check_writable(const LayerView& part) {
     const float step = has_halves(part) ? kHalfWeightStep : kFloatWeightStep;
     constexpr int kGrain = 64;
-    parallel_blocks(0, part.map.height, kGrain, [&](int first, int last) {
+    parallel_blocks(0, part.map->height, kGrain, [&](int first, int last) {
         for (int y = first; y < last; ++y)
-            for (const PixelCoord& c : part.map.row(y))
+            for (const PixelCoord& c : part.map->row(y))
                 if (!in_simplex(c) || !on_grid(c, step) || (c.face == kNone && (c.u != 0 || c.v != 0)))
                     throw Error(ErrorKind::kInternal,
                                 cat("cannot store the weights (", c.u, ",", c.v, ") of face ", c.face,
@@ -156,10 +156,16 @@ void check_writable(const LayerPart& part) {
 }  // namespace
 
 Bytes encode_exr_layers(const std::vector<LayerPart>& parts) {
-    for (const LayerPart& part : parts) check_writable(part);
+    std::vector<LayerView> views;
+    for (const LayerPart& part : parts) views.push_back({part.name, &part.map, part.visits, part.topology});
+    return encode_exr_layers(views);
+}
+
+Bytes encode_exr_layers(const std::vector<LayerView>& parts) {
+    for (const LayerView& part : parts) check_writable(part);
     Bytes bytes;
     ExrFile file(bytes);
-    for (const LayerPart& part : parts) add_part(file.get(), part);
+    for (const LayerView& part : parts) add_part(file.get(), part);
     check(exr_write_header(file.get()));
     for (std::size_t i = 0; i < parts.size(); ++i) write_part(file.get(), static_cast<int>(i), parts[i]);
     file.finish();
