@@ -1,5 +1,4 @@
-// Sources: the formats' specifications - GIF89a (18), JPEG 2000 (T.800, A.5.1), HEIF (ISO/IEC 23008-12,
-// `ispe`).
+// Sources: the formats' specifications - GIF89a (18), HEIF (ISO/IEC 23008-12, `ispe`).
 #include "formats/picture/decode/picture_probe.h"
 
 #include <algorithm>
@@ -10,6 +9,7 @@
 
 #include "formats/files/byte_reader.h"
 #include "formats/files/extension.h"
+#include "formats/picture/decode/jpeg2000_claim.h"
 #include "formats/picture/decode/other_formats.h"
 #include "formats/picture/decode/tga_signature.h"
 #include "libcore/base/error.h"
@@ -31,21 +31,11 @@ ByteReader little_endian(Bytes b) {
     return {b, ByteOrder::kLittle};
 }
 
-// Returns the position of `text` in the first megabyte, from `from` on: headers of JPEG 2000 and HEIF are at
-// the start.
+// Returns the position of `text` in the first megabyte, from `from` on: headers of HEIF are at the start.
 std::optional<std::size_t> find(Bytes b, std::size_t from, std::string_view text) {
     constexpr std::size_t kWindow = std::size_t{1} << 20;
     const std::size_t at = text_of(b.first(std::min(b.size(), kWindow))).find(text, from);
     return at == std::string_view::npos ? std::nullopt : std::optional(at);
-}
-
-void claim_jpeg2000(Bytes b, PictureClaim& claim) {
-    const ByteReader in = big_endian(b);
-    if (const auto at = find(b, 0, "\xFF\x4F\xFF\x51")) {
-        claim.width = std::int64_t{in.number_at(*at + 8, 4)} - in.number_at(*at + 16, 4);
-        claim.height = std::int64_t{in.number_at(*at + 12, 4)} - in.number_at(*at + 20, 4);
-        claim.channels = in.number_at(*at + 40, 2);
-    }
 }
 
 // A file holds several sizes (tiles, thumbnails); the image's is the largest.
@@ -124,7 +114,7 @@ PictureClaim probe_picture(const std::string& path, Bytes b) {
             claim.height = little.number_at(8, 2);
             break;
         case PictureFormat::kJpeg2000:
-            claim_jpeg2000(b, claim);
+            claim_jpeg2000(path, b, claim);
             break;
         case PictureFormat::kHeif:
             claim_heif(b, claim);
