@@ -187,7 +187,8 @@ Texture chosen_texture(const Options& o, MeshImage& m, Texture kept, Context& co
         image = draw(m, 0, {});
     } else {
         ReadImageOptions options = image_options(o.read, o.limits, context.max_memory);
-        options.channels.emplace();  // the colour and alpha
+        options.channels.emplace();              // the colour and alpha
+        options.limits.max_pixels_per_byte = 0;  // the container says how many there are
         image = read_source_image(o.image, source, o.input, options, context.warnings);
     }
     Mask mask;

@@ -22,6 +22,9 @@ struct ImageLimits {
     /// Of the samples, as stored and as floats, and of what the caller does with the image [bytes].
     std::uint64_t max_memory = std::numeric_limits<std::uint64_t>::max();
     double work_bytes = 0;  ///< what the caller's work takes for each pixel beside 8 for each channel; >= 0
+    /// Of images above 4 megapixels; 0: any number. Ten times what deflate makes of one grey, so that only
+    /// files made to ask for too much, or empty pages, are refused.
+    std::int64_t max_pixels_per_byte = 10000;
 };
 
 /// What becomes of samples that are infinite or no number.

@@ -314,3 +314,22 @@ TEST_CASE("hostile: a BMP's compression is one for its depth") {
         CHECK(error_of([&] { read(24, compression); }) == ErrorKind::kUnsupported);
     CHECK(error_of([&] { read(0, 5); }) == ErrorKind::kBadFile);  // no PNG inside
 }
+
+// 2100 x 2100 pixels of one colour take some 200 bytes of WebP.
+TEST_CASE("hostile: few bytes hold only so many pixels, unless the caller says otherwise") {
+    const TemporaryFolder folder;
+    Image image = make_image(2100, 2100, 3);
+    image.data.assign(image.data.size(), 0.5f);
+    const std::string path = folder / "solid.webp";
+    write_image(path, image);
+    std::string text;
+    CHECK(error_of([&] { read_image(path); }, &text) == ErrorKind::kBadFile);
+    CHECK(text.find("from so small a file") != std::string::npos);
+    ImageLimits any;
+    any.max_pixels_per_byte = 0;
+    CHECK(read_image(path, {.limits = any}).width == 2100);
+    // Up to four megapixels nobody asks for the bytes.
+    image = make_image(2048, 2048, 3);
+    write_image(path, image);
+    CHECK(read_image(path).width == 2048);
+}

@@ -27,7 +27,10 @@ ContainerLimits container_limits(ContainerLimits limits, std::uint64_t max_memor
 
 ReadImageOptions image_options(ReadImageOptions read, const ContainerLimits& limits,
                                std::uint64_t max_memory) {
-    if (limits.max_pixels != ContainerLimits().max_pixels) read.limits.max_pixels = limits.max_pixels;
+    if (limits.max_pixels != ContainerLimits().max_pixels) {
+        read.limits.max_pixels = limits.max_pixels;
+        read.limits.max_pixels_per_byte = 0;
+    }
     read.limits.max_memory = max_memory;
     return read;
 }

@@ -34,8 +34,14 @@ void add_read_options(CLI::App& app, ReadImageOptions& options, CLI::Option* ima
                                                     {"nearest", NonFinite::kNearest}},
                                  "What becomes of infinite samples and of those that are no numbers")));
     if (has_limits) return;
-    CLI::Option* const pixels =
-        add_count(app, "--max-pixels", options.limits.max_pixels, {1}, "Refuse an image of more pixels");
+    const auto take_pixels = [&options](const std::string& text) {
+        options.limits.max_pixels = parse_count("--max-pixels", text, {1});
+        options.limits.max_pixels_per_byte = 0;  // images up to there are wanted, however few bytes hold them
+    };
+    CLI::Option* const pixels = add_value(
+        app, "--max-pixels", "N", take_pixels,
+        {"Refuse an image of more pixels", cat(options.limits.max_pixels, ", and for a file of few bytes ",
+                                               options.limits.max_pixels_per_byte, " a byte above 4194304")});
     if (image) needs(pixels, image);
     advanced(app, in_group(pixels, "Limits"));
 }

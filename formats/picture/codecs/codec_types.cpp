@@ -66,7 +66,8 @@ std::vector<std::uint8_t> wire_from(const DecodeTask& task) {
     put_enum(out, task.claim.format);
     for (const std::int64_t number :
          {task.claim.width, task.claim.height, task.claim.channels, task.limits.max_pixels,
-          std::int64_t{task.limits.max_side}, std::int64_t{task.limits.max_channels}})
+          std::int64_t{task.limits.max_side}, std::int64_t{task.limits.max_channels},
+          task.limits.max_pixels_per_byte})
         out.number(number);
     return out.result();
 }
@@ -82,6 +83,7 @@ DecodeTask decode_task_from(std::span<const std::uint8_t> wire) {
     task.limits.max_pixels = in.number<std::int64_t>();
     task.limits.max_side = static_cast<int>(in.number<std::int64_t>());
     task.limits.max_channels = static_cast<int>(in.number<std::int64_t>());
+    task.limits.max_pixels_per_byte = in.number<std::int64_t>();
     return complete(in, std::move(task));
 }
 

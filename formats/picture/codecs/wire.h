@@ -19,7 +19,7 @@ namespace imgmesh {
 enum class CodecJob : std::uint32_t { kDecode, kEncode, kText };
 
 constexpr std::uint32_t kCodecMagic = 0x48434D49;  // "IMCH"
-constexpr std::uint32_t kCodecProtocol = 1;        // to be counted up with every change of the messages
+constexpr std::uint32_t kCodecProtocol = 2;        // to be counted up with every change of the messages
 
 /// From imgmesh, once for each job, with two files: the job's own socket and its input. The input is a
 /// header of `header_bytes` (codec_types.h) and then the file's bytes or the image's samples.

@@ -27,8 +27,11 @@ void check_size(const std::string& path, std::int64_t width, std::int64_t height
         throw broken(path, cat("the image is ", width, "x", height, ", at most ", limits.max_side,
                                " pixels a side are read"));
     if (width * height > limits.max_pixels)
-        throw broken(path, cat("the image is ", width, "x", height, ", at most ", limits.max_pixels,
-                               " pixels are read"));
+        throw broken(
+            path,
+            cat("the image is ", width, "x", height, ", at most ", limits.max_pixels, " pixels are read",
+                limits.max_pixels_per_byte > 0 ? " from so small a file, unless a largest number is given"
+                                               : ""));
     if (channels > limits.max_channels)
         throw broken(
             path, cat("the image has ", channels, " channels, at most ", limits.max_channels, " are read"));
