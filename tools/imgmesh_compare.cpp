@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "formats/container/container.h"
+#include "formats/files/atomic_file.h"
 #include "formats/files/extension.h"
 #include "formats/picture/image_io.h"
 #include "libcore/image/color.h"
@@ -287,6 +288,7 @@ Report run(const Options& o, Context& context) {
     const bool svg = lower_extension(o.plot) == ".svg";
     const Plot plot = o.plot.empty() ? Plot() : make_plot(inputs, o, std::move(panels));
     const Image plot_image = o.plot.empty() || svg ? Image() : draw_plot(plot, o.plot);
+    JointFiles together;
     if (!o.error_image.empty()) {
         const double range = o.error_range.value_or(kErrorRange);
         write_image(o.error_image,
@@ -302,6 +304,7 @@ Report run(const Options& o, Context& context) {
             write_image(o.plot, plot_image, {context.overwrite, {}});
         report["plot"] = o.plot;
     }
+    together.commit();
     return report;
 }
 

@@ -4,6 +4,7 @@
 
 #include "formats/container/container.h"
 #include "formats/export/label_files.h"
+#include "formats/files/atomic_file.h"
 #include "formats/files/extension.h"
 #include "formats/gltf/region_gltf.h"
 #include "formats/picture/image_io.h"
@@ -180,6 +181,7 @@ Report run(const Options& o, Context& context) {
     const std::vector<RegionFacts> facts = region_facts(labels, picture);
 
     context.progress(0.8, "write");
+    JointFiles together;
     write_labels(o.output, labels.width, labels.height, labels.values, context.overwrite);
     if (!o.outlines.empty())
         write_image(o.outlines, draw_outlines(labels, picture, mesh_image.source), {context.overwrite, {}});
@@ -195,6 +197,7 @@ Report run(const Options& o, Context& context) {
     if (!o.mesh.empty())
         write_region_mesh(o.mesh, level.mesh, region_of_faces(level.mesh, level.map, labels),
                           mesh_image.source, context.generator, context.overwrite);
+    together.commit();
 
     Report report = {
         {"input", o.input},

@@ -6,10 +6,12 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <ostream>
+#include <utility>
 
 #include "formats/container/container.h"
 #include "formats/container/edit_file.h"
 #include "formats/exr/exr_parts.h"
+#include "formats/files/atomic_file.h"
 #include "formats/files/extension.h"
 #include "formats/picture/image_io.h"
 #include "libcore/warp/retarget.h"
@@ -195,7 +197,7 @@ Report run(const Options& o, Context& context) {
 
     context.progress(0, "read");
     const WarpEdits edits = all_edits(o);
-    const Container container = read_container(o.input, container_limits(o.limits, context.max_memory));
+    Container container = read_container(o.input, container_limits(o.limits, context.max_memory));
     const MeshImage& mesh_image = container.mesh_image;
     const SourceInfo& source = mesh_image.source;
     std::vector<std::string> read = container.facts.files;
@@ -220,8 +222,17 @@ Report run(const Options& o, Context& context) {
                      {"largest_move", largest_move(field)},
                      {"folded_cells", folded_cells(field)}};
     context.progress(0.5, "draw");
+    JointFiles together;
+    if (!o.displacement.empty()) {
+        const InverseMap map = inverse_map(field, image ? alpha_of(*image) : std::vector<float>(), o.size);
+        write_exr_parts(o.displacement,
+                        {{"stmap", st_map_image(map, source.width, source.height)},
+                         {"displacement", forward_map_image(field)}},
+                        context.overwrite);
+        report["displacement"] = o.displacement;
+    }
     if (is_container(o.output)) {
-        MeshImage warped = warp_mesh_image(mesh_image, moves);
+        MeshImage warped = warp_mesh_image(std::move(container.mesh_image), moves);  // the last use
         warped.generator = context.generator;
         ContainerOptions options;
         options.draco = container.facts.draco;
@@ -236,14 +247,7 @@ Report run(const Options& o, Context& context) {
         report["width"] = out.width;
         report["height"] = out.height;
     }
-    if (!o.displacement.empty()) {
-        const InverseMap map = inverse_map(field, image ? alpha_of(*image) : std::vector<float>(), o.size);
-        write_exr_parts(o.displacement,
-                        {{"stmap", st_map_image(map, source.width, source.height)},
-                         {"displacement", forward_map_image(field)}},
-                        context.overwrite);
-        report["displacement"] = o.displacement;
-    }
+    together.commit();
     if (!o.output.empty()) {
         report["output"] = o.output;
         report["bytes"] = std::filesystem::file_size(o.output);

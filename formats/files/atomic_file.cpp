@@ -133,15 +133,47 @@ int create_temporary(const std::string& target, std::string& name) {
 
 }  // namespace
 
-AtomicFile::AtomicFile(std::string path, bool overwrite)
-    : path_(std::move(path)), target_(resolve_target(path_, overwrite)), overwrite_(overwrite) {
-    remove_stale_temporaries(std::filesystem::path(target_).parent_path().string());
-    claim_ = create_temporary(target_, temporary_path_);
-    if (claim_ < 0) fail(path_, "cannot write", errno);
-    if (overwrite_) share_as(target_);
-}
+// ---- Files -----------------------------------------------------------------------------------------------
+class AtomicFile::Temporary {
+  public:
+    Temporary(std::string path, bool overwrite)
+        : path_(std::move(path)), target_(resolve_target(path_, overwrite)), overwrite_(overwrite) {
+        remove_stale_temporaries(std::filesystem::path(target_).parent_path().string());
+        claim_ = create_temporary(target_, name_);
+        if (claim_ < 0) fail(path_, "cannot write", errno);
+        if (overwrite_) share_as(target_);
+    }
+    ~Temporary() {
+        if (!kept_) {
+            ::unlink(name_.c_str());
+            forget_temporary(name_.c_str());
+        }
+        ::close(claim_);
+    }
+    Temporary(const Temporary&) = delete;
+    Temporary& operator=(const Temporary&) = delete;
 
-void AtomicFile::share_as(const std::string& path) {
+    const std::string& path() const { return path_; }
+    void share_as(const std::string& path);
+    void write_parts(std::span<const std::span<const std::uint8_t>> parts);
+    void flush() {
+        if (::fsync(claim_) != 0) fail(path_, "cannot write", errno);
+    }
+    // Throws what rename() would, as far as that can be known.
+    void check_rename() const;
+    void rename();
+    void keep() { kept_ = true; }
+
+  private:
+    std::string path_;    // as given: for messages
+    std::string target_;  // of the rename: `path_` with symbolic links followed
+    std::string name_;
+    int claim_ = -1;  // the descriptor, which also holds the claim to the name
+    bool overwrite_;
+    bool kept_ = false;
+};
+
+void AtomicFile::Temporary::share_as(const std::string& path) {
     struct stat info = {}, own = {};
     if (::stat(path.c_str(), &info) != 0 || ::fstat(claim_, &own) != 0) return;
     mode_t mode = info.st_mode & 0777;
@@ -155,15 +187,7 @@ void AtomicFile::share_as(const std::string& path) {
     ::fchmod(claim_, mode);  // a file system without permissions refuses, and needs none
 }
 
-AtomicFile::~AtomicFile() {
-    if (!kept_) {
-        ::unlink(temporary_path_.c_str());
-        forget_temporary(temporary_path_.c_str());
-    }
-    ::close(claim_);
-}
-
-void AtomicFile::write_parts(std::span<const std::span<const std::uint8_t>> parts) {
+void AtomicFile::Temporary::write_parts(std::span<const std::span<const std::uint8_t>> parts) {
     if (::ftruncate(claim_, 0) != 0 || ::lseek(claim_, 0, SEEK_SET) != 0) fail(path_, "cannot write", errno);
     for (std::span<const std::uint8_t> bytes : parts)
         while (!bytes.empty()) {
@@ -174,39 +198,94 @@ void AtomicFile::write_parts(std::span<const std::span<const std::uint8_t>> part
         }
 }
 
+void AtomicFile::Temporary::check_rename() const {
+    if (!is_named(claim_, name_))
+        throw Error(ErrorKind::kIo, cat(path_, ": cannot write: somebody has exchanged the file ", name_));
+    struct stat there = {};
+    if (::lstat(target_.c_str(), &there) != 0) return;
+    if (!overwrite_) fail(path_, "not overwritten", EEXIST);
+    if (S_ISDIR(there.st_mode)) fail(path_, "cannot write", EISDIR);
+}
+
+void AtomicFile::Temporary::rename() {
+    check_rename();
+    int status = 0;
+    if (overwrite_) {
+        status = ::rename(name_.c_str(), target_.c_str());
+    } else {
+        status = ::renameat2(AT_FDCWD, name_.c_str(), AT_FDCWD, target_.c_str(), RENAME_NOREPLACE);
+        // File systems without that flag return EINVAL; then the check has to do.
+        if (status != 0 && errno == EINVAL) status = ::rename(name_.c_str(), target_.c_str());
+    }
+    if (status != 0) fail(path_, overwrite_ ? "cannot write" : "not overwritten", errno);
+    flush_folder(target_);
+    forget_temporary(name_.c_str());
+    name_ = target_;
+}
+
+namespace {
+
+thread_local JointFiles* g_joint = nullptr;
+
+}  // namespace
+
+AtomicFile::AtomicFile(std::string path, bool overwrite)
+    : file_(std::make_shared<Temporary>(std::move(path), overwrite)) {}
+
+AtomicFile::~AtomicFile() = default;
+
+void AtomicFile::share_as(const std::string& path) {
+    file_->share_as(path);
+}
+
+void AtomicFile::write_parts(std::span<const std::span<const std::uint8_t>> parts) {
+    file_->write_parts(parts);
+}
+
 void AtomicFile::commit() {
+    if (g_joint) {
+        file_->flush();
+        g_joint->complete_.push_back(file_);
+        return;
+    }
     place();
     keep();
 }
 
 void AtomicFile::place() {
-    flush_and_rename();
-    flush_folder(target_);
-    forget_temporary(temporary_path_.c_str());
-    temporary_path_ = target_;
+    file_->flush();
+    file_->rename();
+    if (g_joint) g_joint->appeared_.push_back(file_->path());
 }
 
 void AtomicFile::keep() {
-    kept_ = true;
+    file_->keep();
 }
 
-void AtomicFile::flush_and_rename() {
-    if (::fsync(claim_) != 0) fail(path_, "cannot write", errno);
-    if (!is_named(claim_, temporary_path_))
-        throw Error(ErrorKind::kIo,
-                    cat(path_, ": cannot write: somebody has exchanged the file ", temporary_path_));
-    int status = 0;
-    if (overwrite_) {
-        status = ::rename(temporary_path_.c_str(), target_.c_str());
-    } else {
-        status = ::renameat2(AT_FDCWD, temporary_path_.c_str(), AT_FDCWD, target_.c_str(), RENAME_NOREPLACE);
-        // File systems without that flag return EINVAL; then check first.
-        if (status != 0 && errno == EINVAL) {
-            if (::access(target_.c_str(), F_OK) == 0) fail(path_, "not overwritten", EEXIST);
-            status = ::rename(temporary_path_.c_str(), target_.c_str());
+JointFiles::JointFiles() {
+    g_joint = this;
+}
+
+JointFiles::~JointFiles() {
+    g_joint = nullptr;
+}
+
+void JointFiles::commit() {
+    const SignalBlocker whole;
+    try {
+        for (const auto& file : complete_) file->check_rename();
+        for (const auto& file : complete_) {
+            file->rename();
+            file->keep();
+            appeared_.push_back(file->path());
         }
+    } catch (const Error& error) {
+        if (appeared_.empty()) throw;
+        std::string names;
+        for (const std::string& name : appeared_) names += (names.empty() ? "" : ", ") + name;
+        throw Error(error.kind(), cat(error.what(), "; written before: ", names));
     }
-    if (status != 0) fail(path_, overwrite_ ? "cannot write" : "not overwritten", errno);
+    complete_.clear();
 }
 
 SignalBlocker::SignalBlocker() {

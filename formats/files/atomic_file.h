@@ -3,6 +3,7 @@
 
 #include <csignal>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -31,21 +32,38 @@ class AtomicFile {
     void write(std::span<const std::uint8_t> bytes) { write_parts({&bytes, 1}); }
     /// The same for several parts, one after the other.
     void write_parts(std::span<const std::span<const std::uint8_t>> parts);
+    /// While JointFiles live in this thread, they do the renaming.
     void commit();
-    /// Like commit(), but until keep() destruction removes the file, which has its own name already: for a
-    /// file that is useless without another. Only if no file has this name, and in a SignalBlocker.
+    /// Like commit(), but at once, and until keep() destruction removes the file, which has its own name
+    /// already: for a file that is useless without another. In a SignalBlocker; without keep() only if no
+    /// file has this name.
     void place();
     void keep();
 
   private:
-    void flush_and_rename();
+    friend class JointFiles;
+    class Temporary;
+    std::shared_ptr<Temporary> file_;
+};
 
-    std::string path_;    ///< as given: for messages
-    std::string target_;  ///< the target of the rename: `path_` with symbolic links followed
-    std::string temporary_path_;
-    int claim_ = -1;  ///< the descriptor of the temporary file, which also holds the claim to its name
-    bool overwrite_;
-    bool kept_ = false;
+/// Several outputs of one command: while it lives, AtomicFile::commit() in this thread flushes the file to
+/// disk and leaves it under its temporary name, until commit() renames all. Destruction without commit()
+/// removes them. One at a time in a thread.
+class JointFiles {
+  public:
+    JointFiles();
+    ~JointFiles();
+    JointFiles(const JointFiles&) = delete;
+    JointFiles& operator=(const JointFiles&) = delete;
+
+    /// Gives all files their names; signals wait meanwhile. Throws Error(kIo) if one cannot be renamed, which
+    /// is checked as far as possible before the first is; if some have appeared by then, the text names them.
+    void commit();
+
+  private:
+    friend class AtomicFile;
+    std::vector<std::shared_ptr<AtomicFile::Temporary>> complete_;
+    std::vector<std::string> appeared_;
 };
 
 /// While one lives, the signals of remove_temporaries_on_signals() wait. It is for a change of several files

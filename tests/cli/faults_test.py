@@ -156,6 +156,50 @@ class Faults(CliCase):
         self.assertEqual(result.stdout.split(), ["3", "c.bin", "c.exr", "c.gltf", "filler", "same"], result.stderr)
         self.assertIn("No space left", result.stderr)
 
+    def test_several_outputs_appear_together(self):
+        """A limit on file size that only the largest exceeds: none of them appears, and older ones stay."""
+        runs = {"imgmesh-segment": ("c.glb", "-o", "1.png", "--outlines", "2.png", "--flat", "3.bmp", "--report", "4.json",
+                                    "--mesh", "5.glb"),
+                "imgmesh-compare": ("old.png", "new.png", "--error-image", "1.bmp", "--plot", "2.svg"),
+                "imgmesh-warp": ("c.glb", "--image", "old.png", "-o", "1.bmp", "--displacement", "2.exr")}
+        for tool, args in runs.items():
+            outputs = [a for a in args if a[0].isdigit()]
+            before = self.files()
+            self.run_ok(tool, *args, "-q")
+            sizes = sorted((self.folder / name).stat().st_size for name in outputs)
+            for name in outputs:
+                (self.folder / name).unlink()
+            for old in (None, b"old"):
+                if old:
+                    (self.folder / outputs[0]).write_bytes(old)
+                    before = self.files()
+                for size in (sizes[-1] - 1, sizes[0] - 1):
+                    limit = lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (size, size))
+                    result = self.run_tool(tool, *args, "-q", preexec_fn=limit)
+                    with self.subTest(tool=tool, size=size):
+                        self.assert_error_lines(tool, result, 3, 1)
+                        self.assertEqual(self.files(), before)
+            (self.folder / outputs[0]).unlink()
+
+    def test_umask_locales_and_few_files(self):
+        """Files are as private as the user wants them, and hold the same wherever and however imgmesh runs."""
+        names = ("x.glb", "y.gltf", "y.bin", "y.exr")
+        def build(**kwargs):
+            for name in ("x.glb", "y.gltf"):
+                self.run_ok("imgmesh-build", "old.png", "-o", name, "-q", **kwargs)
+            found = {name: (self.folder / name).read_bytes() for name in names}
+            modes = {(self.folder / name).stat().st_mode & 0o777 for name in names}
+            for name in names:
+                (self.folder / name).unlink()
+            return found, modes
+        plain, _ = build(umask=0o022)
+        for umask, mode in ((0o077, 0o600), (0o022, 0o644), (0o027, 0o640)):
+            self.assertEqual(build(umask=umask), (plain, {mode}))
+        for locale in ("C", "C.UTF-8", "POSIX", "de_DE.UTF-8", "tr_TR.UTF-8", "ja_JP.EUC-JP", "no such locale"):
+            self.assertEqual(build(env=os.environ | {"LC_ALL": locale, "LANG": locale})[0], plain, locale)
+        few = lambda: resource.setrlimit(resource.RLIMIT_NOFILE, (12, 12))
+        self.assertEqual(build(preexec_fn=few)[0], plain)
+
     def test_read_only_folder(self):
         os.chmod(self.folder, 0o555)
         self.addCleanup(os.chmod, self.folder, 0o755)

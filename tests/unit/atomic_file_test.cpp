@@ -155,3 +155,52 @@ TEST_CASE("read_file: limits and errors") {
     REQUIRE(::mkfifo(pipe.c_str(), 0600) == 0);
     CHECK(code_of([&] { read_file(pipe, 1000, FileKind::kRegular); }) == ErrorKind::kIo);
 }
+
+TEST_CASE("JointFiles: all get their names, or none does") {
+    const TemporaryFolder folder;
+    const auto write = [&](const char* name) {
+        AtomicFile file(folder / name, true);
+        file.write(Bytes{1, 2});
+        file.commit();
+    };
+    {
+        JointFiles together;
+        write("a");
+        write("b");
+        CHECK_FALSE(fs::exists(folder / "a"));
+        together.commit();
+        CHECK(fs::exists(folder / "a"));
+        CHECK(fs::exists(folder / "b"));
+    }
+    write("c");  // alone again
+    CHECK(fs::exists(folder / "c"));
+    {
+        JointFiles together;
+        write("d");
+        write("e");
+        fs::create_directory(folder / "e");  // by somebody else, meanwhile
+        CHECK_THROWS_AS(together.commit(), Error);
+    }
+    CHECK_FALSE(fs::exists(folder / "d"));
+    {
+        JointFiles never;
+        write("f");
+    }
+    CHECK_FALSE(fs::exists(folder / "f"));
+    {
+        JointFiles together;
+        AtomicFile first(folder / "g", true);
+        first.place();
+        first.keep();
+        write("h");
+        fs::create_directory(folder / "h");
+        std::string text;
+        try {
+            together.commit();
+        } catch (const Error& error) {
+            text = error.what();
+        }
+        CHECK(text.find("written before: " + (folder / "g")) != std::string::npos);
+    }
+    CHECK(entries(folder.path()) == 6);  // and no temporary files
+}
