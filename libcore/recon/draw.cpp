@@ -9,7 +9,7 @@
 #include "libcore/base/error.h"
 #include "libcore/base/parallel.h"
 #include "libcore/image/luv_encoder.h"
-#include "libcore/recon/bounded_raster.h"
+#include "libcore/mesh/bounded_raster.h"
 #include "libcore/recon/level_colors.h"
 #include "libcore/recon/patch_colors.h"
 #include "libcore/recon/visit_lightness.h"

@@ -7,7 +7,7 @@
 #include "libcore/base/error.h"
 #include "libcore/base/parallel.h"
 #include "libcore/image/feature_space.h"
-#include "libcore/recon/bounded_raster.h"
+#include "libcore/mesh/bounded_raster.h"
 #include "libcore/recon/level_colors.h"
 
 namespace imgmesh {

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "libcore/base/error.h"
+#include "libcore/mesh/bounded_raster.h"
 #include "libcore/mesh/trivial_map.h"
 
 namespace imgmesh {
@@ -185,6 +186,8 @@ DisplacementField retarget_field(const MeshImage& mesh_image, const OutputSize& 
     by_place.levels.resize(1);
     Level& level = by_place.levels[0];
     level.mesh = mesh_image.levels[0].mesh;
+    // Only where faces lie beside one another can the systems be factorised in bounded time, too.
+    check_cover(level.mesh, sample_grid(source.width, source.height, 1));
     level.map = trivial_map(level.mesh, source.width, source.height);
     return displacement_field(by_place, {retarget_moves(level.mesh, source.width, source.height, size)});
 }

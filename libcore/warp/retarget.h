@@ -20,7 +20,8 @@ VertexMoves retarget_moves(const BaseMesh& mesh, int width, int height, const Ou
 
 /// Returns the field that draws level 0 with these moves, for warp_image(image, field, size). Pixels move
 /// with the face that covers them, not through the pixel map, which follows edges too closely for moves this
-/// large. Throws as retarget_moves() does, and Error(kUnsupported) for a masked image, which has no sides.
+/// large. Throws as retarget_moves() does, and Error(kUnsupported) for a masked image, which has no sides,
+/// and for faces that lie over one another (check_cover()).
 DisplacementField retarget_field(const MeshImage& mesh_image, const OutputSize& size);
 
 /// Adds the moves of `field` to those of `sum`. Both are fields of one image.

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "libcore/base/error.h"
+#include "libcore/mesh/bounded_raster.h"
 #include "libcore/mesh/trivial_map.h"
 
 namespace imgmesh {
@@ -36,6 +37,7 @@ std::size_t nearest_pixel(const PixelMap& map, const Vec2f& p) {
 // stretched.
 void add_moves(const Level& level, const VertexMoves& moves, const std::vector<Vec2f>& at,
                std::vector<Vec2f>& sum) {
+    check_cover(level.mesh, sample_grid(level.map.width, level.map.height, 1));
     const PixelMap cover = trivial_map(level.mesh, level.map.width, level.map.height);
     for (std::size_t i = 0; i < at.size(); ++i) {
         const PixelCoord& c = cover[nearest_pixel(cover, at[i])];

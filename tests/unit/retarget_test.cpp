@@ -83,3 +83,13 @@ TEST_CASE("retarget_field: thin images work, masked images are refused") {
     apply_mask(m, [](int x, int) { return x > 2; });
     CHECK_THROWS_AS(retarget_field(m, {5, 5}), Error);
 }
+
+// A file may hold any number of faces over one another, and then neither the cover nor the systems have
+// bounds.
+TEST_CASE("faces that lie over one another are refused before any work") {
+    MeshImage m = grid_pyramid(60, 60, {1});
+    const std::vector<Face> two = m.levels[0].mesh.faces;
+    for (int i = 0; i < 100; ++i)
+        m.levels[0].mesh.faces.insert(m.levels[0].mesh.faces.end(), two.begin(), two.end());
+    CHECK_THROWS_WITH_AS(retarget_field(m, {10, 60}), doctest::Contains("times over"), Error);
+}
