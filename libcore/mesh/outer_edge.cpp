@@ -4,10 +4,12 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "libcore/base/parallel.h"
 #include "libcore/mesh/adjacency.h"
+#include "libcore/mesh/stretch.h"
 #include "libcore/mesh/unfolded_moves.h"
 
 namespace imgmesh {
@@ -276,9 +278,13 @@ std::vector<Vec2f> outer_positions(const BaseMesh& mesh, const PixelMap& map) {
 
 void extend_to_outer_edge(MeshImage& mesh_image) {
     for (Level& level : mesh_image.levels) {
-        std::vector<Vec2f> position = outer_positions(level.mesh, level.map);
-        if (mesh_image.source.has_mask) take_back_folds(level.mesh, level.map, position);
-        level.mesh.position = std::move(position);
+        std::optional<std::vector<Vec2f>> position;
+        if (!mesh_image.source.has_mask) position = stretched_positions(level.mesh, level.map);
+        if (!position) {
+            position = outer_positions(level.mesh, level.map);
+            take_back_folds(level.mesh, level.map, *position);
+        }
+        level.mesh.position = std::move(*position);
     }
 }
 

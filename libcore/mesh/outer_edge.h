@@ -21,9 +21,10 @@ namespace imgmesh {
 /// Takes O(faces log faces + pixels at the boundary) time.
 std::vector<Vec2f> outer_positions(const BaseMesh& mesh, const PixelMap& map);
 
-/// Moves the vertices of all levels to outer_positions(). Of masked images, moves that would fold the map are
-/// left out: there parts of squares are not covered. A whole image is always covered to its sides. Maps keep
-/// their weights, so that the reconstruction through them stays the same to the bit.
+/// Moves the vertices of all levels so that they cover whole pixels, and no map folds by that. The mesh of a
+/// whole image is stretched to its sides. Of masked images, boundaries move to outer_positions(),
+/// and moves that would fold the map are left out: there parts of squares are not covered. Maps keep their
+/// weights, so that the reconstruction through them stays the same to the bit.
 void extend_to_outer_edge(MeshImage& mesh_image);
 
 }  // namespace imgmesh

@@ -150,3 +150,23 @@ TEST_CASE("outer edge: maps are moved without a fold, and most of the edge is re
         }
     }
 }
+
+TEST_CASE("outer edge: whole images are covered to their sides without a fold") {
+    for (const std::uint32_t seed : {1u, 2u, 3u, 4u, 5u, 6u})
+        for (const double density : {0.5, 4.0, 30.0, 100.0}) {
+            const int width = 20 + 17 * static_cast<int>(seed), height = 90 - 13 * static_cast<int>(seed);
+            MeshImage m = built(random_image(width, height, seed), {}, density);
+            extend_to_outer_edge(m);
+            const auto& [mesh, map, error] = m.levels[0];
+            CAPTURE(seed);
+            CAPTURE(density);
+            CHECK(area_of_faces(mesh) == width * height);
+            CHECK(map_quality(mesh, map).flipped_triangles == 0);
+            CHECK(mesh_quality(mesh).flipped_faces == 0);
+        }
+    for (const auto& [width, height] : {std::pair{1, 1}, std::pair{1, 9}, std::pair{9, 1}, std::pair{2, 3}}) {
+        MeshImage m = built(random_image(width, height, 2), {}, 100);
+        extend_to_outer_edge(m);
+        CHECK(area_of_faces(m.levels[0].mesh) == width * height);
+    }
+}
