@@ -141,7 +141,7 @@ void add_build_options(CLI::App& app, BuildOptions& o) {
     CLI::Option* const threshold =
         add_number(app, "--alpha-threshold", o.alpha_threshold, {0, 1, true},
                    {"Least alpha, or brightness of a mask, of the pixels that are meshed",
-                    "0.5, or 1/510 where alpha is kept"});
+                    "0.5; where alpha is kept 1/510, or 7.5/255 if specks are fainter"});
     advanced(app, in_group(threshold, image));
     add_read_options(app, o.read);
     add_nodata_option(app, o.read);

@@ -61,17 +61,24 @@ void keep_alpha(const Image& image, const std::string& input, bool asked, BuildP
         cat(input, ": its soft alpha is kept, and so the mesh is not refined; --alpha cut refines it"));
 }
 
+// Returns the least alpha, or brightness of a mask, of the pixels that are meshed.
+float mask_threshold(const Image& image, const std::string& input, AlphaUse alpha, const BuildOptions& o,
+                     std::vector<std::string>& warnings) {
+    if (o.alpha_threshold) return static_cast<float>(*o.alpha_threshold);
+    if (alpha != AlphaUse::kKeep || !o.mask.empty()) return kOpaqueEnough;
+    const float least = least_visible_alpha(image);
+    if (least > kVisibleAlpha)
+        warnings.push_back(
+            cat(input,
+                ": its specks with an alpha below 8/255 are left out; --alpha-threshold 0.002 keeps them"));
+    return least;
+}
+
 // Returns the mask of --mask, or of alpha; empty() for none.
-Mask mask_of(const Image& image, const std::string& input, AlphaUse alpha, const BuildOptions& o,
-             std::vector<std::string>& warnings) {
-    const auto threshold = [&](double usual) {
-        return static_cast<float>(o.alpha_threshold.value_or(usual));
-    };
-    if (!o.mask.empty())
-        return read_mask(o.mask, o.alpha_threshold.value_or(kOpaqueEnough), o.read.limits, image, input,
-                         warnings);
-    if (alpha == AlphaUse::kKeep) return alpha_mask(image, threshold(kVisibleAlpha));
-    return alpha == AlphaUse::kCut ? alpha_mask(image, threshold(kOpaqueEnough)) : Mask();
+Mask mask_of(const Image& image, const std::string& input, AlphaUse alpha, float threshold,
+             const BuildOptions& o, std::vector<std::string>& warnings) {
+    if (!o.mask.empty()) return read_mask(o.mask, threshold, o.read.limits, image, input, warnings);
+    return alpha == AlphaUse::kIgnore ? Mask() : alpha_mask(image, threshold);
 }
 
 // Returns how to read the images: no more channels than are meshed.
@@ -106,7 +113,8 @@ Report build_one(const Job& job, const BuildOptions& o, const Context& context, 
     check_memory(cat(job.input, ": a build of ", image.width, "x", image.height, " pixels"), bytes,
                  context.max_memory);
     const MemoryGate::Share share(gate, bytes);
-    Mask mask = mask_of(image, job.input, alpha, o, warnings);
+    const float threshold = mask_threshold(image, job.input, alpha, o, warnings);
+    Mask mask = mask_of(image, job.input, alpha, threshold, o, warnings);
     const bool missing = !read.data.empty(), mask_is_data = missing && mask.empty();
     if (missing) mask = in_file(job.input, [&] { return in_both(mask, read.data); });
     const double read_seconds = stage.lap();
@@ -126,9 +134,8 @@ Report build_one(const Job& job, const BuildOptions& o, const Context& context, 
         const char* of = mask_is_data ? "nodata" : o.mask.empty() ? "alpha" : "picture";
         result.mesh_image.parameters.emplace_back("mask", std::string(of));
         if (!mask_is_data)
-            result.mesh_image.parameters.emplace_back(
-                "alpha-threshold",
-                o.alpha_threshold.value_or(keep && o.mask.empty() ? kVisibleAlpha : kOpaqueEnough));
+            result.mesh_image.parameters.emplace_back("alpha-threshold",
+                                                      o.alpha_threshold.value_or(threshold));
     }
     if (result.report.clipped_samples > 0)
         warnings.push_back(

@@ -32,6 +32,28 @@ Mask alpha_mask(const Image& image, float threshold) {
     return mask;
 }
 
+float least_visible_alpha(const Image& image) {
+    constexpr float kSeen = 7.5f / 255;
+    const int alpha = image.channel("A");
+    if (alpha < 0) return kVisibleAlpha;
+    // The length of the outline of the pixels from a threshold on, in sides of pixels.
+    const auto outline = [&](float threshold) {
+        const auto inside = [&](int x, int y) {
+            return image.contains(x, y) && image.pixel(x, y)[alpha] >= threshold;
+        };
+        std::int64_t sides = 0;
+        for (int y = 0; y <= image.height; ++y)
+            for (int x = 0; x <= image.width; ++x) {
+                const bool in = inside(x, y);
+                sides += in != inside(x - 1, y);
+                sides += in != inside(x, y - 1);
+            }
+        return sides;
+    };
+    const std::int64_t seen = outline(kSeen);
+    return seen > 0 && 2 * outline(kVisibleAlpha) > 3 * seen ? kSeen : kVisibleAlpha;
+}
+
 bool has_soft_alpha(const Image& image) {
     constexpr float kLeast = 1.5f / 255, kMost = 253.5f / 255;
     constexpr double kShare = 0.001;

@@ -23,6 +23,12 @@ Mask alpha_mask(const Image& image, float threshold);
 /// The least alpha that 8 bits do not round to 0.
 inline constexpr float kVisibleAlpha = 0.5f / 255;
 
+/// Returns the least alpha of pixels that are worth a place in a mesh: kVisibleAlpha, but 7.5/255 where the
+/// pixels between these make the outline of what is visible more than half as long again. Filters with
+/// negative lobes leave such specks of 1 to 7 codes around every edge. A mesh needs vertices along all of
+/// that outline, and what is seen would get few of them.
+float least_visible_alpha(const Image& image);
+
 /// Whether alpha is more than a mask: of the pixels with kVisibleAlpha or more, either more than 0.1 % are
 /// from 2/255 to 253/255 (other values are noise of 8 bits around 0 and 1), or none is opaque. False without
 /// a channel A.

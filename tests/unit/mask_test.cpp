@@ -74,3 +74,21 @@ TEST_CASE("has_soft_alpha: more than a thousandth of what is visible, or nothing
     CHECK_FALSE(has_soft_alpha(image));
     CHECK_FALSE(has_soft_alpha(make_image(3, 3, 3)));
 }
+
+TEST_CASE("least_visible_alpha: specks around what is seen are left out, faint borders and images stay") {
+    const auto threshold_of = [](auto&& alpha_at) {
+        Image image = make_image(40, 40, 4);
+        for (int y = 0; y < 40; ++y)
+            for (int x = 0; x < 40; ++x) image.pixel(x, y)[3] = static_cast<float>(alpha_at(x, y)) / 255;
+        return least_visible_alpha(image);
+    };
+    const auto in_square = [](int x, int y, int from) {
+        return x >= from && x < 40 - from && y >= from && y < 40 - from;
+    };
+    const auto specks = [&](int x, int y) { return in_square(x, y, 10) ? 255 : (x + y) % 4 == 0 ? 2 : 0; };
+    const auto border = [&](int x, int y) { return in_square(x, y, 10) ? 255 : in_square(x, y, 9) ? 2 : 0; };
+    CHECK(threshold_of(specks) == 7.5f / 255);
+    CHECK(threshold_of(border) == kVisibleAlpha);
+    CHECK(threshold_of([](int x, int y) { return (x + y) % 4 == 0 ? 2 : 0; }) == kVisibleAlpha);
+    CHECK(least_visible_alpha(make_image(3, 3, 3)) == kVisibleAlpha);
+}
