@@ -78,7 +78,13 @@ float mask_threshold(const Image& image, const std::string& input, AlphaUse alph
 Mask mask_of(const Image& image, const std::string& input, AlphaUse alpha, float threshold,
              const BuildOptions& o, std::vector<std::string>& warnings) {
     if (!o.mask.empty()) return read_mask(o.mask, threshold, o.read.limits, image, input, warnings);
-    return alpha == AlphaUse::kIgnore ? Mask() : alpha_mask(image, threshold);
+    if (alpha == AlphaUse::kIgnore) return {};
+    Mask mask = alpha_mask(image, threshold);
+    if (!mask.empty() && mask.count() == 0)
+        throw Error(ErrorKind::kUnsupported,
+                    cat(input, ": no pixel is inside the mask: alpha is below ", threshold,
+                        " everywhere; --alpha ignore meshes the colours without it"));
+    return mask;
 }
 
 // Returns how to read the images: no more channels than are meshed.

@@ -262,7 +262,8 @@ class Pictures(CliCase):
         picture_files.png(self.folder / "black.png", np.zeros((9, 12, 1)))
         picture_files.png(self.folder / "small.png", np.ones((9, 11, 1)))
         out = ("-o", "out.glb")
-        self.assert_error("imgmesh-build", ("clear.png", *out), 5, "clear.png", "no pixel is inside")
+        self.assert_error("imgmesh-build", ("clear.png", *out), 5, "clear.png", "no pixel is inside",
+                          "alpha is below 0.5 everywhere", "--alpha ignore")
         self.assert_error("imgmesh-build", ("in.png", *out, "--mask", "black.png"), 5, "error: black.png: no pixel is inside",
                           "largest value is 0 of 255")
         self.assert_error("imgmesh-build", ("in.png", *out, "--mask", "small.png"), 4, "error: small.png", "11x9", "in.png",
