@@ -40,7 +40,9 @@ CodecPicture picture_of(const JobName& name, const JobResult& result) {
     const std::vector<std::uint8_t> copy(header.begin(), header.end());
     try {
         CodecPicture picture = codec_picture_from(copy);
-        if (picture.channel_names.size() == static_cast<std::size_t>(result.offer.channels)) return picture;
+        const bool has_inks = !picture.color.inks || result.offer.channels >= 4;
+        if (has_inks && picture.channel_names.size() == static_cast<std::size_t>(result.offer.channels))
+            return picture;
     } catch (const std::runtime_error&) {
     }
     throw wrong_answer(name);

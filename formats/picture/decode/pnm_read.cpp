@@ -182,6 +182,10 @@ DecodedPicture read_pam(Pnm& in) {
     out.image.sample_type = type_of(scale.largest);
     name_channels(in, header, out.image);
     out.color.inks = header.type.starts_with("CMYK");
+    const int inks = header.type == "CMYK_ALPHA" ? 5 : 4;
+    if (out.color.inks && out.image.channels < inks)
+        throw in.broken(cat("the PAM's type is ", printable(header.type), " and its depth ",
+                            out.image.channels, ", expected ", inks));
     read_codes(in.text.rest(), scale, out.image);
     scale.tell(out);
     out.largest_code = static_cast<float>(scale.largest);
