@@ -22,9 +22,9 @@ namespace imgmesh {
 std::vector<Vec2f> outer_positions(const BaseMesh& mesh, const PixelMap& map);
 
 /// Moves the vertices of all levels so that they cover whole pixels, and no map folds by that. The mesh of a
-/// whole image is stretched to its sides. Of masked images, boundaries move to outer_positions(),
-/// and moves that would fold the map are left out: there parts of squares are not covered. Maps keep their
-/// weights, so that the reconstruction through them stays the same to the bit.
+/// whole image is stretched to its sides. Of masked images, boundaries move to outer_positions(), and moves
+/// that would fold the map are left out: there parts of squares are not covered. Maps keep their weights, so
+/// that the reconstruction through them stays the same to the bit.
 void extend_to_outer_edge(MeshImage& mesh_image);
 
 }  // namespace imgmesh

@@ -1,12 +1,10 @@
 #include "libcore/mesh/stretch.h"
 
 #include <algorithm>
-#include <array>
 #include <limits>
 
 #include "libcore/mesh/adjacency.h"
-#include "libcore/mesh/grid_area.h"
-#include "libcore/mesh/mapped_position.h"
+#include "libcore/mesh/move_folds.h"
 
 namespace imgmesh {
 namespace {
@@ -50,59 +48,39 @@ struct PixelBox {
 class Mender {
   public:
     Mender(const BaseMesh& mesh, const PixelMap& map, std::vector<Vec2f>& position)
-        : mesh_(mesh), map_(map), position_(position), sides_(box_of(position)) {}
+        : mesh_(mesh),
+          map_(map),
+          position_(position),
+          folds_(mesh, map, position),
+          sides_(box_of(position)) {}
 
     // Returns whether nothing is folded any more.
     bool mend() {
-        if (const std::vector<Id> first = near_folds(); first.empty()) return true;
+        std::vector<Id> near = near_folds();
+        if (near.empty()) return true;
         corners_ = vertex_corners(mesh_.faces, mesh_.vertex_count());
         pixels_of_faces();
         constexpr int kMostRounds = 16;
         for (int round = 0; round < kMostRounds; ++round) {
             bool changed = false;
-            for (const Id v : near_folds()) changed |= improve(v);
-            if (near_folds().empty()) return true;
+            for (const Id v : near) changed |= improve(v);
             if (!changed) return false;
+            near = near_folds();
+            if (near.empty()) return true;
         }
         return false;
     }
 
   private:
-    bool is_turned(const Face& face) const {
-        const auto [a, b, c] = face;
-        return signed_area2(mesh_.position[a], mesh_.position[b], mesh_.position[c]) > 0 &&
-               !(signed_area2(position_[a], position_[b], position_[c]) > 0);
-    }
-
-    // Calls visit(pixels) for each triangle of the cell of 2 x 2 pixels, on both diagonals, that has folded.
-    template <typename Visit>
-    void folds_of_cell(int x, int y, Visit&& visit) const {
-        const std::array<const PixelCoord*, 4> cell = {&map_.at(x, y), &map_.at(x, y + 1),
-                                                       &map_.at(x + 1, y + 1), &map_.at(x + 1, y)};
-        for (const PixelCoord* c : cell)
-            if (c->face == kNone) return;  // in the image of a whole mesh there are none
-        std::array<Vec2d, 4> before, after;
-        for (std::size_t i = 0; i < 4; ++i) {
-            before[i] = mapped_position(mesh_.faces, mesh_.position, *cell[i]);
-            after[i] = mapped_position(mesh_.faces, position_, *cell[i]);
-        }
-        for (std::size_t i = 0; i < 4; ++i) {
-            const std::size_t j = (i + 1) % 4, k = (i + 2) % 4;
-            if (grid_area2(before[i], before[k], before[j]) > 0 &&
-                !(grid_area2(after[i], after[k], after[j]) > 0))
-                visit(std::array{cell[i], cell[j], cell[k]});
-        }
-    }
-
     // The vertices of all faces that have turned over or hold a pixel of a fold, in order.
     std::vector<Id> near_folds() const {
         std::vector<Id> out;
         const auto add = [&](const Face& face) { out.insert(out.end(), face.begin(), face.end()); };
         for (const Face& face : mesh_.faces)
-            if (is_turned(face)) add(face);
+            if (folds_.is_turned(face)) add(face);
         for (int y = 0; y + 1 < map_.height; ++y)
             for (int x = 0; x + 1 < map_.width; ++x)
-                folds_of_cell(x, y, [&](const std::array<const PixelCoord*, 3>& pixels) {
+                folds_.of_cell(x, y, [&](const auto& pixels) {
                     for (const PixelCoord* c : pixels) add(mesh_.faces[c->face]);
                 });
         std::sort(out.begin(), out.end());
@@ -121,12 +99,12 @@ class Mender {
         int folds = 0;
         PixelBox box;
         for (const std::size_t corner : corners_.of(v)) {
-            folds += is_turned(mesh_.faces[corner / 3]);
+            folds += folds_.is_turned(mesh_.faces[corner / 3]);
             box.add(pixels_[corner / 3]);
         }
         for (int y = std::max(box.top - 1, 0); y <= std::min(box.bottom, map_.height - 2); ++y)
             for (int x = std::max(box.left - 1, 0); x <= std::min(box.right, map_.width - 2); ++x)
-                folds_of_cell(x, y, [&](const auto&) { ++folds; });
+                folds_.of_cell(x, y, [&](const auto&) { ++folds; });
         return folds;
     }
 
@@ -155,6 +133,7 @@ class Mender {
     const BaseMesh& mesh_;
     const PixelMap& map_;
     std::vector<Vec2f>& position_;
+    MoveFolds folds_;
     Box sides_;
     VertexCorners corners_;
     std::vector<PixelBox> pixels_;
