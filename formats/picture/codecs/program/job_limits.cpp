@@ -33,7 +33,8 @@ class Limit {
 void limit_job(std::uint64_t samples, [[maybe_unused]] std::uint64_t input_bytes) {
     static const Limit memory(RLIMIT_AS), time(RLIMIT_CPU);
     samples = std::min(samples, std::uint64_t{1} << 44);  // no sum below overflows
-#ifndef IMGMESH_SANITIZED                                 // whose shadow memory takes terabytes of addresses
+// Not with sanitizers, whose shadow memory takes terabytes of addresses.
+#ifndef IMGMESH_SANITIZED
     constexpr std::uint64_t kRest = std::uint64_t{512} << 20;
     // JPEG 2000's wavelets take 4 bytes a sample three times over; HEIF's decoder keeps some images.
     constexpr std::uint64_t kBytesOfSample = 32;
