@@ -5,6 +5,8 @@
 #include <string_view>
 #include <vector>
 
+#include "formats/files/byte_reader.h"
+
 namespace imgmesh {
 namespace {
 
@@ -145,25 +147,18 @@ std::optional<CodePoints> code_points_of(Bytes unit) {
 std::optional<CodePoints> hevc_code_points(Bytes file) {
     constexpr std::size_t kWindow = std::size_t{1} << 20;  // a file's boxes are at its start
     const Bytes start = file.first(std::min(file.size(), kWindow));
-    const std::string_view text(reinterpret_cast<const char*>(start.data()), start.size());
-    const auto number = [&](std::size_t at, int count) {
-        std::size_t value = 0;
-        for (int i = 0; i < count; ++i)
-            value = value << 8 |
-                    (at + static_cast<std::size_t>(i) < start.size() ? start[at + static_cast<std::size_t>(i)]
-                                                                     : 0u);
-        return value;
-    };
+    const std::string_view text = text_of(start);
+    const ByteReader in(start, ByteOrder::kBig);
     for (std::size_t box = text.find("hvcC"); box != std::string_view::npos;
          box = text.find("hvcC", box + 4)) {
         std::size_t at = box + 4 + 22;
-        const std::size_t arrays = number(at++, 1);
-        for (std::size_t i = 0; i < arrays && at < start.size(); ++i) {
-            constexpr std::size_t kSequence = 33;
-            const std::size_t type = number(at, 1) & 63, units = number(at + 1, 2);
+        const std::uint32_t arrays = in.number_at(at++, 1);
+        for (std::uint32_t i = 0; i < arrays && at < start.size(); ++i) {
+            constexpr std::uint32_t kSequence = 33;
+            const std::uint32_t type = in.number_at(at, 1) & 63, units = in.number_at(at + 1, 2);
             at += 3;
-            for (std::size_t j = 0; j < units && at + 2 < start.size(); ++j) {
-                const std::size_t size = std::min(number(at, 2), start.size() - at - 2);
+            for (std::uint32_t j = 0; j < units && at + 2 < start.size(); ++j) {
+                const std::size_t size = std::min<std::size_t>(in.number_at(at, 2), start.size() - at - 2);
                 if (type == kSequence)
                     if (const auto codes = code_points_of(start.subspan(at + 2, size))) return codes;
                 at += 2 + size;
