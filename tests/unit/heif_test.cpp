@@ -9,11 +9,6 @@
 
 using namespace imgmesh;
 
-// The encoder of HEIC, which only this test calls, keeps some memory.
-extern "C" const char* __lsan_default_suppressions() {
-    return "leak:libx265\n";
-}
-
 namespace {
 
 // 32 x 32 pixels of one colour, in codes of that many bits, and what is said of their colours.

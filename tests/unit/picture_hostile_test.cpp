@@ -15,11 +15,6 @@
 using namespace imgmesh;
 using Bytes = std::vector<std::uint8_t>;
 
-// The encoder behind HEIF, used by these tests alone, leaks a little.
-extern "C" const char* __lsan_default_suppressions() {
-    return "leak:libx265\n";
-}
-
 namespace {
 
 const char* const kNames[] = {"a.png", "a.jpg", "a.tif", "a.exr", "a.webp", "a.gif",
