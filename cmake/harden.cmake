@@ -34,10 +34,8 @@ target_compile_options(imgmesh_compiler INTERFACE
   $<BUILD_INTERFACE:$<$<NOT:$<CONFIG:Debug>>:-U_FORTIFY_SOURCE>>
   $<BUILD_INTERFACE:$<$<NOT:$<CONFIG:Debug>>:-D_FORTIFY_SOURCE=3>>)
 
-# Programs at any address. Modules have CMake's -fPIC, which comes before these options.
-set(_is_module $<STREQUAL:$<TARGET_PROPERTY:TYPE>,MODULE_LIBRARY>)
+# Programs at any address; cmake/compiler.cmake compiles for that.
 set(_is_program $<STREQUAL:$<TARGET_PROPERTY:TYPE>,EXECUTABLE>)
-target_compile_options(imgmesh_compiler INTERFACE $<BUILD_INTERFACE:$<$<NOT:${_is_module}>:-fPIE>>)
 target_link_options(imgmesh_compiler INTERFACE $<BUILD_INTERFACE:$<${_is_program}:-pie>>)
 foreach(_word relro now noexecstack)
   check_linker_flag(CXX -Wl,-z,${_word} IMGMESH_LINKS_${_word})
