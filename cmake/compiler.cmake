@@ -20,11 +20,11 @@ target_compile_options(imgmesh_compiler INTERFACE -Wno-psabi)
 # Nobody reads errno or floating-point flags; without them loops with a choice in them become vector code. No result changes.
 target_compile_options(imgmesh_compiler INTERFACE -fno-trapping-math -fno-math-errno)
 # The libraries go into programs and into modules that other programs load (python/). No name of ours is visible outside
-# of these, so code for any address calls as directly as other code.
-set(CMAKE_POSITION_INDEPENDENT_CODE ON)
+# of these, so code for any address calls as directly as other code. Programs have the same flags: they share precompiled
+# headers with the libraries.
 set(CMAKE_CXX_VISIBILITY_PRESET hidden)
 set(CMAKE_VISIBILITY_INLINES_HIDDEN ON)
-target_compile_options(imgmesh_compiler INTERFACE -fno-semantic-interposition)
+target_compile_options(imgmesh_compiler INTERFACE -fPIC -fno-semantic-interposition)
 if(IMGMESH_WERROR)
   target_compile_options(imgmesh_compiler INTERFACE -Werror)
 endif()
