@@ -177,6 +177,21 @@ class Hostile(CliCase):
         self.check(self.made("tiles.j2k", tiles), PICTURE_RUNS, REFUSED)
         self.check(self.made("none.jp2", head + boxed(b"free", size_marker(8, 8))), PICTURE_RUNS, REFUSED)
 
+    def test_jpeg2000_of_packets_that_are_not_there(self):
+        """65,535 layers of each tile, said by the header of the image or by that of the first tile."""
+        Image.fromarray(picture_files.noise(256, 256, seed=4)).save(self.folder / "a.j2k", tile_size=(8, 8))
+        stream = (self.folder / "a.j2k").read_bytes()
+        at, tile = stream.index(b"\xff\x52"), stream.index(b"\xff\x90")
+        style = stream[at:at + 2 + struct.unpack_from(">H", stream, at + 2)[0]]
+        many = style[:6] + b"\xff\xff" + style[8:]
+        self.check(self.made("layers.j2k", stream.replace(style, many)), PICTURE_RUNS, REFUSED)
+        self.assert_error("imgmesh-build", ["layers.j2k", "-o", "x.glb"], 4, "layers.j2k", "packets", "so small a file")
+        length, = struct.unpack_from(">I", stream, tile + 6)
+        part = stream[tile:tile + 6] + struct.pack(">I", length + len(many)) + stream[tile + 10:tile + 12] + many
+        self.check(self.made("tile.j2k", stream[:tile] + part + stream[tile + 12:]), PICTURE_RUNS, REFUSED)
+        few = style[:6] + b"\0\x09" + style[8:]
+        self.check(self.made("few.j2k", stream.replace(style, few)), PICTURE_RUNS, READ)
+
     def test_canvas_and_frame(self):
         """A few bytes that claim, or hold, an image of many pixels."""
         Image.new("RGB", (4096, 4096), (9, 8, 7)).save(self.folder / "solid.webp", lossless=True)

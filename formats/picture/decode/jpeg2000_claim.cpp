@@ -1,10 +1,12 @@
 // Source: T.800 - boxes (I.4), the codestream's first markers (A.4.1, A.5.1).
 #include "formats/picture/decode/jpeg2000_claim.h"
 
+#include <algorithm>
 #include <optional>
 #include <string_view>
 
 #include "formats/files/byte_reader.h"
+#include "formats/picture/decode/jpeg2000_packets.h"
 #include "libcore/base/error.h"
 
 namespace imgmesh {
@@ -67,6 +69,16 @@ void claim_jpeg2000(const std::string& path, std::span<const std::uint8_t> bytes
         throw broken(cat("the image is ", claim.width, "x", claim.height, " in ", columns, " x ", rows,
                          " tiles, expected 1 to ", kMostTiles, ", of ", kLeastPixels,
                          " pixels if there are many"));
+    // A packet takes a byte at least, and OpenJPEG steps through all of them, also through those that the
+    // file does not have. Twenty-five million take it three seconds.
+    constexpr std::int64_t kFewPackets = 4'000'000;
+    const std::int64_t packets = count_packets(bytes.subspan(static_cast<std::size_t>(*start)),
+                                               {columns * rows, std::min(tile_width, claim.width),
+                                                std::min(tile_height, claim.height), claim.channels});
+    const auto most = std::max(kFewPackets, static_cast<std::int64_t>(bytes.size()));
+    if (packets > most)
+        throw broken(
+            cat("it speaks of ", packets, " packets, expected at most ", most, " in so small a file"));
 }
 
 }  // namespace imgmesh
