@@ -19,7 +19,6 @@
 #include <exception>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <string>
 #include <system_error>
 
@@ -68,7 +67,8 @@ void be_silent() {
 }
 
 // Whether another thread than this one is at work. Threads may end while their folder is read, so none of the
-// steps may throw: the operator ++ of an iterator would.
+// steps may throw: the operator ++ of an iterator would, and so would an iterator over the text of a file
+// whose thread ends between open() and read().
 bool other_threads_work() {
     std::error_code failed;
     std::filesystem::directory_iterator thread("/proc/self/task", failed);
@@ -76,7 +76,8 @@ bool other_threads_work() {
     for (; !failed && thread != std::filesystem::directory_iterator(); thread.increment(failed)) {
         if (thread->path().filename() == std::to_string(::getpid())) continue;
         std::ifstream file(thread->path() / "stat");
-        const std::string text{std::istreambuf_iterator<char>(file), {}};
+        std::string text;
+        std::getline(file, text, '\0');  // all of it; a thread's name may hold a line feed
         if (text.find(") S ") == std::string::npos) return true;
     }
     return bool(failed);
