@@ -179,7 +179,8 @@ class Hostile(CliCase):
 
     def test_jpeg2000_of_packets_that_are_not_there(self):
         """65,535 layers of each tile, said by the header of the image or by that of the first tile."""
-        Image.fromarray(picture_files.noise(256, 256, seed=4)).save(self.folder / "a.j2k", tile_size=(8, 8))
+        noise = (picture_files.noise(256, 256, seed=4) * 255).astype(np.uint8)
+        Image.fromarray(noise).save(self.folder / "a.j2k", tile_size=(8, 8))
         stream = (self.folder / "a.j2k").read_bytes()
         at, tile = stream.index(b"\xff\x52"), stream.index(b"\xff\x90")
         style = stream[at:at + 2 + struct.unpack_from(">H", stream, at + 2)[0]]
