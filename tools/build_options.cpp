@@ -130,7 +130,7 @@ void add_build_options(CLI::App& app, BuildOptions& o) {
                       "channel all the same"),
              image);
     CLI::Option* const alpha = add_choice(
-        app, "--alpha", o.alpha,
+        app, "--alpha", o.alpha.use,
         Choices<AlphaUse>{{"auto", AlphaUse::kAuto},
                           {"keep", AlphaUse::kKeep},
                           {"cut", AlphaUse::kCut},
@@ -139,7 +139,7 @@ void add_build_options(CLI::App& app, BuildOptions& o) {
         "the threshold, or ignore it; auto keeps what is soft and cuts the rest");
     in_group(alpha, image);
     CLI::Option* const threshold =
-        add_number(app, "--alpha-threshold", o.alpha_threshold, {0, 1, true},
+        add_number(app, "--alpha-threshold", o.alpha.threshold, {0, 1, true},
                    {"Least alpha, or brightness of a mask, of the pixels that are meshed",
                     "0.5; where alpha is kept 1/510, or 7.5/255 if specks are fainter"});
     advanced(app, in_group(threshold, image));
@@ -156,7 +156,7 @@ void add_build_options(CLI::App& app, BuildOptions& o) {
         o.params = o.preset;
         for (const auto& set : o.given) set(o.params);
         o.read.values = o.params.values;
-        if (o.params.values && o.alpha == AlphaUse::kKeep)
+        if (o.params.values && o.alpha.use == AlphaUse::kKeep)
             throw Error(
                 ErrorKind::kBadArgument,
                 "--values and --alpha keep: alpha is a mask beside values, or with --channels one of them");

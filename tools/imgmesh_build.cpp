@@ -1,5 +1,4 @@
 // imgmesh-build: images in, containers out.
-#include <algorithm>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -9,9 +8,8 @@
 #include "libcore/base/parallel.h"
 #include "libcore/base/stopwatch.h"
 #include "libcore/mesh/outer_edge.h"
-#include "libcore/pipeline/build.h"
+#include "libcore/pipeline/build_source.h"
 #include "tools/build_jobs.h"
-#include "tools/build_mask.h"
 #include "tools/build_memory.h"
 #include "tools/build_options.h"
 #include "tools/build_report.h"
@@ -27,82 +25,28 @@ using namespace imgmesh;
 
 namespace {
 
-// The threshold of masks: half, as everywhere.
-constexpr double kOpaqueEnough = 0.5;
-
-// What becomes of an image's alpha: AlphaUse, but never kAuto.
-AlphaUse alpha_use(const Image& image, const BuildOptions& o) {
-    const auto& channels = o.params.channels;
-    const bool left_out =
-        !channels.empty() && std::ranges::find(channels, "A", &ChannelChoice::name) == channels.end();
-    if (image.channel("A") < 0) return AlphaUse::kIgnore;
-    // Values have a mask beside them, which --channels A makes one of them.
-    if (o.params.values && o.alpha == AlphaUse::kAuto)
-        return o.mask.empty() ? AlphaUse::kCut : AlphaUse::kIgnore;
-    if (o.alpha == AlphaUse::kKeep) return AlphaUse::kKeep;
-    if (o.alpha == AlphaUse::kIgnore || !o.mask.empty()) return AlphaUse::kIgnore;
-    if (o.alpha == AlphaUse::kCut || left_out) return AlphaUse::kCut;
-    return has_soft_alpha(image) ? AlphaUse::kKeep : AlphaUse::kCut;
-}
-
-// Adds alpha to the channels of the mesh. Refinement is for colour alone: where nobody has asked for the
-// alpha, it is left out with a warning instead of an error.
-void keep_alpha(const Image& image, const std::string& input, bool asked, BuildParams& p,
-                std::vector<std::string>& warnings) {
-    if (p.channels.empty())
-        for (const std::string& name : split_names(image.channel_names).color)
-            p.channels.push_back({name, 1});
-    if (std::ranges::find(p.channels, "A", &ChannelChoice::name) == p.channels.end())
-        p.channels.push_back({"A", kAlphaWeight});
-    if (asked || (p.refine.value_or(0) == 0 && p.objective == Objective::kLuv)) return;
-    p.refine = 0;
-    p.objective = Objective::kLuv;
-    warnings.push_back(
-        cat(input, ": its soft alpha is kept, and so the mesh is not refined; --alpha cut refines it"));
-}
-
-// Returns the least alpha, or brightness of a mask, of the pixels that are meshed.
-float mask_threshold(const Image& image, const std::string& input, AlphaUse alpha, const BuildOptions& o,
-                     std::vector<std::string>& warnings) {
-    if (o.alpha_threshold) return static_cast<float>(*o.alpha_threshold);
-    if (alpha != AlphaUse::kKeep || !o.mask.empty()) return kOpaqueEnough;
-    const float least = least_visible_alpha(image);
-    if (least > kVisibleAlpha)
-        warnings.push_back(
-            cat(input,
-                ": its specks with an alpha below 8/255 are left out; --alpha-threshold 0.002 keeps them"));
-    return least;
+// A parameter as it is given on the command line.
+std::string option_text(std::string_view name, std::string_view value) {
+    return cat("--", name, value.empty() ? "" : " ", value);
 }
 
 // Returns the mask of --mask, or of alpha; empty() for none.
-Mask mask_of(const Image& image, const std::string& input, AlphaUse alpha, float threshold,
-             const BuildOptions& o, std::vector<std::string>& warnings) {
-    if (!o.mask.empty()) return read_mask(o.mask, threshold, o.read.limits, image, input, warnings);
-    if (alpha == AlphaUse::kIgnore) return {};
-    Mask mask = alpha_mask(image, threshold);
-    if (!mask.empty() && mask.count() == 0)
-        throw Error(ErrorKind::kUnsupported,
-                    cat(input, ": no pixel is inside the mask: alpha is below ", threshold,
-                        " everywhere; --alpha ignore meshes the colours without it"));
+Mask mask_of(const Image& image, const std::string& input, const SourcePlan& plan, const BuildOptions& o,
+             std::vector<std::string>& warnings) {
+    if (o.mask.empty()) return in_file(input, [&] { return source_mask(image, plan, option_text); });
+    std::vector<std::string> own;
+    const Image picture = read_with_warnings(o.mask, {.limits = o.read.limits}, own).image;
+    Mask mask =
+        in_file(o.mask, [&] { return picture_mask(picture, image, input, plan.threshold, option_text); });
+    warnings.insert(warnings.end(), own.begin(), own.end());
     return mask;
 }
 
 // Returns how to read the images: no more channels than are meshed.
 ReadImageOptions read_options(const BuildOptions& o) {
     ReadImageOptions read = o.read;
-    // A texture shows the colour also where other channels are meshed.
-    if (o.texture.wanted && !o.params.channels.empty()) return read;
-    if (o.params.values && o.params.channels.empty()) return read;  // all are meshed
-    read.channels.emplace();
-    for (const ChannelChoice& choice : o.params.channels) read.channels->push_back(choice.name);
+    read.channels = channels_to_read(o.params, o.texture.wanted.has_value());
     return read;
-}
-
-// The parameters with the names that channels have once they are read.
-BuildParams named_as_read(BuildParams params) {
-    if (params.values)
-        for (ChannelChoice& channel : params.channels) channel.name = value_name(channel.name);
-    return params;
 }
 
 Report build_one(const Job& job, const BuildOptions& o, const Context& context, MemoryGate& gate,
@@ -111,16 +55,15 @@ Report build_one(const Job& job, const BuildOptions& o, const Context& context, 
     check_output(job.output, context.overwrite);
     const ReadImage read = read_with_warnings(job.input, read_options(o), warnings);
     const Image& image = read.image;
-    const AlphaUse alpha = alpha_use(image, o);
-    const bool keep = alpha == AlphaUse::kKeep;
-    BuildParams params = named_as_read(o.params);
-    if (keep) keep_alpha(image, job.input, o.alpha == AlphaUse::kKeep, params, warnings);
-    const double bytes = build_memory(image, params);
+    const auto add_warning = [&](const std::string& text) { warnings.push_back(cat(job.input, ": ", text)); };
+    const SourcePlan plan = plan_source(image, o.alpha, !o.mask.empty(), o.params, option_text);
+    for (const std::string& warning : plan.warnings) add_warning(warning);
+    const bool keep = plan.alpha == AlphaUse::kKeep;
+    const double bytes = build_memory(image, plan.params);
     check_memory(cat(job.input, ": a build of ", image.width, "x", image.height, " pixels"), bytes,
                  context.max_memory);
     const MemoryGate::Share share(gate, bytes);
-    const float threshold = mask_threshold(image, job.input, alpha, o, warnings);
-    Mask mask = mask_of(image, job.input, alpha, threshold, o, warnings);
+    Mask mask = mask_of(image, job.input, plan, o, warnings);
     const bool missing = !read.data.empty(), mask_is_data = missing && mask.empty();
     if (missing) mask = in_file(job.input, [&] { return in_both(mask, read.data); });
     const double read_seconds = stage.lap();
@@ -134,20 +77,13 @@ Report build_one(const Job& job, const BuildOptions& o, const Context& context, 
                                   keep ? TextureAlpha::kOwn : TextureAlpha::kMask);
         });
     BuildResult result =
-        in_file(job.input, [&] { return build_mesh_image(image, params, progress, std::move(mask)); });
+        in_file(job.input, [&] { return build_mesh_image(image, plan.params, progress, std::move(mask)); });
     result.mesh_image.generator = context.generator;
-    if (result.mesh_image.source.has_mask) {
-        const char* of = mask_is_data ? "nodata" : o.mask.empty() ? "alpha" : "picture";
-        result.mesh_image.parameters.emplace_back("mask", std::string(of));
-        if (!mask_is_data)
-            result.mesh_image.parameters.emplace_back("alpha-threshold",
-                                                      o.alpha_threshold.value_or(threshold));
-    }
-    if (result.report.clipped_samples > 0)
-        warnings.push_back(
-            cat(job.input, ": ", result.report.clipped_samples,
-                " samples of its colours are below 0 or too large and were clipped; --values keeps "
-                "numbers as they are"));
+    const MaskOrigin origin = mask_is_data     ? MaskOrigin::kNoData
+                              : o.mask.empty() ? MaskOrigin::kAlpha
+                                               : MaskOrigin::kPicture;
+    const std::string clipped = note_source(result, origin, plan.threshold, option_text);
+    if (!clipped.empty()) add_warning(clipped);
     stage.lap();
     if (o.texture.wanted) {
         extend_to_outer_edge(result.mesh_image);
@@ -159,10 +95,10 @@ Report build_one(const Job& job, const BuildOptions& o, const Context& context, 
     // The figures are those that a reader of the container gets.
     const Container written = read_container(job.output);
     Report report = {{"input", job.input}, {"output", job.output}};
-    const char* use = image.channel("A") < 0    ? "none"
-                      : keep                    ? "kept"
-                      : alpha == AlphaUse::kCut ? "cut"
-                                                : "ignored";
+    const char* use = image.channel("A") < 0         ? "none"
+                      : keep                         ? "kept"
+                      : plan.alpha == AlphaUse::kCut ? "cut"
+                                                     : "ignored";
     report.update(image_report(image, use, o.params.values, result.report, written,
                                {read_seconds, write_seconds, whole.lap()}));
     report.update(read_report(read));
