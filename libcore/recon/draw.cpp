@@ -1,15 +1,15 @@
-// Every drawing has a map for the output's pixels: the level's own, or the mesh rasterised. Rows of L*u*v*
-// are made from it and encoded.
+// Most drawings have a map for the output's pixels: the level's own, or the mesh rasterised. Rows of L*u*v*
+// are made from it and encoded. The others are in draw_smooth.cpp.
 #include "libcore/recon/draw.h"
 
 #include <algorithm>
-#include <cmath>
 #include <functional>
 
 #include "libcore/base/error.h"
 #include "libcore/base/parallel.h"
 #include "libcore/image/luv_encoder.h"
 #include "libcore/mesh/bounded_raster.h"
+#include "libcore/recon/draw_smooth.h"
 #include "libcore/recon/level_colors.h"
 #include "libcore/recon/patch_colors.h"
 #include "libcore/recon/visit_lightness.h"
@@ -73,61 +73,13 @@ void darken_borders(const PixelMap& map, int y, float* planes) {
     }
 }
 
-// Draws lines over a lightened image. The edge nearest to a point belongs to the point's own face. Its
-// distance is the weight of the opposite corner times the height over the edge.
-class WireRow {
-  public:
-    WireRow(const BaseMesh& mesh, double scale)
-        : width_(static_cast<float>(std::sqrt(std::max(1.0, scale)))) {
-        double length = 0, area = 0;
-        for (const auto& [ia, ib, ic] : mesh.faces) {
-            const Vec2f &a = mesh.position[ia], &b = mesh.position[ib], &c = mesh.position[ic];
-            const double area2 = signed_area2(a, b, c);
-            const double sides[3] = {(b - c).norm(), (c - a).norm(), (a - b).norm()};
-            for (const double side : sides) length += side / 2;
-            area += area2 / 2;
-            heights_.push_back(Vec3d(area2 / sides[0], area2 / sides[1], area2 / sides[2]).cast<float>() *
-                               float(scale));
-        }
-        const double covered = length * scale * width_ / std::max(area * scale * scale, 1.0);
-        opacity_ = static_cast<float>(std::min(kMostOpaque, kMostInk / covered));
-    }
-
-    void draw(const PixelMap& map, int y, float* planes) const {
-        constexpr float kLighter = 0.35f;                 // share of white in the image below
-        const Vec3f white(100, 0, 0), line(15, -3, -15);  // L*u*v*; a line is a dark blue
-        const std::span<const PixelCoord> row = map.row(y);
-        for (std::size_t x = 0; x < row.size(); ++x) {
-            if (row[x].face == kNone) continue;
-            const Vec3f& height = heights_[row[x].face];
-            const float distance =
-                std::min({(1 - row[x].u - row[x].v) * height[0], row[x].u * height[1], row[x].v * height[2]});
-            const float ink = opacity_ * std::clamp(width_ / 2 + 0.5f - distance, 0.0f, 1.0f);
-            const auto at = [&](int c) -> float& { return planes[as_index(c * map.width) + x]; };
-            const Vec3f below = (1 - kLighter) * Vec3f(at(0), at(1), at(2)) + kLighter * white;
-            store(planes, map.width, x, (1 - ink) * below + ink * line);
-        }
-    }
-
-  private:
-    // Lines let a little of the image through. Lines that would cover more than a third of the image are
-    // faded.
-    static constexpr double kMostOpaque = 0.9, kMostInk = 0.3;
-
-    std::vector<Vec3f> heights_;  // of every face over its sides, opposite its corners [output pixels]
-    float width_;                 // width of a line [output pixels]
-    float opacity_;
-};
-
 // Alpha of a pixel inside; empty: 1.
 using AlphaFunction = std::function<float(const PixelCoord&)>;
 
 Image encode_rows(const SourceInfo& source, const PixelMap& map, const RowFunction& row_function,
                   const AlphaFunction& alpha = {}) {
     const bool clear = source.has_mask || alpha;
-    Image image = make_image(map.width, map.height, clear ? 4 : 3);
-    image.color_space = source.gamut == Gamut::kHdr ? ColorSpace::kLinear : source.color_space;
-    image.sample_type = source.sample_type;
+    Image image = drawing_canvas(source, map.width, map.height, clear);
     const LuvEncoder encoder(image.color_space);
     parallel_blocks(0, map.height, kGrainRows, [&](int first, int last) {
         std::vector<float> planes(as_index(map.width) * 3);
@@ -169,10 +121,12 @@ Image draw(const MeshImage& mesh_image, int level_index, const DrawParams& param
     const BaseMesh& mesh = level.mesh;
     checked_scale(source, params);
 
+    if (params.mode == DrawMode::kFlat || params.mode == DrawMode::kWire)
+        return draw_smooth(mesh_image, level_index, params);
     PixelMap raster;
-    if (may_scale(params.mode))
+    if (params.mode == DrawMode::kGouraud)
         raster = bounded_raster(mesh, sample_grid(source.width, source.height, params.scale));
-    const PixelMap& map = may_scale(params.mode) ? raster : level.map;
+    const PixelMap& map = params.mode == DrawMode::kGouraud ? raster : level.map;
     const int a = alpha_feature(source);
     switch (params.mode) {
         case DrawMode::kMap:
@@ -180,13 +134,6 @@ Image draw(const MeshImage& mesh_image, int level_index, const DrawParams& param
             return encode_rows(
                 source, map, [&](int y, float* planes) { interpolate_row(mesh, map, y, planes); },
                 a < 0 ? AlphaFunction() : [&mesh, a](const PixelCoord& c) { return at_coord(mesh, c, a); });
-        case DrawMode::kWire: {
-            const WireRow wire(mesh, params.scale);
-            return encode_rows(source, map, [&](int y, float* planes) {
-                interpolate_row(mesh, map, y, planes);
-                wire.draw(map, y, planes);
-            });
-        }
         case DrawMode::kPatches: {
             const std::vector<Vec3f> colors = patch_colors(mesh, map);
             return encode_rows(source, map, [&](int y, float* planes) {
@@ -194,24 +141,16 @@ Image draw(const MeshImage& mesh_image, int level_index, const DrawParams& param
                 darken_borders(map, y, planes);
             });
         }
-        case DrawMode::kVisits: {
-            if (level_index != 0)
-                throw Error(ErrorKind::kBadArgument,
-                            cat("level is ", level_index, ": visits are those of level 0"));
-            const std::vector<float> lightness = visit_lightness(mesh_image);
-            return encode_rows(source, map, [&](int y, float* planes) {
-                std::fill_n(planes, 3 * map.width, 0.0f);
-                std::copy_n(lightness.data() + map.row_begin(y), map.width, planes);
-            });
-        }
-        case DrawMode::kFlat:
+        default:
             break;
     }
-    const std::vector<Vec3f> colors = face_means(mesh);
-    return encode_rows(
-        source, map, [&](int y, float* planes) { face_row(colors, map, y, planes); },
-        a < 0 ? AlphaFunction()
-              : [&mesh, a](const PixelCoord& c) { return at_coord(mesh, {c.face, 1.0f / 3, 1.0f / 3}, a); });
+    if (level_index != 0)
+        throw Error(ErrorKind::kBadArgument, cat("level is ", level_index, ": visits are those of level 0"));
+    const std::vector<float> lightness = visit_lightness(mesh_image);
+    return encode_rows(source, map, [&](int y, float* planes) {
+        std::fill_n(planes, 3 * map.width, 0.0f);
+        std::copy_n(lightness.data() + map.row_begin(y), map.width, planes);
+    });
 }
 
 }  // namespace imgmesh

@@ -11,9 +11,9 @@ namespace imgmesh {
 enum class DrawMode {
     kMap,      ///< every pixel interpolates its face's corners through the pixel map: the reconstruction
     kGouraud,  ///< the base mesh with colours interpolated linearly in L*u*v* over each face
-    kWire,     ///< the edges of the base mesh over the (lightened) Gouraud drawing
+    kWire,     ///< the edges of the base mesh over the (lightened) Gouraud drawing, antialiased
     kPatches,  ///< each patch (the pixels of one face) in a colour different from its neighbours'
-    kFlat,     ///< each face in one colour, the mean of its corners' colours
+    kFlat,     ///< each face in one colour, the mean of its corners' colours, antialiased
     kVisits    ///< how often the collapse touched each pixel; few visits are bright (paper fig. 2)
 };
 
@@ -26,10 +26,10 @@ struct DrawParams {
 ///
 /// return  channels R, G, B in the source's sample type and colour space (HDR meshes in linear RGB), clamped
 ///         to [0, 1] unless the space is linear. A as well if the source has a mask: 0 outside the mask for
-///         map, patches and visits, outside the mesh for the other modes. If the mesh has a channel A, the
-///         modes map, Gouraud and flat draw it, clamped to [0, 1]; the others are opaque inside. A side has
-///         round(scale * source side) pixels, at least 1; the centre of output pixel i is at
-///         (i + 0.5) / scale - 0.5 of the source.
+///         map, patches and visits, and outside the mesh for Gouraud; for flat and wire the part of the pixel
+///         that they cover. If the mesh has a channel A, the modes map, Gouraud and flat draw it, clamped to
+///         [0, 1]; the others are opaque inside. A side has round(scale * source side) pixels, at least 1;
+///         the centre of output pixel i is at (i + 0.5) / scale - 0.5 of the source.
 ///
 /// The result is the same for any number of threads. Takes O(pixels drawn + faces) time.
 /// Throws Error(kBadArgument) for a level that does not exist, for a scale that the mode does not allow and

@@ -42,4 +42,11 @@ std::vector<Vec3f> face_means(const BaseMesh& mesh) {
     return means;
 }
 
+Image drawing_canvas(const SourceInfo& source, int width, int height, bool clear) {
+    Image image = make_image(width, height, clear ? 4 : 3);
+    image.color_space = source.gamut == Gamut::kHdr ? ColorSpace::kLinear : source.color_space;
+    image.sample_type = source.sample_type;
+    return image;
+}
+
 }  // namespace imgmesh

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "libcore/image/image.h"
 #include "libcore/mesh/mesh_image.h"
 
 namespace imgmesh {
@@ -17,5 +18,9 @@ int alpha_feature(const SourceInfo& source);
 
 /// Returns the mean colour of every face's three corners, L*u*v*. mesh.channels >= 3.
 std::vector<Vec3f> face_means(const BaseMesh& mesh);
+
+/// Returns an empty image to draw on: R, G, B, and A if `clear`, in the source's sample type and colour
+/// space, or for HDR meshes in linear RGB.
+Image drawing_canvas(const SourceInfo& source, int width, int height, bool clear);
 
 }  // namespace imgmesh

@@ -167,20 +167,6 @@ TEST_CASE("draw gouraud: an enlarged image samples at (i + 0.5) / scale - 0.5") 
     }
 }
 
-TEST_CASE("draw flat: the mean of the corners") {
-    const MeshImage m = random_mesh_image(40, 30, 3, 2, 6);
-    const Level& level = m.levels[0];
-    const Image image = draw(m, 0, {.mode = DrawMode::kFlat});
-    for (int y = 0; y < 30; ++y)
-        for (int x = 0; x < 40; ++x) {
-            const Face& f = level.mesh.faces[level.map.row(y)[std::size_t(x)].face];
-            const Vec3f mean =
-                (corner(level.mesh, f[0]) + corner(level.mesh, f[1]) + corner(level.mesh, f[2])) / 3;
-            CHECK((rgb(image, x, y) - encoded_from_luv(ColorSpace::kSrgb, mean)).cwiseAbs().maxCoeff() <
-                  1e-4);
-        }
-}
-
 // One square of two triangles, light grey: its diagonal and sides are dark, its inside is lighter than
 // before.
 TEST_CASE("draw wire: dark lines on the edges, one output pixel wide, the rest lightened") {
@@ -250,7 +236,7 @@ TEST_CASE("draw: a mask gives alpha, 0 outside with black") {
 
 TEST_CASE("draw: the same bytes for one thread and several") {
     const MeshImage m = random_mesh_image(100, 80, 9, 7, 8);
-    for (const DrawMode mode : {DrawMode::kMap, DrawMode::kGouraud, DrawMode::kWire, DrawMode::kPatches}) {
+    for (const DrawMode mode : {DrawMode::kMap, DrawMode::kGouraud, DrawMode::kPatches}) {
         const Image many = draw(m, 0, {.mode = mode});
         const ThreadLimit limit(1);
         CHECK(draw(m, 0, {.mode = mode}).data == many.data);
