@@ -7,6 +7,7 @@
 #include "formats/container/validate.h"
 #include "formats/exr/exr_layers.h"
 #include "formats/files/atomic_file.h"
+#include "formats/files/image_signature.h"
 #include "formats/files/one_line.h"
 #include "formats/findings/findings.h"
 #include "formats/gltf/glb.h"
@@ -146,6 +147,12 @@ Container read(const std::string& path, const ContainerLimits& limits, Findings&
     const std::filesystem::path folder = std::filesystem::path(path).parent_path();
     FileReader files(limits.max_bytes);
     const Bytes main = files.read(path, FileKind::kStream);
+    if (const std::string_view image = image_signature(main); !image.empty()) {
+        const std::string what = cat("is ", image == "EXR" || image == "HDR" ? "an " : "a ", image,
+                                     " image, not a container; imgmesh-build makes one of it");
+        if (findings.collects()) refuse("json.syntax", what);
+        throw Error(ErrorKind::kBadFile, cat(path, ": ", what));
+    }
     GlbView glb{{reinterpret_cast<const char*>(main.data()), main.size()}, {}};
     if (is_glb(main)) glb = unpack_glb(main, findings);
     Asset asset = asset_from_json(glb.json, limits, findings);

@@ -5,8 +5,10 @@
 #include <initializer_list>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <span>
 
 #include "formats/files/atomic_file.h"
+#include "formats/files/image_signature.h"
 #include "formats/findings/findings.h"
 #include "formats/findings/json_parse.h"
 #include "libcore/base/error.h"
@@ -174,6 +176,11 @@ WarpEdit edit(const Node& node) {
 }
 
 json parse(std::string_view text, const std::string& name, const EditLimits& limits) {
+    const std::span bytes(reinterpret_cast<const std::uint8_t*>(text.data()), text.size());
+    if (const std::string_view image = image_signature(bytes); !image.empty() || has_glb_signature(bytes))
+        throw Error(ErrorKind::kBadFile,
+                    cat(name, ": no JSON but ", image.empty() ? "a container" : cat("an image (", image, ")"),
+                        ", expected a file of edits"));
     Findings findings = Findings::collecting();
     json document;
     std::string refusal;

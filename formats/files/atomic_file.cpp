@@ -204,7 +204,7 @@ void AtomicFile::Temporary::check_rename() const {
     struct stat there = {};
     if (::lstat(target_.c_str(), &there) != 0) return;
     if (!overwrite_) fail(path_, "not overwritten", EEXIST);
-    if (S_ISDIR(there.st_mode)) fail(path_, "cannot write", EISDIR);
+    if (S_ISDIR(there.st_mode)) throw Error(ErrorKind::kIo, cat(path_, ": cannot write: it is a folder"));
 }
 
 void AtomicFile::Temporary::rename() {
@@ -338,7 +338,7 @@ std::vector<std::uint8_t> read_file(const std::string& path, std::uint64_t max_b
     const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOCTTY | wait));
     struct stat info = {};
     if (file.fd < 0 || ::fstat(file.fd, &info) != 0) fail(path, "cannot read", errno);
-    if (S_ISDIR(info.st_mode)) fail(path, "cannot read", EISDIR);
+    if (S_ISDIR(info.st_mode)) throw Error(ErrorKind::kIo, cat(path, ": cannot read: it is a folder"));
     const bool is_pipe = S_ISFIFO(info.st_mode) && kind == FileKind::kStream;
     if (!S_ISREG(info.st_mode) && !is_pipe)
         throw Error(ErrorKind::kIo, cat(path, ": cannot read: it is not a regular file",

@@ -6,9 +6,11 @@
 #include <cctype>
 #include <optional>
 #include <string_view>
+#include <utility>
 
 #include "formats/files/byte_reader.h"
 #include "formats/files/extension.h"
+#include "formats/files/image_signature.h"
 #include "formats/picture/decode/jpeg2000_claim.h"
 #include "formats/picture/decode/other_formats.h"
 #include "formats/picture/decode/tga_signature.h"
@@ -47,30 +49,12 @@ void claim_heif(Bytes b, PictureClaim& claim) {
     }
 }
 
-struct Signature {
-    PictureFormat format;
-    std::size_t offset;
-    std::string_view bytes;
-};
-using namespace std::string_view_literals;
-constexpr Signature kSignatures[] = {{PictureFormat::kPng, 0, "\x89PNG\r\n\x1a\n"sv},
-                                     {PictureFormat::kJpeg, 0, "\xFF\xD8\xFF"sv},
-                                     {PictureFormat::kTiff, 0, "II*\0"sv},
-                                     {PictureFormat::kTiff, 0, "MM\0*"sv},
-                                     {PictureFormat::kTiff, 0, "II+\0"sv},
-                                     {PictureFormat::kTiff, 0, "MM\0+"sv},
-                                     {PictureFormat::kExr, 0, "\x76\x2f\x31\x01"sv},
-                                     {PictureFormat::kWebp, 8, "WEBPVP8"sv},
-                                     {PictureFormat::kGif, 0, "GIF8"sv},
-                                     {PictureFormat::kBmp, 0, "BM"sv},
-                                     {PictureFormat::kBmp, 0, "BA"sv},
-                                     {PictureFormat::kHdr, 0, "#?"sv},
-                                     {PictureFormat::kJpeg2000, 0, "\0\0\0\x0CjP  "sv},
-                                     {PictureFormat::kJpeg2000, 0, "\xFF\x4F\xFF\x51"sv},
-                                     {PictureFormat::kHeif, 4, "ftyphei"sv},
-                                     {PictureFormat::kHeif, 4, "ftyphevc"sv},
-                                     {PictureFormat::kHeif, 4, "ftypmif1"sv},
-                                     {PictureFormat::kHeif, 4, "ftypavif"sv}};
+// The formats that have a signature at their begin.
+constexpr std::pair<std::string_view, PictureFormat> kFormats[] = {
+    {"PNG", PictureFormat::kPng},  {"JPEG", PictureFormat::kJpeg}, {"TIFF", PictureFormat::kTiff},
+    {"EXR", PictureFormat::kExr},  {"WebP", PictureFormat::kWebp}, {"GIF", PictureFormat::kGif},
+    {"BMP", PictureFormat::kBmp},  {"HDR", PictureFormat::kHdr},   {"JPEG 2000", PictureFormat::kJpeg2000},
+    {"HEIF", PictureFormat::kHeif}};
 
 // Camera raw files have TIFF's signature, and their first TIFF image is a thumbnail.
 constexpr std::string_view kRawExtensions[] = {".3fr", ".arw", ".cr2", ".dcr", ".dng", ".erf",
@@ -82,13 +66,13 @@ constexpr std::string_view kTgaExtensions[] = {".tga", ".tpic", ".vda", ".icb", 
 PictureFormat recognise(const std::string& path, Bytes b) {
     const std::string extension = lower_extension(path);
     if (b.empty()) throw broken(path, "is empty, expected an image");
-    const ByteReader in = big_endian(b);
-    for (const Signature& s : kSignatures) {
-        if (!in.has_at(s.offset, s.bytes)) continue;
-        if (s.format == PictureFormat::kTiff && std::ranges::count(kRawExtensions, extension))
+    const std::string_view signature = image_signature(b);
+    for (const auto& [name, format] : kFormats) {
+        if (signature != name) continue;
+        if (format == PictureFormat::kTiff && std::ranges::count(kRawExtensions, extension))
             throw Error(ErrorKind::kUnsupported,
                         cat(path, ": camera raw files are not supported; develop it to TIFF, EXR or PNG"));
-        return s.format;
+        return format;
     }
     const bool letter_p = b.size() > 2 && b[0] == 'P' && (std::isspace(b[2]) || b[2] == '#');
     const bool pam = letter_p && b[1] == '7' && b[2] != ' ';  // a space follows in thumbnails of XV
