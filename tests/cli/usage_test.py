@@ -71,6 +71,63 @@ class Usage(CliCase):
         for tool in TOOLS:
             self.assert_error(tool, ["--frobnicate", "in", "-o", "out.glb"], 2, "--frobnicate")
 
+    def test_mistyped_words(self):
+        """The option or the word that was probably meant; a far one is not guessed. The mistake counts more than what
+        is missing because of it."""
+        for tool, args, meant in (
+                ("imgmesh-build", ["in.png", "--ouput", "out.glb"], "--output"),
+                ("imgmesh-build", ["in.png", "-o", "out.glb", "--face", "40"], "--faces"),
+                ("imgmesh-build", ["in.png", "-o", "out.glb", "--level_faces=40"], "--level-faces"),
+                ("imgmesh-build", ["in.png", "-o", "out.glb", "--colour-weight", "2"], "--color-weight"),
+                ("imgmesh-build", ["in.png", "-o", "out.glb", "-faces", "2"], "--faces"),
+                ("imgmesh-info", ["in.glb", "--validte"], "--validate"),
+                ("imgmesh-warp", ["in.glb", "--pin-boarder"], "--pin-border"),
+                ("imgmesh-reconstruct", ["in.glb", "-o", "o.png", "--mode", "wier"], "wire"),
+                ("imgmesh-build", ["in.png", "-o", "out.glb", "--preset", "bets"], "best")):
+            self.assert_error(tool, args, 2, f"; did you mean {meant}?")
+        for tool, args in (("imgmesh-build", ["in.png", "-o", "out.glb", "--frobnicate"]),
+                           ("imgmesh-build", ["in.png", "-o", "out.glb", "--" + "faces" * 2000]),
+                           ("imgmesh-reconstruct", ["in.glb", "-o", "o.png", "--mode", "x"])):
+            self.assertNotIn("mean", self.assert_error(tool, args, 2).stderr)
+
+    def test_long_words_are_cut(self):
+        long = "é" * 5000
+        for args in (["--faces", long], ["--preset", long], ["--channels", long + ":x"], ["--" + long]):
+            error = self.assert_error("imgmesh-build", ["in.png", "-o", "out.glb", *args], 2, "...").stderr
+            self.assertLess(len(error), 300)
+        # A name keeps its end, and the reason.
+        self.assert_error("imgmesh-info", ["a/" * 1000 + "x.glb"], 3, "...", "x.glb: cannot read")
+
+    def test_surplus_arguments_are_counted(self):
+        names = [f"{i}.glb" for i in range(1000)]
+        error = self.assert_error("imgmesh-info", names, 2, "999 arguments too many", "'1.glb'", "CONTAINER").stderr
+        self.assertNotIn("2.glb", error)
+        self.assert_error("imgmesh-info", names[:2], 2, "1 argument too many: '1.glb'")
+
+    def test_files_of_another_kind(self):
+        """An image where a container is due, the other way round, and folders: called what they are."""
+        picture_files.png(self.folder / "in.png", picture_files.ramp(9, 7))
+        self.build("in.png", output="c.glb")
+        self.build("in.png", output="c.gltf")
+        (self.folder / "folder").mkdir()
+        tools = {"imgmesh-info": [], "imgmesh-reconstruct": ["-o", "o.png"], "imgmesh-convert": ["-o", "o.glb"],
+                 "imgmesh-segment": ["-o", "o.png"], "imgmesh-compare": ["in.png"]}
+        for tool, args in tools.items():
+            if tool != "imgmesh-compare":  # which takes images too
+                self.assert_error(tool, ["in.png", *args], 4, "in.png: is a PNG image, not a container", "imgmesh-build")
+            self.assert_error(tool, ["folder", *args], 3, "folder: cannot read: it is a folder")
+        warp = ["--image", "in.png", "-o", "o.png"]
+        self.assert_error("imgmesh-warp", ["in.png", *warp], 4, "in.png: is a PNG image, not a container")
+        for name in ("c.glb", "c.gltf"):
+            self.assert_error("imgmesh-build", [name, "-o", "o.glb"], 5, f"{name}: a glTF file, not an image",
+                              "imgmesh-reconstruct")
+        self.assert_error("imgmesh-warp", ["c.glb", *warp, "--edits", "in.png"], 4, "in.png: no JSON but an image (PNG)")
+        self.assert_error("imgmesh-warp", ["c.glb", *warp, "--edits", "c.glb"], 4, "c.glb: no JSON but a container")
+        self.assert_error("imgmesh-build", ["folder", "-o", "o.glb"], 3, "folder: cannot read: it is a folder")
+        self.assert_error("imgmesh-build", ["in.png", "-o", "o.glb", "--config", "folder"], 3, "folder")
+        # The validator lists it as any other finding.
+        self.assertIn("is a PNG image", self.run_tool("imgmesh-info", "in.png", "--validate").stdout)
+
     def test_output_is_required(self):
         self.assert_error("imgmesh-build", ["in.png"], 2, "--output")
         self.assert_error("imgmesh-reconstruct", ["in.glb"], 2, "--output")

@@ -3,6 +3,7 @@
 #include <sstream>
 
 #include "libcore/base/error.h"
+#include "tools/common/did_you_mean.h"
 #include "tools/common/numbers.h"
 #include "tools/common/text.h"
 
@@ -92,4 +93,35 @@ TEST_CASE("parse_number: finite numbers, wholly read") {
                          "--density '0': expected a number above 0 and at most 100", Error);
     CHECK_THROWS_WITH_AS(parse_number("--error", "nan", {0}),
                          "--error 'nan': expected a number of at least 0", Error);
+}
+
+// A word for each kind of mistake: too many, missing, wrong and swapped letters, case, dashes, a beginning.
+TEST_CASE("nearest_word: what was probably meant") {
+    const std::vector<std::string> words = {"--faces", "--level-faces", "--levels", "--output",
+                                            "--max-memory"};
+    for (const auto& [typed, meant] :
+         {std::pair("--facess", "--faces"), std::pair("--fces", "--faces"), std::pair("--fades", "--faces"),
+          std::pair("--afces", "--faces"), std::pair("--FACES", "--faces"), std::pair("-faces", "--faces"),
+          std::pair("--lev", "--levels"), std::pair("--level_faces", "--level-faces"),
+          std::pair("--level", "--levels"), std::pair("--max-mem", "--max-memory")})
+        CHECK(nearest_word(typed, words) == meant);
+    for (const char* typed : {"", "--", "--x", "--frobnicate", "--fax", "--input-file"})
+        CHECK(nearest_word(typed, words) == "");
+    CHECK(nearest_word(std::string(100000, 'f'), words) == "");
+    CHECK(nearest_word("x", {"y"}) == "");  // all of it would be wrong
+    CHECK(did_you_mean("--fcaes", words) == "; did you mean --faces?");
+    CHECK(did_you_mean("--far", {}) == "");
+}
+
+TEST_CASE("shortened: the beginning and the end of a text, in whole characters") {
+    CHECK(shortened("abc", 3) == "abc");
+    CHECK(shortened("abcdefghij", 9) == "abcd...ij");
+    std::string text;
+    for (int i = 0; i < 100; ++i) text += "é";
+    for (std::size_t most = 8; most < 30; ++most) {
+        const std::string cut = shortened(text, most);
+        CHECK(cut.size() <= most);
+        CHECK(cut.size() + 4 >= most);
+        CHECK(printable_line(cut) == cut);  // which no part of a character is
+    }
 }

@@ -1,6 +1,7 @@
 #include "tools/common/channel_list.h"
 
 #include "tools/common/options.h"
+#include "tools/common/text.h"
 
 namespace imgmesh {
 namespace {
@@ -11,10 +12,10 @@ ChannelChoice parse_channel(const std::string& name, const std::string& text, co
     choice.name = item.substr(0, colon);
     if (choice.name.empty())
         throw Error(ErrorKind::kBadArgument,
-                    cat(name, " '", text, "': expected NAME or NAME:WEIGHT, with commas between"));
+                    cat(name, " '", shortened(text), "': expected NAME or NAME:WEIGHT, with commas between"));
     if (colon != std::string::npos)
         choice.weight =
-            parse_number(cat(name, " ", choice.name), item.substr(colon + 1), {0, kNoLimit, true});
+            parse_number(cat(name, " ", shortened(choice.name)), item.substr(colon + 1), {0, kNoLimit, true});
     return choice;
 }
 
@@ -26,7 +27,7 @@ std::vector<ChannelChoice> parse_channels(const std::string& name, const std::st
     try {
         check_channels(channels);
     } catch (const Error& e) {
-        throw Error(e.kind(), cat(name, " ", text, ": ", e.what()));
+        throw Error(e.kind(), cat(name, " ", shortened(text), ": ", e.what()));
     }
     return channels;
 }

@@ -7,6 +7,8 @@
 #include <vector>
 
 #include "libcore/base/error.h"
+#include "tools/common/did_you_mean.h"
+#include "tools/common/text.h"
 
 namespace imgmesh {
 
@@ -38,7 +40,10 @@ template <typename Value>
 Value parse_choice(const std::string& name, const std::string& text, const Choices<Value>& choices) {
     for (const auto& [word, value] : choices)
         if (same_name(word, text)) return value;
-    throw Error(ErrorKind::kBadArgument, cat(name, " '", text, "': expected one of ", choice_names(choices)));
+    std::vector<std::string> words;
+    for (const auto& choice : choices) words.push_back(choice.first);
+    throw Error(ErrorKind::kBadArgument, cat(name, " '", shortened(text), "': expected one of ",
+                                             choice_names(choices), did_you_mean(text, words)));
 }
 
 }  // namespace imgmesh

@@ -71,8 +71,9 @@ std::uint64_t parse_memory(const std::string& name, const std::string& text) {
             unit = {};
         }
     if (error != std::errc() || !unit.empty() || !(value >= kLeast && value <= kMost))
-        throw Error(ErrorKind::kBadArgument,
-                    cat(name, " '", text, "': expected bytes, or a number with k, M, G or T, as in 2G"));
+        throw Error(
+            ErrorKind::kBadArgument,
+            cat(name, " '", shortened(text), "': expected bytes, or a number with k, M, G or T, as in 2G"));
     return static_cast<std::uint64_t>(value);
 }
 

@@ -3,6 +3,7 @@
 #include <charconv>
 
 #include "libcore/base/error.h"
+#include "tools/common/text.h"
 
 namespace imgmesh {
 namespace {
@@ -16,7 +17,7 @@ bool parse_whole(const std::string& text, Value& value) {
 }
 
 [[noreturn]] void refuse(const std::string& name, const std::string& text, const std::string& expected) {
-    throw Error(ErrorKind::kBadArgument, cat(name, " '", text, "': expected ", expected));
+    throw Error(ErrorKind::kBadArgument, cat(name, " '", shortened(text), "': expected ", expected));
 }
 
 }  // namespace

@@ -99,6 +99,18 @@ std::string printable_json(const std::string& json) {
     });
 }
 
+std::string shortened(const std::string& text, std::size_t most) {
+    if (text.size() <= most) return text;
+    const std::string_view dots = "...";
+    const auto inside_character = [&](std::size_t i) {
+        return (static_cast<std::uint8_t>(text[i]) & 0xC0) == 0x80;
+    };
+    std::size_t head = (most - dots.size()) * 2 / 3, tail = text.size() - (most - dots.size() - head);
+    while (head > 0 && inside_character(head)) --head;
+    while (tail < text.size() && inside_character(tail)) ++tail;
+    return text.substr(0, head).append(dots).append(text, tail);
+}
+
 void TextTable::print(std::ostream& out, int indent) const {
     std::size_t width = 0;
     for (const auto& [name, value] : rows_) width = std::max(width, printable_line(name).size());

@@ -1,6 +1,7 @@
 // Text for people: error lines, tables, units.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <iosfwd>
 #include <string>
@@ -19,6 +20,10 @@ std::string printable_text(const std::string& text);
 /// The same for JSON in UTF-8, where these characters occur in strings alone: they become \uNNNN, so the
 /// JSON stays the same to whoever parses it.
 std::string printable_json(const std::string& json);
+
+/// Returns `text`, or where it is longer than `most` bytes its beginning and its end with "..." between them:
+/// whole characters of UTF-8, and at most `most` bytes. For what messages quote.
+std::string shortened(const std::string& text, std::size_t most = 60);
 
 /// Rows of a name and a value, printed with the values aligned.
 class TextTable {

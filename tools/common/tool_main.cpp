@@ -24,6 +24,7 @@
 #include "tools/common/options.h"
 #include "tools/common/progress_bar.h"
 #include "tools/common/text.h"
+#include "tools/common/usage_error.h"
 
 namespace imgmesh {
 namespace {
@@ -113,8 +114,7 @@ void write_stdout(const std::string& text) {
 // A message quotes names, and those from files may be of any length.
 std::string message_line(const std::string& message) {
     constexpr std::size_t kLongest = 1000;
-    const std::string line = printable_line(message);
-    return line.size() <= kLongest ? line : line.substr(0, kLongest) + "...";
+    return shortened(printable_line(message), kLongest);
 }
 
 void print_error(const std::string& tool, const std::string& message) {
@@ -183,7 +183,7 @@ ExitCode parse_and_run(const Tool& tool, int argc, char** argv) {
     } catch (const CLI::FileError& e) {
         throw Error(ErrorKind::kIo, cat("--config: ", e.what()));
     } catch (const CLI::ParseError& e) {
-        throw Error(ErrorKind::kBadArgument, cat(e.what(), " (see --help)"));
+        throw Error(ErrorKind::kBadArgument, usage_error(app, e.what()));
     }
     return run_parsed(tool, common);
 }
