@@ -1,6 +1,8 @@
 """--config FILE: options from a TOML file, read as strictly as the command line."""
+import re
+
 import picture_files
-from support import CliCase, main
+from support import ROOT, CliCase, main
 
 
 class Config(CliCase):
@@ -54,6 +56,52 @@ class Config(CliCase):
         self.config("no-overwrite = true\n")
         self.assert_error("imgmesh-build", ["in.png", "-o", "out.glb", "--config", "c.toml"], 3, "out.glb")
 
+    def test_command_line_drops_what_it_excludes(self):
+        self.config("[build]\nfaces = 40\n")
+        self.build("in.png", "--config", "c.toml", "--density", "20")
+        self.assertEqual(self.report("imgmesh-info", "out.glb")["build"]["density"], 20)
+        # The file alone contradicts itself, in one table.
+        self.refused("faces = 40\ndensity = 3\n", "--density", "--faces")
+        self.refused("[build]\nfaces = 40\ndensity = 3\n", "--density", "--faces")
+
+    def test_tables_are_of_one_tool(self):
+        """The own table counts more than what stands above, also against what it excludes; others are not looked at."""
+        self.config('threads = 2\nfaces = 40\nbary = "half"\n[info]\njson = true\n[build]\ndensity = 20\n'
+                    'bary = "float"\n[warp]\nany = 1\n')
+        self.build("in.png", "--config", "c.toml")
+        facts = self.report("imgmesh-info", "out.glb")
+        self.assertEqual((facts["build"]["density"], facts["levels"][0]["map"]["precision"]), (20, "float"))
+        self.config("threads = 2\n[info]\njson = true\n[build]\ndensity = 20\n")
+        self.assertIn('"levels"', self.run_ok("imgmesh-info", "out.glb", "--config", "c.toml").stdout)
+        self.config("build.density = 20\n")  # the same table, in one line
+        self.build("in.png", "--config", "c.toml")
+        self.assertEqual(self.report("imgmesh-info", "out.glb")["build"]["density"], 20)
+
+    def test_wrong_tables(self):
+        self.refused("faces = 40\n[biuld]\n", "c.toml:2", "'biuld'", "did you mean build?")
+        self.refused("[build]\nfacse = 3\n", "c.toml:2", "'facse'", "did you mean faces?")
+        self.refused("[[build]]\nfaces = 3\n", "c.toml:1", "[build]")
+        self.refused("build = 3\n", "c.toml:1", "[build]")
+        self.refused("[build.more]\nfaces = 3\n", "c.toml:1", "'more'")
+        self.refused("[build]\nhelp = true\n", "c.toml:2", "'help'")
+        self.refused("segments = 3\n", "c.toml:1", "'segments'", "[build]")  # of another tool
+        self.refused("[build]\nfaces = 3\n[build]\n", "c.toml:3")
+
+    def test_the_guides_example(self):
+        """It serves every tool for which it has a table."""
+        text = (ROOT / "docs" / "guide.md").read_text()
+        self.config(re.search("```toml\n(.*?)```", text, re.S)[1])
+        runs = {"build": ["in.png", "-o", "out.glb"], "reconstruct": ["out.glb", "-o", "flat.png"],
+                "warp": ["out.glb", "--image", "in.png", "-o", "warped.png"], "segment": ["out.glb", "-o", "labels.png"]}
+        self.assertEqual(set(re.findall(r"^\[(\w+)\]", (self.folder / "c.toml").read_text(), re.M)), set(runs))
+        for tool, args in runs.items():
+            # The image of this test is small: levels of four thousand faces are not there, nor 40 segments.
+            less = {"build": ["--level-faces", "300,80"], "segment": ["--segments", "4"]}.get(tool, [])
+            self.report(f"imgmesh-{tool}", *args, "--config", "c.toml", *less)
+        built = self.report("imgmesh-info", "out.glb")
+        self.assertEqual((built["build"]["refine"], len(built["levels"])), (6, 2))
+        self.assertEqual(picture_files.read(self.folder / "flat.png").shape[:2], (32, 48))
+
     def test_unknown_keys(self):
         self.refused("faces = 40\nfases = 3\n", "c.toml:2", "fases")
         self.refused("z=1\n", "c.toml:1", "'z'")  # so short that CLI11's own reader skips it
@@ -75,7 +123,7 @@ class Config(CliCase):
         self.refused(".".join(["a"] * 40000) + " = 1\n", "c.toml:1", "dots")
 
     def test_what_is_no_option_and_value(self):
-        for line in ("faces", "faces 40", "= 40", "faces =", "[build]", "[[x]]", "a.b = 1", "faces = 40 50",
+        for line in ("faces", "faces 40", "= 40", "faces =", "[x]", "[[x]]", "a.b = 1", "faces = 40 50",
                      'draco = "none', "faces = 40, 50", "draco = none", "\0", "\x1b[2J = 1"):
             self.refused(f"# first\n{line}\n", "c.toml:2")
 
