@@ -37,7 +37,7 @@ def sections(text):
 
 def man_page(name, version, text):
     description, usage, found = sections(text)
-    lines = [f'.TH {name.upper()} 1 "" "{version}" "imgmesh"', ".SH NAME",
+    lines = [f'.TH {name.upper()} 1 "" "{version}" "imgmesh"', ".nh", ".ad l", ".SH NAME",
              roff(f"{name} - {description.rstrip('.')}"), ".SH SYNOPSIS", roff(usage), ".SH DESCRIPTION",
              roff(description)]
     for title, items in found.items():

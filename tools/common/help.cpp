@@ -7,6 +7,9 @@
 #include <utility>
 #include <vector>
 
+#include "libcore/base/error.h"
+#include "tools/common/examples.h"
+
 namespace imgmesh {
 namespace {
 
@@ -26,7 +29,10 @@ class HelpFormatter : public CLI::Formatter {
             });
             if (!options.empty()) out += make_group(group, false, options);
         }
-        return out + "\n" + make_footer(app);
+        out += "\nExamples:\n";
+        for (const Example& example : examples_of(app->get_name()))
+            out += cat("  ", example.command, "\n      ", example.meaning, "\n");
+        return out + make_footer(app);
     }
 
     std::string make_option(const CLI::Option* option, bool is_positional) const override {
