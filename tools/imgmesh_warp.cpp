@@ -29,6 +29,7 @@
 #include "tools/common/source_image.h"
 #include "tools/common/text.h"
 #include "tools/common/tool_main.h"
+#include "tools/warp_handles.h"
 
 using namespace imgmesh;
 
@@ -45,46 +46,24 @@ struct Options {
     std::string output;
     std::string displacement;
     std::string edits;
-    std::optional<WarpHandle> handle;
-    WarpEdit handle_edit;  ///< level and solver of `handle`
+    HandleOptions handles;
     OutputSize size;
     bool retarget = false;  ///< whether `size` comes from --retarget
 };
 
-const std::string kHandle = "--handle", kSize = "--size", kRetarget = "--retarget";
-
-// X,Y:DX,DY
-WarpHandle parse_handle(const std::string& text) {
-    const auto fail = [&] {
-        throw Error(ErrorKind::kBadArgument, cat(kHandle, " '", text, "': expected X,Y:DX,DY"));
-    };
-    const NumberRange range{-1e6, 1e6};
-    const auto pair = [&](const std::string& part) {
-        const std::size_t comma = part.find(',');
-        if (comma == std::string::npos) fail();
-        return Vec2d(parse_number(kHandle, part.substr(0, comma), range),
-                     parse_number(kHandle, part.substr(comma + 1), range));
-    };
-    const std::size_t colon = text.find(':');
-    if (colon == std::string::npos) fail();
-    WarpHandle handle;
-    handle.vertices.near = pair(text.substr(0, colon));
-    handle.move = pair(text.substr(colon + 1));
-    handle.vertices.where = cat(kHandle, " ", text);
-    return handle;
-}
+const std::string kSize = "--size", kRetarget = "--retarget";
 
 // WxH
 OutputSize parse_size(const std::string& name, const std::string& text) {
     const std::size_t cross = text.find('x');
     if (cross == std::string::npos)
         throw Error(ErrorKind::kBadArgument,
-                    cat(name, " '", text, "': expected WIDTHxHEIGHT, as in 640x480"));
+                    cat(name, " '", shortened(text), "': expected WIDTHxHEIGHT, as in 640x480"));
     const CountRange range{1, ImageLimits().max_side};
     const OutputSize size{static_cast<int>(parse_count(name, text.substr(0, cross), range)),
                           static_cast<int>(parse_count(name, text.substr(cross + 1), range))};
     if (std::int64_t{size.width} * size.height > ImageLimits().max_pixels)
-        throw Error(ErrorKind::kBadArgument, cat(name, " '", text, "': expected at most ",
+        throw Error(ErrorKind::kBadArgument, cat(name, " '", shortened(text), "': expected at most ",
                                                  ImageLimits().max_pixels, " pixels in all"));
     return size;
 }
@@ -99,16 +78,7 @@ void add_options(CLI::App& app, Options& o) {
     add_file(app, "--displacement", o.displacement,
              "Maps of the edit to write (.exr): an STMap, and the displacement of every pixel");
     add_file(app, "--edits", o.edits, "Edits to make (.json, schemas/imgmesh-warp.edits.schema.json)");
-    CLI::Option* const handle = add_value(
-        app, kHandle, "X,Y:DX,DY", [&o](const std::string& text) { o.handle = parse_handle(text); },
-        "One more edit: move the vertex nearest to X,Y by DX,DY pixels");
-    needs(add_count(app, "--level", o.handle_edit.level, {0},
-                    "Level of the pyramid that the handle moves, 0 the finest"),
-          handle);
-    needs(add_choice(app, "--solver", o.handle_edit.solver,
-                     Choices<WarpSolver>{{"direct", WarpSolver::kDirect}, {"arap", WarpSolver::kArap}},
-                     "What moves with the handle's vertex: nothing, or all as rigidly as possible"),
-          handle);
+    add_handle_options(app, o.handles);
     add_value(app, kSize, "WxH", [&o](const std::string& text) { o.size = parse_size(kSize, text); },
               {"Size of the image and of the STMap", "that of the image"});
     CLI::Option* const retarget = add_value(
@@ -142,18 +112,21 @@ void check_options(const Options& o) {
 WarpEdits all_edits(const Options& o) {
     WarpEdits edits;
     if (!o.edits.empty()) edits = read_edits(o.edits);
-    if (!o.handle) return edits;
-    WarpEdit edit = o.handle_edit;
-    edit.handles = {*o.handle};
-    edit.where = cat("--level ", edit.level);
-    edits.push_back(edit);
+    if (std::optional<WarpEdit> edit = handle_edit(o.handles)) edits.push_back(std::move(*edit));
     return edits;
 }
 
 // Calls solve_edits(). Mistakes of the command line become usage errors.
 std::vector<VertexMoves> solve(const MeshImage& mesh_image, const WarpEdits& edits, const Options& o) {
-    if (o.handle) check_level("--level", o.handle_edit.level, o.input, mesh_image);
-    return solve_edits(mesh_image, edits);
+    if (handle_edit(o.handles)) check_level("--level", o.handles.edit.level, o.input, mesh_image);
+    try {
+        return solve_edits(mesh_image, edits);
+    } catch (const Error& e) {
+        const std::string text = e.what();
+        const bool of_file = !o.edits.empty() && text.starts_with(o.edits + ": ");
+        if (e.kind() != ErrorKind::kBadFile || of_file) throw;
+        throw Error(ErrorKind::kBadArgument, text);
+    }
 }
 
 // Returns what reading, the field of moves, and drawing and writing take [bytes].

@@ -10,7 +10,7 @@ import sys
 import tempfile
 
 import numpy as np
-from PIL import Image
+from PIL import Image, ImageDraw
 
 HERE = pathlib.Path(__file__).resolve().parent
 PHOTO = HERE.parents[1] / "tests" / "data" / "kodim23.png"
@@ -46,6 +46,38 @@ def wheel(width=640, height=480):
     return np.round(np.dstack([np.clip(mean, 0, 1), total]) * 255).astype(np.uint8)
 
 
+def sprite(width=300, height=360):
+    """A small robot with its arms stretched out; antialiased alpha."""
+    n = 4  # samples a side of a pixel
+    image = Image.new("RGBA", (width * n, height * n), (0, 0, 0, 0))
+    draw = ImageDraw.Draw(image)
+
+    def at(*numbers):
+        return [number * n for number in numbers]
+
+    steel, dark, orange = (150, 165, 185, 255), (52, 60, 78, 255), (236, 128, 48, 255)
+    for x in (112, 160):
+        draw.rounded_rectangle(at(x, 230, x + 28, 340), 8 * n, dark)
+        draw.rounded_rectangle(at(x - 6, 324, x + 34, 348), 8 * n, orange)
+    for side in (-1, 1):
+        draw.line(at(150 + 44 * side, 150, 150 + 112 * side, 150), steel, 26 * n)
+        for k in range(4):
+            draw.line(at(150 + (56 + 15 * k) * side, 137, 150 + (56 + 15 * k) * side, 163), dark, 3 * n)
+        draw.ellipse(at(150 + 122 * side - 20, 130, 150 + 122 * side + 20, 170), orange)
+    draw.rounded_rectangle(at(98, 122, 202, 246), 22 * n, steel)
+    draw.rounded_rectangle(at(116, 146, 184, 196), 8 * n, dark)
+    for k in range(5):
+        draw.rectangle(at(124 + 11 * k, 186 - 7 * (1 + k * 3 % 5), 130 + 11 * k, 188), (110, 220, 170, 255))
+    draw.line(at(150, 26, 150, 60), dark, 5 * n)
+    draw.ellipse(at(141, 14, 159, 32), orange)
+    draw.rounded_rectangle(at(102, 50, 198, 116), 26 * n, steel)
+    for x in (130, 170):
+        draw.ellipse(at(x - 13, 68, x + 13, 94), (255, 255, 255, 255))
+        draw.ellipse(at(x - 4, 76, x + 8, 88), dark)
+    draw.rectangle(at(134, 116, 166, 124), dark)
+    return image.resize((width, height), Image.BOX)
+
+
 def run(*args):
     subprocess.run([str(a) for a in args], check=True)
 
@@ -77,6 +109,7 @@ def main():
     tools = pathlib.Path(sys.argv[1]).resolve()
     with tempfile.TemporaryDirectory(prefix="imgmesh-warp-") as name:
         draw_wheel(tools, pathlib.Path(name))
+        draw_arm(tools, pathlib.Path(name))
         draw_photo(tools, pathlib.Path(name))
         draw_retarget(tools, pathlib.Path(name))
 
@@ -105,6 +138,20 @@ def draw_wheel(tools, folder):
     columns = [edited(tools, folder, container, image, edits, level)
                for edits, level in (([], 2), ([rim], 2), ([rim, spoke], 1), ([rim, spoke, hub], 0))]
     sheet(list(zip(*columns)), HERE / "warp-wheel.jpg", 0.5)
+
+
+def draw_arm(tools, folder):
+    """The sprite, its hand pulled alone, and the same with the body held."""
+    image, container = folder / "robot.png", folder / "robot.glb"
+    sprite().save(image)
+    run(tools / "imgmesh-build", image, "-o", container, "--faces", "400", "--alpha", "cut", "-q")
+    handle = ["--handle", "280,150:-44,-100"]
+    pins = [word for at in ("150,80", "110,140", "190,140", "110,236", "190,236") for word in ("--pin", at)]
+    names = []
+    for args in ([], handle, [*handle, *pins]):
+        names.append(folder / f"robot-{len(names)}.png")
+        run(tools / "imgmesh-warp", container, "--image", image, "-q", *args, "-o", names[-1])
+    sheet([[shown(name) for name in names]], HERE / "warp-arm.jpg")
 
 
 def draw_photo(tools, folder):

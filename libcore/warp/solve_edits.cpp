@@ -112,7 +112,9 @@ std::vector<Vec2d> solve_edit(const BaseMesh& mesh, const WarpEdit& edit) {
     std::vector<char> held = fixed;
     for (const VertexSelection& pin : edit.pins)
         for (const Id v : selected(mesh, edit.level, pin)) {
-            if (fixed[v]) fail(pin.where, cat("vertex ", v, " is also in a handle of this edit"));
+            // A border is pinned where it is free: handles on it are what pulls.
+            if (fixed[v] && !pin.border)
+                fail(pin.where, cat("vertex ", v, " is also in a handle of this edit"));
             held[v] = 1;
         }
     if (edit.solver == WarpSolver::kDirect) return moves;

@@ -41,8 +41,10 @@ struct WarpEdit {
     int level = 0;
     WarpSolver solver = WarpSolver::kDirect;
     std::vector<WarpHandle> handles;
-    std::vector<VertexSelection> pins;  ///< vertices that stay; none of them may be in a handle
-    std::string where;                  ///< its name in messages, e.g. "edits.json: /edits/0"
+    /// Vertices that stay; none of them may be in a handle, except that a border is pinned where it is in
+    /// none.
+    std::vector<VertexSelection> pins;
+    std::string where;  ///< its name in messages, e.g. "edits.json: /edits/0"
 };
 
 /// All edits count from the unedited image and add up, whatever their levels and their order.

@@ -88,6 +88,39 @@ class Warp(CliCase):
         self.assertEqual(report["edits"], 2)
         np.testing.assert_array_equal(image, self.original)
 
+    def test_pins_and_handles_are_an_edit(self):
+        """Options give what the equal file gives, to the sample. With pins all follow, unless --solver says otherwise."""
+        handles = [{"near": [24, 16], "move": [3, 2]}, {"near": [40, 8], "move": [-2, 1.5]}]
+        pins = [{"near": [2, 30]}, {"near": [0, 0]}, {"border": True}]
+        options = ["--handle", "24,16:3,2", "--handle=40,8:-2,1.5", "--level", "0"]
+        for given, edit in (
+                (options, {"handles": handles}),
+                ([*options, "--pin", "2,30"], {"handles": handles, "solver": "arap", "pins": pins[:1]}),
+                ([*options, "--pin", "2,30", "--pin", "0,0"], {"handles": handles, "solver": "arap", "pins": pins[:2]}),
+                ([*options, "--pin-border"], {"handles": handles, "solver": "arap", "pins": pins[2:]}),
+                ([*options, "--pin-border", "--solver", "direct"], {"handles": handles}),
+                (["--handle", "0,0:3,2", "--pin-border", "--level", "1"],  # a corner, which the border has too
+                 {"level": 1, "solver": "arap", "handles": [{"near": [0, 0], "move": [3, 2]}], "pins": pins[2:]})):
+            with self.subTest(given):
+                report, image = self.warp(*given)
+                self.assertEqual(report["edits"], 1)
+                self.edits(edit)
+                expected, by_file = self.warp("--edits", "e.json")
+                np.testing.assert_array_equal(image, by_file)
+                self.assertEqual(report, expected)
+        # A list in the configuration file.
+        (self.folder / "c.toml").write_text('handle = ["24,16:3,2", "40,8:-2,1.5"]\npin = "2,30"\n')
+        from_config = self.warp("--config", "c.toml")[1]
+        np.testing.assert_array_equal(from_config, self.warp(*options, "--pin", "2,30")[1])
+
+    def test_pins_hold(self):
+        """A bar of two halves, one of them pinned: it stays as it was, the other one is pulled."""
+        report, image = self.warp("--handle", "47,16:0,4", "--pin", "0,0", "--pin", "0,31", "--pin", "24,0", "--pin",
+                                  "24,31", "--pin", "0,16", "--pin", "24,16")
+        moved = np.abs(image[..., :3] - self.original).max(axis=(0, 2)) > 0.05
+        self.assertFalse(moved[:8].any())
+        self.assertTrue(moved[40:].any())
+
     def test_size(self):
         report, image = self.warp("--size", "24x16")
         self.assertEqual((report["width"], report["height"], image.shape), (24, 16, (16, 24, 3)))
@@ -213,6 +246,9 @@ class Warp(CliCase):
                 ([*picture, "--size", "65536x5"], "--size"), ([*picture, "--size", "65535x65535"], "size"),
                 ([*picture, "--handle", "1,2"], "--handle"), ([*picture, "--handle", "1,2:3"], "--handle"),
                 ([*picture, "--handle", "1,2:3,nan"], "--handle"), ([*picture, "--handle", "1,2:3,4,5"], "--handle"),
+                ([*picture, "--handle", "1,2:3,4", "--pin", "1"], "--pin '1'", "X,Y"),
+                ([*picture, "--pin", "1,2"], "--pin", "--handle"), ([*picture, "--pin-border"], "--handle"),
+                ([*picture, "--handle", "1,2:3,4", "--pin", "1,2"], "--pin 1,2: vertex", "also in a handle"),
                 ([*picture, "--level", "1"], "--handle"), ([*picture, "--solver", "arap"], "--handle"),
                 ([*picture, "--handle", "1,2:3,4", "--level", "2"], "--level 2"),
                 ([*picture, "--handle", "1,2:3,4", "--solver", "soft"], "--solver"),

@@ -75,6 +75,25 @@ TEST_CASE("solve_edits: a handle scales, turns, then moves its vertices") {
     CHECK(others[0][1] == Vec2f(0, 0));
 }
 
+// A tip of a sprite lies on its border, and is pulled while the rest of the border stays.
+TEST_CASE("solve_edits: a border is pinned where no handle moves it") {
+    const MeshImage m = grid_pyramid(9, 9, {3});
+    WarpEdit edit = move_near({0, 0}, {-1, -2}, 0);
+    edit.solver = WarpSolver::kArap;
+    edit.pins.resize(1);
+    edit.pins[0].border = true;
+    const VertexMoves moves = solve_edits(m, {edit})[0];
+    for (Id v = 0; v < moves.size(); ++v) {
+        const Vec2f& p = m.levels[0].mesh.position[v];
+        if (p == Vec2f(0, 0))
+            CHECK(moves[v] == Vec2f(-1, -2));
+        else if (p.minCoeff() == 0 || p.maxCoeff() == 8)
+            CHECK(moves[v] == Vec2f(0, 0));
+        else
+            CHECK(moves[v] != Vec2f(0, 0));
+    }
+}
+
 TEST_CASE("solve_edits: what is not there is refused, by its place") {
     const MeshImage m = grid_pyramid(9, 9, {3, 1});
     WarpEdit edit = move_near({0, 0}, {1, 1}, 2);
@@ -89,9 +108,10 @@ TEST_CASE("solve_edits: what is not there is refused, by its place") {
           "e.json: /edits/0/handles/0/vertices: vertex 4 is not there; level 1 has vertices 0 to 3");
     edit.handles[0].vertices.vertices = {3};
     edit.pins.resize(1);
-    edit.pins[0].border = true;
-    edit.pins[0].where = "e.json: /edits/0/pins/0/border";
-    CHECK(refusal(m, {edit}) == "e.json: /edits/0/pins/0/border: vertex 3 is also in a handle of this edit");
+    edit.pins[0].vertices = {0, 3};
+    edit.pins[0].where = "e.json: /edits/0/pins/0/vertices";
+    CHECK(refusal(m, {edit}) ==
+          "e.json: /edits/0/pins/0/vertices: vertex 3 is also in a handle of this edit");
     edit.pins[0] = {};
     edit.pins[0].box = {2, 2, 3, 3};
     edit.pins[0].where = "e.json: /edits/0/pins/0/box";

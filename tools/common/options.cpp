@@ -24,6 +24,21 @@ CLI::Option* add_value(CLI::App& app, const std::string& name, const std::string
     return option;
 }
 
+CLI::Option* add_values(CLI::App& app, const std::string& name, const std::string& type,
+                        std::function<void(const std::string&)> take, const Help& help) {
+    CLI::Option* option = app.add_option(
+        name,
+        [take = std::move(take)](const CLI::results_t& results) {
+            for (const std::string& result : results) take(result);
+            return true;
+        },
+        help.text);
+    // Each value needs the option's name before it, so that what follows is free for files.
+    return option->type_name(type)
+        ->expected(1, CLI::detail::expected_max_vector_size)
+        ->allow_extra_args(false);
+}
+
 CLI::Option* add_flag(CLI::App& app, const std::string& name, std::function<void()> take,
                       const std::string& help) {
     return app.add_flag_callback(name, std::move(take), help);

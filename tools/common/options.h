@@ -35,6 +35,9 @@ struct Help {
 /// An option that calls `take` with its one value. `name` is the long option, perhaps after a short one.
 CLI::Option* add_value(CLI::App& app, const std::string& name, const std::string& type,
                        std::function<void(const std::string&)> take, const Help& help);
+/// The same for an option that may be given several times; calls `take` with each value, in order.
+CLI::Option* add_values(CLI::App& app, const std::string& name, const std::string& type,
+                        std::function<void(const std::string&)> take, const Help& help);
 CLI::Option* add_flag(CLI::App& app, const std::string& name, std::function<void()> take,
                       const std::string& help);
 
