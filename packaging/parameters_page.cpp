@@ -84,9 +84,7 @@ std::string page() {
            "A program sets the\nmembers of `BuildParams` (`libcore/pipeline/build_params.h`). "
            "*Listed* says when a container's `build`\n([format.md](format.md)) lists the parameter with the "
            "value that it had.\n\n"
-           "The ratio of `geometry-weight` to `color-weight` is 1e-9 to 1e9. The option `--map-smoothness X` "
-           "is "
-           "the\nsame as `--projection-color-weight` 1/X.\n\n"
+           "The ratio of `geometry-weight` to `color-weight` is 1e-9 to 1e9.\n\n"
            "`parameters-page docs/parameters.md` writes this page from the table in "
            "`libcore/pipeline/param_table.cpp`.\n";
     write_params(out);

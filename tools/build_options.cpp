@@ -90,17 +90,6 @@ void add_params(CLI::App& app, BuildOptions& o) {
         CLI::Option* const option = in_group(add_param(app, param, o), param.group);
         if (!param.everyday) advanced(app, option);
         added.emplace_back(option, &param);
-        if (param.name != "projection-color-weight") continue;
-        // The same weight by its reciprocal, as decision 2 has it.
-        CLI::Option* const smoothness = add_value(
-            app, "--map-smoothness", "X",
-            [&o](const std::string& text) {
-                const double weight = 1 / parse_number("--map-smoothness", text, {1e-9, 1e12});
-                o.given.emplace_back([weight](BuildParams& p) { p.projection_color_weight = weight; });
-            },
-            {"Smoothness of the pixel map against colour, 1 / projection-color-weight",
-             cat(1 / map_color_weight(BuildParams()))});
-        exclude(app, advanced(app, in_group(smoothness, param.group)), {"--" + param.name});
     }
     for (const auto& [option, param] : added)
         for (const std::string& other : param->excludes) exclude(app, option, {"--" + other});

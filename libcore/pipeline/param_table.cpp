@@ -30,6 +30,17 @@ constexpr ParamListing kQuality = {"where above 0", [](const BuildParams& p) { r
 constexpr ParamListing kValues = {"where given", [](const BuildParams& p) { return p.values; }};
 constexpr ParamListing kVisits = {"where given", [](const BuildParams& p) { return p.visits; }};
 
+constexpr ParamListing kAsWeight = {"as projection-color-weight", [](const BuildParams&) { return false; }};
+
+// The weight of colour in the map by its reciprocal, as decision 2 has it. The weight alone has a value.
+NumberParam smoothness() {
+    NumberParam kind;
+    kind.range = {1e-9, 1e12};
+    kind.get = [](const BuildParams&) { return std::nullopt; };
+    kind.set = [](BuildParams& params, const double& value) { params.projection_color_weight = 1 / value; };
+    return kind;
+}
+
 std::vector<Param> make_table() {
     using B = BuildParams;
     const auto stop = &B::stop;
@@ -193,6 +204,14 @@ std::vector<Param> make_table() {
          .kind = number({0}, &B::projection_color_weight),
          .help = "Weight of colour in the pixel map; 0 makes the map trivial",
          .otherwise = cat(FitParams().color_weight, ", for a tracked map ", TrackParams().color_weight)},
+        {.name = "map-smoothness",
+         .group = map,
+         .kind = smoothness(),
+         .help = "Smoothness of the pixel map against colour, 1 / projection-color-weight",
+         .otherwise =
+             cat(1 / FitParams().color_weight, ", for a tracked map ", 1 / TrackParams().color_weight),
+         .listed = kAsWeight,
+         .excludes = {"projection-color-weight"}},
         {.name = "bary",
          .group = map,
          .kind = words<std::optional<WeightPrecision>, WeightPrecision>(

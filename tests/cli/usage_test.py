@@ -52,7 +52,7 @@ class Usage(CliCase):
         options = described(self.run_ok("imgmesh-build", "--help-all").stdout)
         for name, end in (("--objective", ": luv, rgb (default luv)"), ("--geometry-weight", " (default 0.3)"),
                           ("--texture-type", ": png, jpeg (default png); needs --texture"),
-                          ("--map-smoothness", " (default 20); not with --projection-color-weight"),
+                          ("--map-smoothness", " (default 20, for a tracked map 10); not with --projection-color-weight"),
                           ("--density", " (default 1); not with --error, --faces, --level-errors, --level-faces, --rms,"
                                         " --vertices")):
             self.assertTrue(options[name].endswith(end), options[name])
