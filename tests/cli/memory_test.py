@@ -48,6 +48,10 @@ class Memory(CliCase):
                                 stdout=subprocess.PIPE, encoding="utf-8")
         return int(result.stdout) * 1024
 
+    def test_small_limits_are_not_rounded(self):
+        self.assert_error("imgmesh-build", ["in.png", "-o", "x.glb", "--max-memory", "1.5k"], 4, "at most 1500 bytes")
+        self.assert_error("imgmesh-build", ["in.png", "-o", "x.glb", "--max-memory", "2.5M"], 4, "at most 2500 kB")
+
     def test_too_little_is_refused_in_every_tool(self):
         for tool, args in self.jobs.items():
             # Reading alone, and all of the work.

@@ -1,6 +1,7 @@
 """imgmesh-build on every size and kind of image: a sound container, and the image comes back."""
 import io
 import os
+import re
 
 import numpy as np
 from PIL import Image, ImageCms
@@ -292,6 +293,16 @@ class Pictures(CliCase):
             threshold = result.stderr.split("--alpha-threshold ")[1].split()[0]
             report = self.build("in.png", "--mask", name, "--alpha-threshold", threshold)
             self.assertEqual(report["pixels"], inside.sum())
+
+    def test_a_file_gives_a_few_warnings(self):
+        """Each of these 200 profiles is broken; ten lines tell it."""
+        data = picture_files.png(self.folder / "in.png", picture_files.ramp(9, 7)).read_bytes()
+        chunk = picture_files.png_chunk(b"iCCP", b"broken\0\0no profile")
+        (self.folder / "in.png").write_bytes(data[:33] + 200 * chunk + data[33:])
+        warnings = self.report("imgmesh-build", "in.png", "-o", "out.glb")["warnings"]
+        self.assertEqual(len(warnings), 10)
+        told, more = sum("more warnings" not in w for w in warnings), re.search(r"and (\d+) more warnings", warnings[-1])
+        self.assertGreater(told + int(more[1]), 20)
 
     def test_warnings_of_masks(self):
         picture_files.png(self.folder / "in.png", picture_files.ramp(3, 2))

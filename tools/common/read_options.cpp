@@ -48,9 +48,13 @@ void add_read_options(CLI::App& app, ReadImageOptions& options, CLI::Option* ima
 
 ReadImage read_with_warnings(const std::string& path, const ReadImageOptions& options,
                              std::vector<std::string>& warnings) {
+    constexpr std::size_t kMostWarnings = 10;  // of one file; a damaged one can give hundreds
     ReadImage read = read_image_file(path, options);
-    for (const std::string& warning : read.warnings) warnings.push_back(cat(path, ": ", warning));
-    read.warnings.clear();
+    std::vector<std::string>& found = read.warnings;
+    const std::size_t told = found.size() > kMostWarnings ? kMostWarnings - 1 : found.size();
+    for (std::size_t i = 0; i < told; ++i) warnings.push_back(cat(path, ": ", found[i]));
+    if (told < found.size()) warnings.push_back(cat(path, ": and ", found.size() - told, " more warnings"));
+    found.clear();
     return read;
 }
 

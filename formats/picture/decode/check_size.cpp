@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "formats/picture/decode/picture_probe.h"
 #include "libcore/base/error.h"
@@ -11,10 +12,15 @@ Error broken(const std::string& path, const std::string& what) {
     return Error(ErrorKind::kBadFile, cat(path, ": ", what));
 }
 
-// Rounded up for what is needed and for what may be taken alike.
-std::string megabytes(double bytes) {
+// Rounded up for what is needed and for what may be taken alike, in whole units, of which there are at least
+// ten.
+std::string rounded(double bytes) {
     constexpr double kMost = 1e18;  // no limit
-    return cat(static_cast<std::int64_t>(std::ceil(std::min(bytes, kMost) / 1e6)), " MB");
+    constexpr std::pair<double, const char*> kUnits[] = {{1e6, " MB"}, {1e3, " kB"}, {1, " bytes"}};
+    const double shown = std::min(bytes, kMost);
+    for (const auto& [size, name] : kUnits)
+        if (shown >= 10 * size) return cat(static_cast<std::int64_t>(std::ceil(shown / size)), name);
+    return cat(static_cast<std::int64_t>(shown), " bytes");
 }
 
 }  // namespace
@@ -45,8 +51,8 @@ void check_size(const std::string& path, std::int64_t width, std::int64_t height
     if (bytes > static_cast<double>(limits.max_memory))
         throw broken(
             path, cat("the image is ", width, "x", height, " with ", channels, " channels, for which about ",
-                      megabytes(bytes), " of memory are needed, at most ",
-                      megabytes(static_cast<double>(limits.max_memory)), " may be taken"));
+                      rounded(bytes), " of memory are needed, at most ",
+                      rounded(static_cast<double>(limits.max_memory)), " may be taken"));
 }
 
 void check_block_size(const std::string& path, std::int64_t width, std::int64_t height, std::int64_t channels,
