@@ -24,7 +24,9 @@ install(FILES
 include(cmake/public_headers.cmake)
 install(DIRECTORY schemas/ DESTINATION ${CMAKE_INSTALL_DATADIR}/imgmesh/schemas FILES_MATCHING PATTERN "*.schema.json"
   PATTERN examples EXCLUDE)
-install(FILES README.md CHANGELOG.md LICENSE docs/format.md docs/library.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
+# README and the pages refer to each other by these paths.
+install(FILES README.md CHANGELOG.md CONTRIBUTING.md LICENSE SECURITY.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(DIRECTORY docs examples DESTINATION ${CMAKE_INSTALL_DOCDIR} PATTERN "make_*.py" EXCLUDE)
 
 # Man pages and completions say what --help-all says.
 find_program(IMGMESH_PYTHON3 python3 PATHS /usr/bin NO_DEFAULT_PATH REQUIRED)
