@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Fails on an include against tools -> formats -> libcore, against the ranks of the rooms in a layer, or from a public
+"""Fails on an include against {tools, python} -> formats -> libcore, against the ranks of the rooms in a layer, or from a public
 header (cmake/public_headers.cmake) to one that is not installed; and on a message below the tools that names an option of
 the command line.
 
@@ -34,6 +34,9 @@ VALUES = re.compile(r"libcore/(base/|image/|mesh/(base_mesh|mesh_image|pixel_map
 TBB = re.compile(r"(oneapi/)?tbb(/|\.h$)")
 FILE_LIBRARIES = re.compile(r"OpenEXR/|Imath/|Imf\w*\.h|OpenImageIO/|png\.h$|libdeflate\.h$|lcms2\.h$|draco/|tiny_gltf|tinygltf|nlohmann/|webp/|json/")
 COMMAND_LINE = re.compile(r"CLI/|CLI11|toml\+\+")
+PYTHON = re.compile(r"pybind11/|Python\.h$")
+# What of the tools the Python module shares: words and messages, which know no command line.
+SHARED_BY_TOOLS = {"tools/common/choices.h", "tools/common/in_file.h", "tools/common/names.h"}
 STREAMS = re.compile(r"(fstream|filesystem|cstdio|stdio\.h)$")
 # A header that a comment names.
 MENTION = re.compile(r"[\w/]*\w\.h\b")
@@ -60,6 +63,8 @@ def wrong(path, include):
     parts = Path(include).parts
     if len(parts) > 3 and parts[0] in RANKS and parts[:2] != path.parts[:2]:
         return f"{'/'.join(parts[:3])}/ is private to {'/'.join(parts[:2])}/"
+    if layer != "python" and (PYTHON.match(include) or include.startswith("python/")):
+        return "only python/ knows Python"
     if TBB.match(include) and not name.startswith("libcore/base/parallel."):
         return "only libcore/base/parallel.* names the thread library"
     if layer == "libcore":
@@ -80,6 +85,11 @@ def wrong(path, include):
         return against_ranks(RANK_OF[layer], path.parts[1:], Path(include).parts[1:])
     if layer == "tools" and include.startswith("tests/"):
         return "tools know no tests"
+    if layer == "python":
+        if include.startswith("tests/") or include.startswith("tools/") and include not in SHARED_BY_TOOLS:
+            return "python stands beside the tools: it shares only " + ", ".join(sorted(SHARED_BY_TOOLS))
+        if COMMAND_LINE.match(include):
+            return "python knows no command line"
     return None
 
 
@@ -129,7 +139,7 @@ def public_findings(root):
 
 def findings(root):
     yield from public_findings(root)
-    for layer in ("libcore", "formats", "tools"):
+    for layer in ("libcore", "formats", "tools", "python"):
         for path in sorted((root / layer).rglob("*")):
             if path.suffix not in SOURCES:
                 continue
@@ -137,11 +147,11 @@ def findings(root):
             for include in includes(path):
                 reason = wrong(relative, include)
                 # Headers that formats shares with itself may name a library; those that tools include may not.
-                if not reason and layer == "tools" and include.startswith("formats/"):
+                if not reason and layer in ("tools", "python") and include.startswith("formats/"):
                     reason = leaks(root, include, set())
                 if reason:
                     yield f"{relative} includes {include}: {reason}"
-            if layer != "tools":
+            if layer != "tools":  # nor does Python
                 for text in OPTION.findall(path.read_text(encoding="utf-8")):
                     yield f"{relative} has the text {text}: only tools know options"
 
@@ -197,6 +207,16 @@ CASES = [
     ("tools/a.cpp", "libcore/simplify/kernel/simplifier.h", True),
     ("tools/a.cpp", "tests/support/temporary_folder.h", True),
     ("tools/a.cpp", "tbb/parallel_for.h", True),
+    ("tools/a.cpp", "pybind11/pybind11.h", True),
+    ("formats/gltf/a.cpp", "python/bind.h", True),
+    ("python/a.cpp", "pybind11/pybind11.h", False),
+    ("python/a.cpp", "python/bind.h", False),
+    ("python/a.cpp", "formats/container/container.h", False),
+    ("python/a.cpp", "libcore/pipeline/build.h", False),
+    ("python/a.cpp", "libcore/simplify/kernel/simplifier.h", True),
+    ("python/a.cpp", "tools/common/names.h", False),
+    ("python/a.cpp", "tools/common/options.h", True),
+    ("python/a.cpp", "CLI/CLI.hpp", True),
 ]
 
 

@@ -2,7 +2,7 @@
 """lint.py BUILD [FILE...]: clang-format and clang-tidy find nothing in our files, or in those named.
 
 BUILD is a folder configured for clang. Its precompiled headers are off, so that a file which does not include what it
-uses is found, too. clang-tidy reads what users run: libcore, formats, tools and their headers. Tests are formatted only.
+uses is found, too. clang-tidy reads what users run: libcore, formats, tools, python and their headers. Tests are formatted only.
 """
 import json
 import os
@@ -12,7 +12,7 @@ import sys
 from concurrent.futures import ThreadPoolExecutor
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-TIDY_FOLDERS = ("libcore", "formats", "tools")
+TIDY_FOLDERS = ("libcore", "formats", "tools", "python")
 
 
 def tracked_files():

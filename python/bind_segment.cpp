@@ -1,0 +1,196 @@
+// segment(): regions of a mesh's image.
+#include <pybind11/stl.h>
+
+#include "formats/export/label_files.h"
+#include "libcore/base/error.h"
+#include "libcore/image/color.h"
+#include "libcore/image/feature_space.h"
+#include "libcore/segment/contour_map.h"
+#include "libcore/segment/draw_regions.h"
+#include "libcore/segment/segment.h"
+#include "python/bind.h"
+#include "python/errors.h"
+#include "python/image_value.h"
+#include "python/mesh_value.h"
+#include "python/views.h"
+#include "python/words.h"
+#include "python/work.h"
+
+namespace imgmesh::python {
+namespace {
+
+// imgmesh.Segmentation.
+struct SegmentationValue {
+    Segmentation result;
+    FeatureImage picture;
+    std::vector<RegionFacts> facts;
+    SourceInfo source;
+
+    const LabelImage& labels() const { return result.labels; }
+};
+using SegmentationPointer = std::shared_ptr<SegmentationValue>;
+
+// How to segment, as imgmesh-segment has it.
+struct Request {
+    SegmentParams params;
+    int level = 0;
+};
+
+Request request_of(const std::optional<double>& threshold, const std::optional<std::int64_t>& segments,
+                   const std::optional<std::int64_t>& superpixels, std::int64_t min_size,
+                   const std::optional<double>& compactness, const std::optional<std::string>& distance,
+                   int level) {
+    const auto refuse = [](const char* text) { throw Error(ErrorKind::kBadArgument, text); };
+    if (threshold && segments) refuse("threshold and segments: expected one of them");
+    if (superpixels && (threshold || segments || distance))
+        refuse("superpixels and threshold, segments or distance: expected one of them");
+    if (compactness && !superpixels) refuse("compactness: means something with superpixels only");
+    Request r;
+    r.params.threshold = threshold.value_or(r.params.threshold);
+    r.params.segments = segments;
+    r.params.superpixels = superpixels;
+    r.params.min_size = min_size;
+    r.params.compactness = compactness.value_or(r.params.compactness);
+    r.params.distance = word_value("distance", distance, distance_rules()).value_or(r.params.distance);
+    r.level = level;
+    return r;
+}
+
+SegmentationPointer run(const MeshValue& mesh, const Request& r, const py::object& image,
+                        const py::object& callback, const std::optional<int>& threads) {
+    check_level(mesh, r.level);
+    const MeshImage& mesh_image = mesh.mesh_image();
+    if (split_names(mesh_image.source.channel_names).color.empty())
+        throw Error(ErrorKind::kUnsupported, "the mesh has no colour");
+    std::vector<std::string> warnings;
+    ReadImageOptions colors;
+    colors.channels.emplace();  // the colour and alpha
+    const ImagePointer picture = image.is_none() ? nullptr : image_from(image, colors, "image", warnings);
+    const Level& level = mesh_image.levels[static_cast<std::size_t>(r.level)];
+    const Progress progress = python_progress(callback);
+    const auto value = std::make_shared<SegmentationValue>();
+    value->source = mesh_image.source;
+    without_gil(threads, [&] {
+        value->picture =
+            picture ? luv_image(picture->image, imgmesh::Range::kClipped) : reconstruct_luv(level);
+        value->result = segment(level, value->picture, r.params, progress);
+        value->facts = region_facts(value->labels(), value->picture);
+        return true;
+    });
+    warn(warnings);
+    return value;
+}
+
+py::array labels(const py::object& self) {
+    const LabelImage& all = self.cast<SegmentationPointer>()->labels();
+    return view(self, {all.height, all.width}, all.values.data());
+}
+
+py::list regions(const SegmentationValue& value) {
+    py::list all;
+    for (const RegionFacts& f : value.facts) {
+        py::dict neighbors;
+        for (const auto& [other, length] : f.neighbors) neighbors[py::int_(other)] = length;
+        all.append(py::dict(py::arg("pixels") = f.pixels,
+                            py::arg("luv") = py::make_tuple(f.color[0], f.color[1], f.color[2]),
+                            py::arg("box") = py::make_tuple(f.box[0], f.box[1], f.box[2], f.box[3]),
+                            py::arg("neighbors") = neighbors));
+    }
+    return all;
+}
+
+std::shared_ptr<ImageValue> image_value(Image image) {
+    return std::make_shared<ImageValue>(ImageValue{std::move(image)});
+}
+
+std::shared_ptr<ImageValue> flat(const SegmentationValue& value) {
+    std::vector<Vec3f> colors;
+    for (const RegionFacts& f : value.facts) colors.push_back(f.color);
+    return without_gil({}, [&] { return image_value(draw_flat(value.labels(), colors, value.source)); });
+}
+
+std::shared_ptr<ImageValue> outlines(const SegmentationValue& value) {
+    return without_gil(
+        {}, [&] { return image_value(draw_outlines(value.labels(), value.picture, value.source)); });
+}
+
+py::array contours(const SegmentationValue& value) {
+    ContourMap map = without_gil({}, [&] { return contour_map(value.result.cells, value.result.hierarchy); });
+    const py::ssize_t height = map.height, width = map.width;
+    return array_of(std::move(map.values), {height, width});
+}
+
+void write(const SegmentationValue& value, const py::object& path, bool overwrite) {
+    const std::string name = path_text(path);
+    const LabelImage& all = value.labels();
+    without_gil({}, [&] {
+        write_labels(name, all.width, all.height, all.values, overwrite);
+        return true;
+    });
+}
+
+constexpr char kSegment[] =
+    R"(segment(*, threshold=None, segments=None, superpixels=None, min_size=1, compactness=None, distance=None, level=0,
+        image=None, progress=None, threads=None) -> Segmentation
+
+Cuts the image of a level into regions, as imgmesh-segment does. The default is threshold=5.
+
+threshold    merge regions that are closer than this, in L*u*v*
+segments     merge until this many regions are left
+superpixels  make this many regions of similar size that follow edges
+min_size     the least number of pixels of a region
+compactness  of superpixels; higher is rounder (default 10)
+distance     contour (default), or paper: by mean colours
+level        of the pyramid, 0 the finest
+image        the image itself, to measure on instead of the reconstruction: a path, an Image or an array
+progress     called with the fraction done and the name of the stage
+
+Raises ArgumentError for a parameter out of range, and for more regions than there are patches.)";
+
+}  // namespace
+
+void bind_segment(py::module_& module) {
+    py::class_<SegmentationValue, SegmentationPointer>(module, "Segmentation",
+                                                       "An image cut into regions. It never changes.")
+        .def_property_readonly(
+            "labels", labels,
+            "The region of every pixel, from 0, height x width of uint32; NO_FACE outside the "
+            "mask. A read-only view.")
+        .def_property_readonly(
+            "count", [](const SegmentationValue& v) { return v.labels().count; }, "The number of regions.")
+        .def_property_readonly(
+            "regions", regions,
+            "For each region a dict: pixels, luv (mean L*u*v*), box (left, top, right, bottom, "
+            "inclusive), neighbors (region -> pixels of common border).")
+        .def("flat", flat, "flat() -> Image\n\nDraws each region in its mean colour.")
+        .def("outlines", outlines, "outlines() -> Image\n\nDraws the image with the regions' borders.")
+        .def("contours", contours,
+             "contours() -> array\n\nThe ultrametric contour map, (2 height + 1) x (2 width + 1) of float32: "
+             "pixel (x, y) is at [2 y + 1, 2 x + 1], and between two pixels stands the threshold at which "
+             "their "
+             "regions become one.")
+        .def("write", write, py::arg("path"), py::kw_only(), py::arg("overwrite") = true,
+             "write(path, *, overwrite=True)\n\nWrites the labels in the format of the extension.")
+        .def("__repr__", [](const SegmentationValue& v) {
+            return cat("<imgmesh.Segmentation of ", v.labels().width, "x", v.labels().height,
+                       " pixels: ", v.labels().count, " regions>");
+        });
+    auto mesh = py::reinterpret_borrow<py::class_<MeshValue, MeshPointer>>(module.attr("Mesh"));
+    mesh.def(
+        "segment",
+        [](const MeshValue& self, const std::optional<double>& threshold,
+           const std::optional<std::int64_t>& segments, const std::optional<std::int64_t>& superpixels,
+           std::int64_t min_size, const std::optional<double>& compactness,
+           const std::optional<std::string>& distance, int level, const py::object& image,
+           const py::object& progress, const std::optional<int>& threads) {
+            return run(self,
+                       request_of(threshold, segments, superpixels, min_size, compactness, distance, level),
+                       image, progress, threads);
+        },
+        py::kw_only(), py::arg("threshold") = py::none(), py::arg("segments") = py::none(),
+        py::arg("superpixels") = py::none(), py::arg("min_size") = 1, py::arg("compactness") = py::none(),
+        py::arg("distance") = py::none(), py::arg("level") = 0, py::arg("image") = py::none(),
+        py::arg("progress") = py::none(), py::arg("threads") = py::none(), kSegment);
+}
+
+}  // namespace imgmesh::python

@@ -1,0 +1,31 @@
+// Work without the GIL: other Python threads run meanwhile, and Ctrl-C ends it.
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+#include <optional>
+#include <utility>
+
+#include "libcore/base/parallel.h"
+#include "libcore/base/progress.h"
+
+namespace imgmesh::python {
+
+/// Returns a progress function that, a few times a second, takes the GIL, lets Python handle signals and
+/// calls `callback` (None, or a callable of the fraction and the stage). It throws what these raise, and so
+/// ends the work.
+Progress python_progress(pybind11::object callback);
+
+/// Returns the number of threads that was asked for, all for none. Throws Error(kBadArgument) unless it is
+/// from 1 to 1024.
+int thread_count(const std::optional<int>& threads);
+
+/// Returns the result of `work`, done without the GIL by at most `threads` threads.
+template <typename Work>
+auto without_gil(const std::optional<int>& threads, Work&& work) {
+    const ThreadLimit limit(thread_count(threads));
+    const pybind11::gil_scoped_release release;
+    return std::forward<Work>(work)();
+}
+
+}  // namespace imgmesh::python

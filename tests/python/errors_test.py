@@ -1,0 +1,116 @@
+"""Mistakes: each is an exception of its kind, with one line that says what was found and what was expected."""
+import pathlib
+import tempfile
+import unittest
+import warnings
+
+import numpy as np
+
+import imgmesh
+import picture_files
+
+IMAGE = np.round(picture_files.ramp(24, 16) * 255).astype(np.uint8)
+
+
+class Errors(unittest.TestCase):
+    def check(self, kind, words, function, *args, **kwargs):
+        with self.subTest(words):
+            with self.assertRaises(kind) as caught:
+                function(*args, **kwargs)
+            text = str(caught.exception)
+            for word in words:
+                self.assertIn(word, text)
+            self.assertNotIn("\n", text)
+            self.assertNotIn("--", text)
+
+    def test_arguments_of_build(self):
+        build = imgmesh.build
+        self.check(TypeError, ("no parameter 'face'", "did you mean 'faces'?"), build, IMAGE, face=3)
+        self.check(TypeError, ("no parameter 'xyz'",), build, IMAGE, xyz=3)
+        self.check(TypeError, ("faces: expected a whole number, found 2.5",), build, IMAGE, faces=2.5)
+        self.check(TypeError, ("faces: expected a whole number, found '9'",), build, IMAGE, faces="9")
+        self.check(TypeError, ("channels: expected a list",), build, IMAGE, channels="RGB")
+        self.check(TypeError, ("progress: expected a callable",), build, IMAGE, progress=3)
+        for words, parameters in ((("faces is 1", "at least 2"), {"faces": 1}),
+                                  (("metric 'x'", "flattened, hoppe, garland"), {"metric": "x"}),
+                                  (("density is nan",), {"density": float("nan")}),
+                                  (("density and faces", "one of them"), {"density": 3, "faces": 9}),
+                                  (("threads is 0", "1 to 1024"), {"threads": 0}),
+                                  (("alpha 'x'", "auto, keep, cut, ignore"), {"alpha": "x"}),
+                                  (("alpha_threshold is 2",), {"alpha_threshold": 2}),
+                                  (("preset", "nope"), {"preset": "nope"}),
+                                  (("level_faces is 1",), {"level_faces": [9, 1]}),
+                                  (("color_space 'x'", "sRGB"), {"color_space": "x"}),
+                                  (("values=True and texture",), {"values": True, "texture": "png"})):
+            self.check(imgmesh.ArgumentError, words, build, IMAGE, **parameters)
+
+    def test_arrays(self):
+        for words, array in ((("int32", "uint8"), IMAGE.astype(np.int32)), (("bool",), IMAGE > 3),
+                             (("complex",), IMAGE.astype(complex)), (("(24,)",), IMAGE[0, :, 0]),
+                             (("5 channels", "channel_names"), np.zeros((4, 4, 5), np.uint8)),
+                             (("(0, 3)",), np.zeros((0, 3), np.uint8)), (("(1, 70000)", "65535"), np.zeros((1, 70000), np.uint8)),
+                             (("object",), np.array([[None]])), (("shape ()",), np.array(3, np.uint8))):
+            self.check(imgmesh.ArgumentError, ("image: ", *words), imgmesh.build, array)
+        bad = picture_files.ramp(24, 16)
+        bad[3, 5, 1] = np.nan
+        self.check(imgmesh.BadFileError, ("channel G of pixel (5, 3)", "not a finite number"), imgmesh.build, bad)
+        self.check(imgmesh.BadFileError, ("channel R of pixel (0, 0)",), imgmesh.build, np.full((4, 4, 3), 1e300))
+        self.check(imgmesh.BadFileError, ("the mask is 3x2", "24x16"), imgmesh.build, IMAGE, mask=np.ones((2, 3), bool))
+        self.check(imgmesh.UnsupportedError, ("mask: no pixel is inside",), imgmesh.build, IMAGE,
+                   mask=np.zeros((16, 24), bool))
+        self.check(imgmesh.UnsupportedError, ("image: no pixel is inside", "alpha='ignore'"), imgmesh.build,
+                   np.zeros((4, 4, 4), np.uint8), alpha="cut")
+        self.check(imgmesh.ArgumentError, ("2 names",), imgmesh.Image, IMAGE, channel_names=["a", "b"])
+        self.check(imgmesh.ArgumentError, ("values=True where it is read",), imgmesh.build, imgmesh.Image(IMAGE), values=True)
+
+    def test_files(self):
+        with tempfile.TemporaryDirectory() as name:
+            folder = pathlib.Path(name)
+            for function in (imgmesh.build, imgmesh.read_image, imgmesh.read):
+                self.check(OSError, ("nothing.png",), function, folder / "nothing.png")
+            (folder / "text.png").write_text("no image")
+            self.check(imgmesh.BadFileError, ("text.png",), imgmesh.read_image, folder / "text.png")
+            self.check(imgmesh.BadFileError, ("text.png",), imgmesh.read, folder / "text.png")
+            mesh = imgmesh.build(IMAGE)
+            self.check(imgmesh.ArgumentError, ("mesh.txt",), mesh.write, folder / "mesh.txt")
+            mesh.write(folder / "mesh.glb")
+            self.check(imgmesh.FileError, ("mesh.glb",), mesh.write, folder / "mesh.glb", overwrite=False)
+            self.check(imgmesh.FileError, ("no/mesh.glb",), mesh.write, folder / "no/mesh.glb")
+            self.check(imgmesh.ArgumentError, ("a.xyz",), imgmesh.write_image, folder / "a.xyz", IMAGE)
+            self.check(TypeError, ("found a path",), imgmesh.write_image, folder / "a.png", folder / "b.png")
+            imgmesh.write_image(str(folder / "\udcff.png"), IMAGE)  # a name that is no UTF-8
+            self.assertEqual(imgmesh.build(str(folder / "\udcff.png")).width, 24)
+            self.check(TypeError, ("read_image() has no parameter 'valus'", "'values'"), imgmesh.read_image,
+                       folder / "a.png", valus=True)
+
+    def test_work_on_a_mesh(self):
+        mesh = imgmesh.build(IMAGE)
+        self.check(imgmesh.ArgumentError, ("level is 3", "levels 0 to 0"), mesh.reconstruct, level=3)
+        self.check(imgmesh.ArgumentError, ("level is -1",), mesh.reconstruct, level=-1)
+        self.check(imgmesh.ArgumentError, ("mode 'x'", "gouraud"), mesh.reconstruct, mode="x")
+        self.check(imgmesh.ArgumentError, (), mesh.reconstruct, scale=2)
+        self.check(imgmesh.UnsupportedError, ("visit",), mesh.reconstruct, mode="visits")
+        self.check(imgmesh.ArgumentError, ("threshold and segments",), mesh.segment, threshold=3, segments=2)
+        self.check(imgmesh.ArgumentError, (), mesh.segment, segments=10 ** 6)
+        self.check(imgmesh.BadFileError, ("24x16",), mesh.warp, IMAGE[:8], [])
+        self.check(imgmesh.BadFileError, ("edits: /edits/0",), mesh.warp, IMAGE, [{"handels": []}])
+        self.check(imgmesh.ArgumentError, ("size and retarget",), mesh.warp, IMAGE, size=(3, 3), retarget=(3, 3))
+        self.check(imgmesh.ArgumentError, (), imgmesh.compare, IMAGE, IMAGE[:8])
+
+    def test_warnings_may_be_errors(self):
+        soft = np.dstack([IMAGE, np.tile(np.linspace(0, 255, 24).astype(np.uint8), (16, 1))])
+        with warnings.catch_warnings():
+            warnings.simplefilter("error", imgmesh.Warning)
+            with self.assertRaises(imgmesh.Warning):
+                imgmesh.build(soft, refine=2)
+
+    def test_the_kinds(self):
+        for kind, base in ((imgmesh.ArgumentError, ValueError), (imgmesh.FileError, OSError),
+                           (imgmesh.BadFileError, ValueError), (imgmesh.UnsupportedError, ValueError),
+                           (imgmesh.OutOfMemoryError, MemoryError), (imgmesh.InternalError, RuntimeError)):
+            self.assertTrue(issubclass(kind, base) and issubclass(kind, imgmesh.Error))
+            self.assertEqual(kind.__module__, "imgmesh")
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,181 @@
+"""What Python writes is what the tools write, byte for byte."""
+import json
+import pathlib
+import warnings
+
+import numpy as np
+
+import imgmesh
+import picture_files
+from support import CliCase, main
+
+
+class Same(CliCase):
+    def setUp(self):
+        super().setUp()
+        self.color = np.round(picture_files.ramp(48, 32) * 255).astype(np.uint8)
+        y, x = np.mgrid[0:32, 0:48]
+        self.alpha = np.round(np.clip(1.6 - np.hypot(x - 22, y - 15) / 10, 0, 1) * 255).astype(np.uint8)
+        self.soft = np.concatenate([self.color, self.alpha[..., None]], axis=-1)
+        self.hard = self.soft.copy()
+        self.hard[..., 3] = np.where(self.alpha > 127, 255, 0)
+
+    def png(self, array, name="in.png"):
+        bits = 16 if array.dtype == np.uint16 else 8
+        samples = array[..., None] if array.ndim == 2 else array
+        return picture_files.png(self.folder / name, samples / (2 ** bits - 1), bits)
+
+    def write(self, mesh, name, **how):
+        mesh.write(self.folder / name, **how)
+        return (self.folder / name).read_bytes()
+
+    def check(self, image, array, options=(), **parameters):
+        """From the file's name, from its Image and from its array: the same container as the tool's."""
+        name = str(self.folder / image) if isinstance(image, str) else str(image)
+        self.run_ok("imgmesh-build", name, "-o", "tool.glb", "-q", *options)
+        tool = (self.folder / "tool.glb").read_bytes()
+        for source in (name, pathlib.Path(name), imgmesh.read_image(name)) + (() if array is None else (array,)):
+            with self.subTest(options=options, source=type(source)):
+                self.assertEqual(self.write(imgmesh.build(source, **parameters), "python.glb"), tool)
+        return tool
+
+    def test_containers(self):
+        grey = self.color[..., 1]
+        wide = np.round(picture_files.ramp(48, 32) * 65535).astype(np.uint16)
+        plain = self.check(self.png(self.color), self.color)
+        self.assertNotEqual(self.check(self.png(wide), wide), plain)
+        self.check(self.png(grey), grey, ("--faces", "60"), faces=60)
+        self.check(self.png(self.hard), self.hard, ("--density", "5"), density=5)
+        self.check(self.png(self.soft), self.soft, ("--density", "5"), density=np.float32(5))
+        self.check(self.png(self.soft), self.soft, ("--alpha", "cut", "--alpha-threshold", "0.25"), alpha="cut",
+                   alpha_threshold=0.25)
+        self.check(self.png(self.soft), self.soft, ("--alpha", "ignore"), alpha="ignore")
+        self.check(self.png(self.color), self.color, ("--density", "10", "--levels", "3"), density=10, levels=3)
+        self.check(self.png(self.color), self.color, ("--level-faces", "90,30"), level_faces=np.array([90, 30]))
+        self.check(self.png(self.color), self.color, ("--preset", "best", "--vertices", "40"), preset="best",
+                   vertices=np.int64(40))
+        self.check(self.png(self.color), self.color, ("--metric", "hoppe", "--visits", "--map", "trivial"),
+                   metric="hoppe", visits=True, map="trivial")
+        self.check(self.png(self.color), self.color, ("--texture",), texture="png")
+        self.check(self.png(self.color[:1, :1]), self.color[:1, :1])
+        self.check(self.png(self.color[:, :1]), self.color[:, :1])
+
+    def test_a_mask(self):
+        mask = np.hypot(*(np.mgrid[0:32, 0:48] - np.array([15, 22])[:, None, None])) < 12
+        path = self.png(np.where(mask, 200, 0).astype(np.uint8), "mask.png")
+        options = ("--mask", path, "--density", "6")
+        for given in (path, imgmesh.read_image(path), mask, mask.astype(np.uint8) * 200):
+            self.check(self.png(self.color), self.color, options, mask=given, density=6)
+
+    def test_floats(self):
+        linear = picture_files.ramp(48, 32).astype(np.float32) * 3
+        imgmesh.write_image(self.folder / "in.exr", linear)  # an EXR of another program has attributes too
+        self.check("in.exr", linear)
+        self.check("in.exr", linear.astype(np.float64))
+        imgmesh.write_image(self.folder / "half.exr", linear, dtype="float16")
+        self.check("half.exr", linear.astype(np.float16))
+
+    def test_channels_and_values(self):
+        depth = np.linspace(0, 40, 32 * 48, dtype=np.float32).reshape(32, 48, 1)
+        samples = np.concatenate([picture_files.ramp(48, 32).astype(np.float32), depth], axis=-1)
+        names = ["R", "G", "B", "Z"]
+        image = imgmesh.Image(samples, channel_names=names)
+        imgmesh.write_image(self.folder / "in.exr", image)
+        self.check("in.exr", image, ("--channels", "R,G,B,Z:0.5"), channels={"R": 1, "G": 1, "B": 1, "Z": 0.5})
+        heights = (np.round(self.color[..., 0].astype(float) * 20)).astype(np.uint16)
+        path = self.png(heights, "heights.png")
+        self.run_ok("imgmesh-build", path, "-o", "tool.glb", "-q", "--values")
+        for source in (path, heights, imgmesh.read_image(path, values=True)):
+            mesh = imgmesh.build(source, values=True)
+            self.assertEqual(self.write(mesh, "python.glb"), (self.folder / "tool.glb").read_bytes())
+
+    def test_other_kinds_of_files(self):
+        self.png(self.color)
+        for name, option in (("a.gltf", "none"), ("b.glb", "sequential")):
+            self.run_ok("imgmesh-build", "in.png", "-o", name, "-q", "--draco", option)
+            tool = {p.name: p.read_bytes() for p in self.folder.glob(f"{name[0]}*")}
+            mesh = imgmesh.build(self.color)
+            mesh.write(self.folder / name, draco=option)
+            self.assertEqual({p.name: p.read_bytes() for p in self.folder.glob(f"{name[0]}*")}, tool)
+
+    def test_a_container_that_is_read_and_written(self):
+        self.png(self.soft)
+        self.run_ok("imgmesh-build", "in.png", "-o", "a.glb", "-q", "--texture", "--draco", "none")
+        self.run_ok("imgmesh-convert", "a.glb", "-o", "b.glb", "-q")
+        mesh = imgmesh.read(self.folder / "a.glb")
+        self.assertEqual(self.write(mesh, "c.glb"), (self.folder / "b.glb").read_bytes())
+
+    def test_drawings(self):
+        self.png(self.hard)
+        self.run_ok("imgmesh-build", "in.png", "-o", "a.glb", "-q", "--density", "8", "--levels", "2", "--visits")
+        mesh = imgmesh.read(self.folder / "a.glb")
+        for name, options, parameters in (
+                ("a.png", (), {}), ("a.png", ("--level", "1"), {"level": 1}), ("a.exr", (), {"all_channels": True}),
+                ("a.tif", ("--mode", "gouraud", "--scale", "1.5"), {"mode": "gouraud", "scale": 1.5}),
+                ("a.png", ("--mode", "wire", "--scale", "2"), {"mode": "wire", "scale": 2}),
+                ("a.png", ("--mode", "flat"), {"mode": "flat"}), ("a.png", ("--mode", "patches"), {"mode": "patches"}),
+                ("a.png", ("--mode", "visits"), {"mode": "visits"})):
+            with self.subTest(options):
+                self.run_ok("imgmesh-reconstruct", "a.glb", "-o", name, "-q", *options)
+                imgmesh.write_image(self.folder / f"python-{name}", mesh.reconstruct(**parameters))
+                self.assertEqual((self.folder / f"python-{name}").read_bytes(), (self.folder / name).read_bytes())
+        self.run_ok("imgmesh-reconstruct", "a.glb", "-o", "a.svg", "-q", "--mode", "wire")
+        self.assertEqual(mesh.svg(), (self.folder / "a.svg").read_text())
+
+    def test_segments(self):
+        self.png(self.color)
+        self.run_ok("imgmesh-build", "in.png", "-o", "a.glb", "-q", "--density", "10")
+        mesh = imgmesh.read(self.folder / "a.glb")
+        for options, parameters in (((), {}), (("--segments", "4"), {"segments": 4}),
+                                    (("--superpixels", "9", "--compactness", "3"), {"superpixels": 9, "compactness": 3}),
+                                    (("--image", "in.png", "--distance", "paper"), {"image": self.color, "distance": "paper"})):
+            with self.subTest(options):
+                self.run_ok("imgmesh-segment", "a.glb", "-o", "a.exr", "-q", "--flat", "flat.png", "--outlines", "lines.png",
+                            *options)
+                result = mesh.segment(**parameters)
+                result.write(self.folder / "python.exr")
+                imgmesh.write_image(self.folder / "python-flat.png", result.flat())
+                imgmesh.write_image(self.folder / "python-lines.png", result.outlines())
+                for python, tool in (("python.exr", "a.exr"), ("python-flat.png", "flat.png"), ("python-lines.png", "lines.png")):
+                    self.assertEqual((self.folder / python).read_bytes(), (self.folder / tool).read_bytes(), tool)
+                self.assertEqual(len(np.unique(result.labels)), result.count)
+                self.assertEqual([r["pixels"] for r in result.regions], np.bincount(result.labels.ravel()).tolist())
+
+    def test_warps(self):
+        self.png(self.color)
+        self.run_ok("imgmesh-build", "in.png", "-o", "a.glb", "-q", "--density", "10")
+        edits = [{"level": 0, "solver": "arap", "handles": [{"near": [24, 14], "move": [3, 1]}], "pins": [{"border": True}]}]
+        (self.folder / "edits.json").write_text(json.dumps({"edits": edits}))
+        mesh = imgmesh.read(self.folder / "a.glb")
+        for options, parameters in ((("--edits", "edits.json"), {"edits": edits}),
+                                    (("--edits", "edits.json"), {"edits": self.folder / "edits.json"}),
+                                    (("--edits", "edits.json", "--size", "70x40"), {"edits": edits, "size": (70, 40)}),
+                                    (("--retarget", "36x32"), {"retarget": (36, 32)})):
+            with self.subTest(options):
+                self.run_ok("imgmesh-warp", "a.glb", "--image", "in.png", "-o", "a.png", "-q", *options)
+                imgmesh.write_image(self.folder / "python.png", mesh.warp(self.color, **parameters))
+                self.assertEqual((self.folder / "python.png").read_bytes(), (self.folder / "a.png").read_bytes())
+        self.run_ok("imgmesh-warp", "a.glb", "-o", "b.glb", "-q", "--edits", "edits.json")
+        self.assertEqual(self.write(mesh.warp_mesh(edits), "python.glb"), (self.folder / "b.glb").read_bytes())
+
+    def test_comparison(self):
+        self.png(self.color)
+        self.run_ok("imgmesh-build", "in.png", "-o", "a.glb", "-q")
+        told = self.report("imgmesh-compare", "in.png", "a.glb")["difference"]
+        for b in (self.folder / "a.glb", imgmesh.read(self.folder / "a.glb"), imgmesh.read(self.folder / "a.glb").reconstruct()):
+            found = imgmesh.compare(self.color, b)
+            self.assertAlmostEqual(found.rms_luv, told["rms_luv"])
+            self.assertAlmostEqual(np.sqrt(np.mean(found.luv.astype(float) ** 2)), found.rms_luv, places=5)
+
+    def test_warnings_are_those_of_the_tool(self):
+        path = self.png(self.soft)
+        told = self.report("imgmesh-build", path, "-o", "a.glb", "--refine", "3")["warnings"]
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always")
+            imgmesh.build(path, refine=3)
+        self.assertEqual([str(w.message) for w in caught], [t.replace("--alpha cut", "alpha='cut'") for t in told])
+        self.assertTrue(issubclass(caught[0].category, imgmesh.Warning))
+
+
+if __name__ == "__main__":
+    main()
