@@ -14,7 +14,7 @@ import sys
 import tempfile
 from pathlib import Path
 
-FOLDERS = ("libcore", "formats", "tools", "tests", "docs", "schemas", "packaging", "cmake", "examples")
+FOLDERS = ("libcore", "formats", "tools", "python", "tests", "docs", "schemas", "packaging", "cmake", "examples")
 ROOTED = re.compile(r"(?<![\w/.$}-])(?:" + "|".join(FOLDERS) + r")/[\w./*-]*[\w/*]")
 LINK = re.compile(r"\]\(([^)\s]+)\)")
 SPAN = re.compile(r"`([^`\n]+)`")
