@@ -98,9 +98,6 @@ void add_params(CLI::App& app, BuildOptions& o) {
 }  // namespace
 
 void add_build_options(CLI::App& app, BuildOptions& o) {
-    add_inputs(app, "IMAGE", o.inputs, "Images to read");
-    add_output(app, o.output,
-               "Container to write (.glb, .gltf), or a folder, ended by /, for NAME.glb of each image");
     Choices<BuildParams> choices;
     std::string help = "Values for many options at once";
     for (const Preset& preset : presets()) {

@@ -13,7 +13,7 @@
 namespace imgmesh {
 
 struct BuildOptions {
-    std::vector<std::string> inputs;
+    std::string input;
     std::string output;
     BuildParams params;  ///< what `preset` and then `given` make of it, when all options have been read
     BuildParams preset;

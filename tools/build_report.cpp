@@ -38,6 +38,9 @@ Report image_report(const Image& image, const std::string& alpha, bool values, c
     report.update(levels.front());  // the finest level's figures are the image's
     report.update({{"levels", levels},
                    {"bytes", written.facts.total_bytes},
+                   {"mesh_bytes", written.facts.mesh_bytes},
+                   {"layer_bytes", written.facts.layer_bytes},
+                   {"texture_bytes", written.facts.texture_bytes},
                    {"bytes_per_pixel", bytes / static_cast<double>(image.pixel_count())},
                    {"seconds", seconds.all},
                    {"stage_seconds",
@@ -49,41 +52,44 @@ Report image_report(const Image& image, const std::string& alpha, bool values, c
     return report;
 }
 
-void print_build(const Report& report, std::ostream& out) {
-    for (const Report& image : report["images"]) {
-        if (image.contains("failure")) continue;
-        out << printable_line(image["input"].get<std::string>() + " -> " + image["output"].get<std::string>())
-            << '\n';
-        const auto number = [&](const char* key) { return format_number(image[key].get<double>()); };
-        TextTable table;
-        table.add("size", cat(image["width"], " x ", image["height"], " pixels"));
-        if (image.contains("layer")) {
-            const std::string part = printable_line(image["part"].get<std::string>()),
-                              layer = printable_line(image["layer"].get<std::string>());
-            table.add("read", cat("part ", part, layer.empty() ? ", unnamed layer" : ", layer ", layer));
-        }
-        if (image["alpha"] != "none") table.add("alpha", image["alpha"].get<std::string>());
-        if (image["pixels"] != image["width"].get<std::int64_t>() * image["height"].get<std::int64_t>())
-            table.add("masked image", cat(image["pixels"], " pixels"));
-        table.add("mesh", cat(image["vertices"], " vertices, ", image["faces"], " faces"));
-        table.add("error", cat("map ", number("map_rms"), ", Gouraud ", number("gouraud_rms"),
-                               image["values"] ? " RMS in the values' unit" : " L*u*v* RMS"));
-        if (image.contains("channel_rms"))
-            for (const auto& [name, rms] : image["channel_rms"].items())
-                table.add(printable_line(name), cat("map ", format_number(rms.get<double>()), " RMS"));
-        for (std::size_t k = 1; k < image["levels"].size(); ++k) {
-            const Report& level = image["levels"][k];
-            table.add(cat("level ", k), cat(level["vertices"], " vertices, ", level["faces"], " faces, map ",
-                                            format_number(level["map_rms"].get<double>()), ", Gouraud ",
-                                            format_number(level["gouraud_rms"].get<double>())));
-        }
-        table.add("edge ratio", number("mean_edge_ratio"));
-        table.add("flipped", cat(image["flipped_pixel_triangles"], " pixel triangles"));
-        table.add("file", cat(format_bytes(image["bytes"].get<std::uint64_t>()), ", ",
-                              number("bytes_per_pixel"), " bytes per pixel"));
-        table.add("time", cat(number("seconds"), " s"));
-        table.print(out, 2);
+void print_build(const Report& image, std::ostream& out) {
+    out << printable_line(image["input"].get<std::string>() + " -> " + image["output"].get<std::string>())
+        << '\n';
+    const auto number = [&](const char* key) { return format_number(image[key].get<double>()); };
+    TextTable table;
+    table.add("size", cat(image["width"], " x ", image["height"], " pixels"));
+    if (image.contains("layer")) {
+        const std::string part = printable_line(image["part"].get<std::string>()),
+                          layer = printable_line(image["layer"].get<std::string>());
+        table.add("read", cat("part ", part, layer.empty() ? ", unnamed layer" : ", layer ", layer));
     }
+    if (image["alpha"] != "none") table.add("alpha", image["alpha"].get<std::string>());
+    if (image["pixels"] != image["width"].get<std::int64_t>() * image["height"].get<std::int64_t>())
+        table.add("masked image", cat(image["pixels"], " pixels"));
+    table.add("mesh", cat(image["vertices"], " vertices, ", image["faces"], " faces"));
+    table.add("error", cat("map ", number("map_rms"), ", Gouraud ", number("gouraud_rms"),
+                           image["values"] ? " RMS in the values' unit" : " L*u*v* RMS"));
+    if (image.contains("channel_rms"))
+        for (const auto& [name, rms] : image["channel_rms"].items())
+            table.add(printable_line(name), cat("map ", format_number(rms.get<double>()), " RMS"));
+    for (std::size_t k = 1; k < image["levels"].size(); ++k) {
+        const Report& level = image["levels"][k];
+        table.add(cat("level ", k), cat(level["vertices"], " vertices, ", level["faces"], " faces, map ",
+                                        format_number(level["map_rms"].get<double>()), ", Gouraud ",
+                                        format_number(level["gouraud_rms"].get<double>())));
+    }
+    table.add("edge ratio", number("mean_edge_ratio"));
+    table.add("flipped", cat(image["flipped_pixel_triangles"], " pixel triangles"));
+    table.add("file", cat(format_bytes(image["bytes"].get<std::uint64_t>()), ", ", number("bytes_per_pixel"),
+                          " bytes per pixel"));
+    table.add("time", cat(number("seconds"), " s"));
+    table.print(out, 2);
+}
+
+std::string build_line(const Report& image) {
+    return cat(image["width"], " x ", image["height"], " pixels, ", image["vertices"], " vertices, ",
+               image["faces"], " faces, ", format_bytes(image["bytes"].get<std::uint64_t>()), ", ",
+               format_number(image["seconds"].get<double>()), " s");
 }
 
 }  // namespace imgmesh

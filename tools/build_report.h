@@ -21,6 +21,9 @@ struct FileSeconds {
 Report image_report(const Image& image, const std::string& alpha, bool values, const BuildReport& built,
                     const Container& written, const FileSeconds& seconds);
 
+/// Prints an image's part of the report.
 void print_build(const Report& report, std::ostream& out);
+/// The same in a few words.
+std::string build_line(const Report& report);
 
 }  // namespace imgmesh

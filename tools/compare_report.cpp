@@ -181,4 +181,16 @@ void print_comparison(const Report& report, std::ostream& out) {
         if (report.contains(output)) out << printable_line("-> " + report[output].get<std::string>()) << '\n';
 }
 
+std::string comparison_line(const Report& report) {
+    if (!report.contains("difference")) return cat(report["inputs"][0]["faces"], " faces");
+    const Report& d = report["difference"];
+    if (d.contains("rms_visible"))
+        return cat("RMS ", number(d["rms_visible"]), " in L*u*v*, PSNR ",
+                   std::isinf(d["psnr"].get<double>()) ? "infinite" : cat(number(d["psnr"]), " dB"));
+    std::string text;
+    for (const auto& [name, channel] : d["channels"].items())
+        text += cat(text.empty() ? "" : ", ", name, " RMS ", number(channel["rms"]));
+    return text;
+}
+
 }  // namespace imgmesh

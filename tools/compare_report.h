@@ -35,5 +35,7 @@ std::vector<HistogramPanel> quality_panels(const std::vector<LevelQuality>& qual
                                            const std::vector<std::size_t>& names);
 
 void print_comparison(const Report& report, std::ostream& out);
+/// The same in a few words.
+std::string comparison_line(const Report& report);
 
 }  // namespace imgmesh

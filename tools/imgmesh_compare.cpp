@@ -40,7 +40,7 @@ constexpr int kPngScale = 2;
 constexpr float kVisible = std::numeric_limits<float>::min();
 
 struct Options {
-    std::vector<std::string> inputs;
+    std::string input, output, reference;
     std::optional<DrawMode> mode;
     std::optional<std::int64_t> level;
     ReadImageOptions read;
@@ -56,8 +56,6 @@ Choices<DrawMode> mode_choices() {
 }
 
 void add_options(CLI::App& app, Options& o) {
-    add_inputs(app, "INPUT", o.inputs,
-               "One container (.glb, .gltf), or two files to compare: images or containers");
     add_choice(app, "--mode", o.mode, mode_choices(), {"How a container is drawn", "map"});
     add_count(app, "--level", o.level, {0, std::numeric_limits<int>::max()},
               {"Level of a container's pyramid, 0 the finest", "0"});
@@ -81,13 +79,21 @@ void add_options(CLI::App& app, Options& o) {
     add_file(app, "--plot", o.plot, "Histograms to write (.svg, .png)");
 }
 
+bool is_pair(const Options& o) {
+    return !o.reference.empty();
+}
+
+// What is read, in the order of the report.
+std::vector<std::string> names_of(const Options& o) {
+    return is_pair(o) ? std::vector{o.reference, o.input} : std::vector{o.input};
+}
+
 // Throws Error(kBadArgument) for mistakes that can be found before any file is read.
 void check_options(const Options& o) {
     const auto refuse = [](const std::string& text) { throw Error(ErrorKind::kBadArgument, text); };
-    const bool pair = o.inputs.size() == 2;
-    if (o.inputs.size() > 2) refuse(cat(o.inputs[2], ": expected one container or two files"));
-    if (!pair && !is_container(o.inputs[0]))
-        refuse(cat(o.inputs[0], ": expected a second file, or a container (.glb, .gltf) alone"));
+    const bool pair = is_pair(o);
+    if (!pair && !is_container(o.input))
+        refuse(cat(o.input, ": expected a second file, or a container (.glb, .gltf) alone"));
     const std::pair<const char*, bool> reading[] = {
         {"--color-space", o.read.color_space.has_value()},
         {"--part", o.read.part.has_value()},
@@ -99,8 +105,9 @@ void check_options(const Options& o) {
          {std::pair{"--mode", o.mode.has_value()}, std::pair{"--tolerance", o.tolerance.has_value()},
           std::pair{"--error-image", !o.error_image.empty()}})
         if (given && !pair) refuse(cat(name, ": expected two files to compare"));
-    const bool containers = std::any_of(o.inputs.begin(), o.inputs.end(), is_container);
-    const bool pictures = !std::all_of(o.inputs.begin(), o.inputs.end(), is_container);
+    const std::vector<std::string> inputs = names_of(o);
+    const bool containers = std::ranges::any_of(inputs, is_container);
+    const bool pictures = !std::ranges::all_of(inputs, is_container);
     if ((o.mode || o.level) && !containers)
         refuse(cat(o.mode ? "--mode" : "--level", ": expected a container (.glb, .gltf) among the files"));
     for (const auto& [name, given] : reading)
@@ -130,10 +137,9 @@ Input load_picture(const std::string& path, const Options& o, Context& context) 
     ReadImageOptions options = image_options(o.read, o.limits, context.max_memory);
     options.limits.work_bytes = kPairBytes;
     ReadImage read = read_with_warnings(path, options, context.warnings);
-    check_memory(cat(path, ": a comparison of ", read.image.width, "x", read.image.height, " pixels"),
-                 kProgramMemory + static_cast<double>(read.image.pixel_count()) *
-                                      (kChannelBytes * read.image.channels + kPairBytes),
-                 context.max_memory);
+    context.memory.take(cat(path, ": a comparison of ", read.image.width, "x", read.image.height, " pixels"),
+                        kProgramMemory + static_cast<double>(read.image.pixel_count()) *
+                                             (kChannelBytes * read.image.channels + kPairBytes));
     const Report facts = read_report(read);
     Input input{{path}, hidden_outside(read.image, read.data), {}, {}};
     if (!o.read.values && !has_color(input.image))
@@ -148,10 +154,10 @@ Input load_picture(const std::string& path, const Options& o, Context& context) 
     return input;
 }
 
-Input load_container(const std::string& path, const Options& o, const Context& context) {
+Input load_container(const std::string& path, const Options& o, Context& context) {
     const Container container = read_container(path, container_limits(o.limits, context.max_memory));
     const MeshImage& m = container.mesh_image;
-    check_work(path, m, kQualityBytes + (o.inputs.size() == 2 ? kPairBytes : 0), context.max_memory);
+    context.memory.take_for(path, m, kQualityBytes + (is_pair(o) ? kPairBytes : 0));
     const auto index = static_cast<std::size_t>(o.level.value_or(0));
     check_level("--level", o.level.value_or(0), path, m);
     const Level& level = m.levels[index];
@@ -163,7 +169,7 @@ Input load_container(const std::string& path, const Options& o, const Context& c
                     {"height", m.source.height},
                     {"color_space", color_space_name(m.source.color_space)},
                     {"level", index}};
-    if (o.inputs.size() == 2) {
+    if (is_pair(o)) {
         const DrawMode mode = o.mode.value_or(DrawMode::kMap);
         if (!o.read.values && split_names(m.source.channel_names).color.empty())
             throw Error(ErrorKind::kUnsupported, cat(path, ": the container has no colour"));
@@ -185,7 +191,7 @@ void check_same_size(const Image& a, const Image& b, const std::vector<std::stri
 }
 
 ImageDifference compare_inputs(const Input& a, const Input& b, const Options& o) {
-    check_same_size(a.image, b.image, o.inputs);
+    check_same_size(a.image, b.image, names_of(o));
     return compare_images(a.image, b.image);
 }
 
@@ -218,11 +224,11 @@ Plot make_plot(const std::vector<Input>& inputs, const Options& o, std::vector<H
         if (!inputs[i].quality) continue;
         places.push_back(names.size());
         qualities.push_back(*inputs[i].quality);
-        names.push_back(o.inputs[i]);
+        names.push_back(names_of(o)[i]);
     }
     for (HistogramPanel& panel : panels)
         for (HistogramSeries& series : panel.series) series.name = names.size();
-    if (!panels.empty()) names.push_back(cat(o.inputs[0], " against ", o.inputs[1]));
+    if (!panels.empty()) names.push_back(cat(o.reference, " against ", o.input));
     for (HistogramPanel& panel : quality_panels(qualities, places)) panels.push_back(std::move(panel));
     return histogram_plot(names, panels);
 }
@@ -237,14 +243,13 @@ Image draw_plot(const Plot& plot, const std::string& path) {
     return image;
 }
 
-Report run(const Options& o, Context& context) {
-    check_options(o);
+Report compare_one(const Options& o, Context& context) {
     for (const std::string& output : {o.error_image, o.plot})
         if (!output.empty()) check_output(output, context.overwrite);
 
     std::vector<Input> inputs;
     Report reports = Report::array();
-    for (const std::string& path : o.inputs) {
+    for (const std::string& path : names_of(o)) {
         context.progress(0.3 * static_cast<double>(inputs.size()), "read");
         inputs.push_back(is_container(path) ? load_container(path, o, context)
                                             : load_picture(path, o, context));
@@ -258,7 +263,7 @@ Report run(const Options& o, Context& context) {
     std::optional<ImageDifference> difference;
     double difference_rms = 0;  // the one that --tolerance limits
     if (inputs.size() == 2 && o.read.values) {
-        report["difference"] = value_report(inputs[0].image, inputs[1].image, o.inputs);
+        report["difference"] = value_report(inputs[0].image, inputs[1].image, names_of(o));
         for (const auto& [name, channel] : report["difference"]["channels"].items())
             difference_rms = std::max(difference_rms, channel["rms"].get<double>());
     } else if (inputs.size() == 2) {
@@ -278,7 +283,7 @@ Report run(const Options& o, Context& context) {
         if (!within)
             context.failures.push_back(
                 {ExitCode::kDifferent,
-                 cat(o.inputs[0], " and ", o.inputs[1], " differ: RMS ", format_number(difference_rms),
+                 cat(o.reference, " and ", o.input, " differ: RMS ", format_number(difference_rms),
                      o.read.values ? " in the values' unit" : " in L*u*v*", ", more than --tolerance ",
                      *o.tolerance)});
     }
@@ -311,7 +316,20 @@ Report run(const Options& o, Context& context) {
 }  // namespace
 
 int main(int argc, char** argv) {
+    Options options;
     return tool_main<Options>(
-        "imgmesh-compare", "Compare images and containers; tell the quality of a container's mesh and map.",
-        argc, argv, add_options, run, print_comparison);
+        {.name = "imgmesh-compare",
+         .description = "Compare images and containers; tell the quality of a container's mesh and map.",
+         .input_name = "INPUT",
+         .input_help =
+             "One container (.glb, .gltf), or files to compare: an image or container, and those that "
+             "are compared with it",
+         .compares = true},
+        {add_options,
+         check_options,
+         compare_one,
+         print_comparison,
+         comparison_line,
+         {{"--error-image", "png", &Options::error_image}, {"--plot", "svg", &Options::plot}}},
+        options, argc, argv);
 }

@@ -60,11 +60,6 @@ struct Options {
 };
 
 void add_options(CLI::App& app, Options& o) {
-    add_input(app, "CONTAINER", o.input, "Container to read (.glb, .gltf)");
-    add_output(
-        app, o.output,
-        "Container to write (.glb, .gltf), or a level of it as .svg, .ply, .obj, .json (a sprite's mesh, as "
-        "TexturePacker writes it) or .png (24-bit face ids, red the low byte)");
     const std::string container = "Container", level = "Level";
     in_group(add_choice(app, "--draco", o.draco, draco_choices(),
                         {"Compression of the meshes", "that of the input"}),
@@ -249,8 +244,7 @@ void export_level(const Options& o, const MeshImage& m, int index, Context& cont
     write_text(o.output, text, context.overwrite);
 }
 
-Report run(const Options& o, Context& context) {
-    check_options(o);
+Report convert_one(const Options& o, Context& context) {
     check_output(o.output, context.overwrite);
     context.progress(0, "read");
     Container container = read_container(o.input, container_limits(o.limits, context.max_memory));
@@ -260,7 +254,7 @@ Report run(const Options& o, Context& context) {
         check_distinct({o.image}, container_files(o.output));
     const int level = o.level.value_or(0);
     check_level("--level", level, o.input, m);
-    check_work(o.input, m, bytes_of_pixel(o), context.max_memory);
+    context.memory.take_for(o.input, m, bytes_of_pixel(o));
     context.progress(0.5, "write");
     ContainerOptions options;
     const auto outline = [&] { m = outline_mesh_image(m, level, *o.outline_tolerance, o.outline_side); };
@@ -307,10 +301,25 @@ void print(const Report& report, std::ostream& out) {
     table.print(out, 2);
 }
 
+std::string line(const Report& report) {
+    return cat(report["vertices"], " vertices, ", report["faces"], " faces, ",
+               format_bytes(report["bytes"].get<std::uint64_t>()));
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
-    return tool_main<Options>("imgmesh-convert",
-                              "Turn a container into another file variant or compression, or another format.",
-                              argc, argv, add_options, run, print);
+    Options options;
+    return tool_main<Options>(
+        {.name = "imgmesh-convert",
+         .description = "Turn containers into another file variant or compression, or another format.",
+         .input_name = "CONTAINER",
+         .input_help = "Containers to read (.glb, .gltf)",
+         .output_help =
+             "Container to write (.glb, .gltf), or a level of it as .svg, .ply, .obj, .json (a sprite's "
+             "mesh, as TexturePacker writes it) or .png (24-bit face ids, red the low byte); or a folder, "
+             "ended by /, for NAME.glb of each container",
+         .type = [] { return "glb"; },
+         .sources = {"--image"}},
+        {add_options, check_options, convert_one, print, line}, options, argc, argv);
 }

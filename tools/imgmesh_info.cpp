@@ -23,14 +23,13 @@ namespace {
 constexpr double kInfoBytes = 8;
 
 struct Options {
-    std::string input;
+    std::string input, output;
     bool validate = false;
     bool warnings_as_errors = false;
     ContainerLimits limits;
 };
 
 void add_options(CLI::App& app, Options& o) {
-    add_input(app, "CONTAINER", o.input, "Container to read (.glb, .gltf)");
     CLI::Option* const validate = add_flag(
         app, "--validate", [&o] { o.validate = true; },
         "Only tell whether the container is sound, with every finding");
@@ -146,14 +145,14 @@ Report validate(const Options& o, Context& context) {
             {"findings", findings}};
 }
 
-Report run(const Options& o, Context& context) {
+Report tell_one(const Options& o, Context& context) {
     Report report = {{"input", o.input}};
     if (o.validate) {
         report.update(validate(o, context));
         return report;
     }
     const Container container = read_container(o.input, container_limits(o.limits, context.max_memory));
-    check_work(o.input, container.mesh_image, kInfoBytes, context.max_memory);
+    context.memory.take_for(o.input, container.mesh_image, kInfoBytes);
     report.update(facts_report(container));
     return report;
 }
@@ -238,9 +237,26 @@ void print(const Report& report, std::ostream& out) {
     }
 }
 
+std::string line(const Report& report) {
+    if (report.contains("valid")) {
+        std::string text = report["valid"] ? "valid" : "not valid";
+        for (const char* kind : {"errors", "warnings"})
+            if (report[kind] != 0) text += cat(", ", kind, ' ', report[kind]);
+        return text;
+    }
+    const Report& finest = report["levels"][0];
+    return cat(report["width"], " x ", report["height"], " pixels, levels ", report["levels"].size(), ", ",
+               finest["vertices"], " vertices, ", finest["faces"], " faces, ",
+               format_bytes(report["bytes"]["total"].get<std::uint64_t>()));
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
-    return tool_main<Options>("imgmesh-info", "Tell what is in a container, and whether it is sound.", argc,
-                              argv, add_options, run, print);
+    Options options;
+    return tool_main<Options>({.name = "imgmesh-info",
+                               .description = "Tell what is in containers, and whether they are sound.",
+                               .input_name = "CONTAINER",
+                               .input_help = "Containers to read (.glb, .gltf)"},
+                              {add_options, nullptr, tell_one, print, line}, options, argc, argv);
 }

@@ -49,8 +49,6 @@ Choices<SampleType> depth_choices() {
 }
 
 void add_options(CLI::App& app, Options& o) {
-    add_input(app, "CONTAINER", o.input, "Container to read (.glb, .gltf)");
-    add_output(app, o.output, "Image to write (.png, .exr, .tif, .jpg, ...; .svg of wire and flat)");
     add_choice(app, "--mode", o.draw.mode, mode_choices(), "What to draw; map is the reconstruction");
     add_count(app, "--level", o.level, {0}, "Level of the pyramid, 0 the finest");
     add_number(app, "--scale", o.draw.scale, {0, kNoLimit, true},
@@ -61,7 +59,8 @@ void add_options(CLI::App& app, Options& o) {
 }
 
 // Throws Error(kBadArgument) for mistakes that can be found before the container is read.
-void check_options(const Options& o, bool svg) {
+void check_options(const Options& o) {
+    const bool svg = lower_extension(o.output) == ".svg";
     const bool plane = o.draw.mode == DrawMode::kMap || o.draw.mode == DrawMode::kPatches ||
                        o.draw.mode == DrawMode::kVisits;
     const std::string mode = name_of(mode_choices(), o.draw.mode);
@@ -117,9 +116,8 @@ bool writes_channels(const Options& o, const SourceInfo& source) {
     return holds && !names.auxiliary.empty();
 }
 
-Report run(const Options& o, Context& context) {
+Report draw_one(const Options& o, Context& context) {
     const bool svg = lower_extension(o.output) == ".svg";
-    check_options(o, svg);
     check_output(o.output, context.overwrite);
 
     context.progress(0, "read");
@@ -138,9 +136,9 @@ Report run(const Options& o, Context& context) {
         write_text(o.output, draw_svg(mesh_image, o.level, o.draw.mode), context.overwrite);
     } else {
         check_size(source, o.draw.scale);
-        check_memory(cat(o.input, ": a drawing of ", source.width * o.draw.scale, "x",
-                         source.height * o.draw.scale, " pixels"),
-                     draw_memory(o, mesh_image, all_channels), context.max_memory);
+        context.memory.take(cat(o.input, ": a drawing of ", source.width * o.draw.scale, "x",
+                                source.height * o.draw.scale, " pixels"),
+                            draw_memory(o, mesh_image, all_channels));
         const Image image =
             all_channels ? draw_channels(mesh_image, o.level, o.draw) : draw(mesh_image, o.level, o.draw);
         context.progress(0.8, "write");
@@ -174,9 +172,23 @@ void print(const Report& report, std::ostream& out) {
     table.print(out, 2);
 }
 
+std::string line(const Report& report) {
+    return cat(report["width"], " x ", report["height"], ", ",
+               format_bytes(report["bytes"].get<std::uint64_t>()));
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
-    return tool_main<Options>("imgmesh-reconstruct", "Draw the image of a container.", argc, argv,
-                              add_options, run, print);
+    Options options;
+    return tool_main<Options>(
+        {.name = "imgmesh-reconstruct",
+         .description = "Draw the images of containers.",
+         .input_name = "CONTAINER",
+         .input_help = "Containers to read (.glb, .gltf)",
+         .output_help =
+             "Image to write (.png, .exr, .tif, .jpg, ...; .svg of wire and flat), or a folder, ended "
+             "by /, for NAME.png of each container",
+         .type = [] { return "png"; }},
+        {add_options, check_options, draw_one, print, line}, options, argc, argv);
 }

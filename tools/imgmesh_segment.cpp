@@ -52,8 +52,6 @@ Choices<DistanceRule> distance_choices() {
 
 void add_options(CLI::App& app, Options& o) {
     const SegmentParams usual;
-    add_input(app, "CONTAINER", o.input, "Container to read (.glb, .gltf)");
-    add_output(app, o.output, "Labels to write, as .exr (UINT id) or .png (16 bit)");
     const std::string regions = "Regions", files = "Files";
     in_group(add_number(app, "--threshold", o.threshold, {0, kNoLimit, true},
                         {"Merge regions that are closer than this, in L*u*v*", cat(usual.threshold)}),
@@ -153,8 +151,7 @@ Segmentation segment_named(const Options& o, const Level& level, const FeatureIm
     }
 }
 
-Report run(const Options& o, Context& context) {
-    check_options(o);
+Report segment_one(const Options& o, Context& context) {
     for (const std::string& output : outputs_of(o)) check_output(output, context.overwrite);
 
     context.progress(0, "read");
@@ -168,7 +165,7 @@ Report run(const Options& o, Context& context) {
     check_level("--level", o.level, o.input, mesh_image);
     const Level& level = mesh_image.levels[static_cast<std::size_t>(o.level)];
 
-    check_work(o.input, mesh_image, kSegmentBytes, context.max_memory);
+    context.memory.take_for(o.input, mesh_image, kSegmentBytes);
     SegmentParams params = o.params;
     params.threshold = o.threshold.value_or(params.threshold);
     params.compactness = o.compactness.value_or(params.compactness);
@@ -224,9 +221,34 @@ void print(const Report& report, std::ostream& out) {
     table.print(out, 2);
 }
 
+std::string line(const Report& report) {
+    return cat(report["regions"], " regions of ", report["min_pixels"], " to ", report["max_pixels"],
+               " pixels");
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
-    return tool_main<Options>("imgmesh-segment", "Cut the image of a container into regions.", argc, argv,
-                              add_options, run, print);
+    Options options;
+    return tool_main<Options>(
+        {.name = "imgmesh-segment",
+         .description = "Cut the images of containers into regions.",
+         .input_name = "CONTAINER",
+         .input_help = "Containers to read (.glb, .gltf)",
+         .output_help =
+             "Labels to write, as .exr (UINT id) or .png (16 bit), or a folder, ended by /, for NAME.png "
+             "of each container; with several containers the other outputs are folders as well",
+         .type = [] { return "png"; },
+         .sources = {"--image"}},
+        {add_options,
+         check_options,
+         segment_one,
+         print,
+         line,
+         {{"--outlines", "png", &Options::outlines},
+          {"--flat", "png", &Options::flat},
+          {"--ucm", "exr", &Options::ucm},
+          {"--report", "json", &Options::report},
+          {"--mesh", "glb", &Options::mesh}}},
+        options, argc, argv);
 }

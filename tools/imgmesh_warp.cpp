@@ -69,12 +69,9 @@ OutputSize parse_size(const std::string& name, const std::string& text) {
 }
 
 void add_options(CLI::App& app, Options& o) {
-    add_input(app, "CONTAINER", o.input, "Container to read (.glb, .gltf)");
     CLI::Option* const image = add_file(app, "--image", o.image, "Image that the container was made from");
     add_read_options(app, o.read, image, true);
     add_container_limits(app, o.limits);
-    add_file(app, "-o,--output", o.output,
-             "Edited image to write (.png, .exr, .tif, ...), or edited container (.glb, .gltf)");
     add_file(app, "--displacement", o.displacement,
              "Maps of the edit to write (.exr): an STMap, and the displacement of every pixel");
     add_file(app, "--edits", o.edits, "Edits to make (.json, schemas/imgmesh-warp.edits.schema.json)");
@@ -163,8 +160,7 @@ std::vector<std::string> written_files(const Options& o) {
     return files;
 }
 
-Report run(const Options& o, Context& context) {
-    check_options(o);
+Report warp_one(const Options& o, Context& context) {
     for (const std::string& path : {o.output, o.displacement})
         if (!path.empty()) check_output(path, context.overwrite);
 
@@ -178,8 +174,8 @@ Report run(const Options& o, Context& context) {
         if (!path.empty()) read.push_back(path);
     check_distinct(read, written_files(o));
     check_separate(written_files(o));
-    check_memory(cat(o.input, ": warping ", source.width, "x", source.height, " pixels"),
-                 warp_memory(o, mesh_image), context.max_memory);
+    context.memory.take(cat(o.input, ": warping ", source.width, "x", source.height, " pixels"),
+                        warp_memory(o, mesh_image));
     std::optional<Image> image;
     if (!o.image.empty())
         image = read_source_image(o.image, source, o.input,
@@ -242,9 +238,31 @@ void print(const Report& report, std::ostream& out) {
     table.print(out, 2);
 }
 
+std::string line(const Report& report) {
+    return cat(report["moved_vertices"], " vertices moved, at most ", format_number(report["largest_move"]),
+               " pixels");
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
-    return tool_main<Options>("imgmesh-warp", "Edit an image by moving vertices of its meshes.", argc, argv,
-                              add_options, run, print);
+    Options options;
+    return tool_main<Options>(
+        {.name = "imgmesh-warp",
+         .description = "Edit images by moving vertices of their meshes.",
+         .input_name = "CONTAINER",
+         .input_help = "Containers to read (.glb, .gltf)",
+         .output_help =
+             "Edited image to write (.png, .exr, .tif, ...), or edited container (.glb, .gltf), or a "
+             "folder, ended by /, for NAME.png, or NAME.glb without --image",
+         .output_required = false,
+         .type = [&options] { return options.image.empty() ? "glb" : "png"; },
+         .sources = {"--image", "--edits"}},
+        {add_options,
+         check_options,
+         warp_one,
+         print,
+         line,
+         {{"--displacement", "exr", &Options::displacement}}},
+        options, argc, argv);
 }

@@ -14,4 +14,7 @@ inline std::string sha256_hex(std::span<const std::uint8_t> bytes) {
     return sha256_hex({bytes});
 }
 
+/// Returns the hash of a regular file's content; "" if it cannot be read or is of another kind.
+std::string file_sha256_hex(const std::string& path);
+
 }  // namespace imgmesh

@@ -1,6 +1,14 @@
-"""Many images in one process, and the same bytes whatever the threads."""
+"""Many files in one process: the same bytes whatever the threads, and a report of each as it finishes."""
+import hashlib
+import json
+import os
+import shutil
+import signal
+import subprocess
+import time
+
 import picture_files
-from support import CliCase, main
+from support import BIN, CliCase, main, validate_report
 
 
 class Batch(CliCase):
@@ -70,7 +78,7 @@ class Batch(CliCase):
         (self.folder / "bad.png").write_bytes(b"no picture at all")
         missing = self.run_tool("imgmesh-build", "p0.png", "m1.png", "m2.png", "-o", "out/")
         self.assert_error_lines("imgmesh-build", missing, 3, 2)
-        self.assertLess(missing.stderr.index("m1.png"), missing.stderr.index("m2.png"))
+        self.assertEqual(sorted(name for name in ("m1.png", "m2.png") if name in missing.stderr), ["m1.png", "m2.png"])
         mixed = self.run_tool("imgmesh-build", "m1.png", "bad.png", "p0.png", "-o", "out/")
         self.assert_error_lines("imgmesh-build", mixed, 4, 2)
 
@@ -85,8 +93,128 @@ class Batch(CliCase):
     def test_text_report_names_each(self):
         text = self.run_batch("-o", "out/").stdout
         for i in range(3):
-            self.assertIn(f"p{i}.png -> out/p{i}.glb\n", text)
+            self.assertEqual(len([line for line in text.splitlines() if line.startswith(f"p{i}.png -> out/p{i}.glb: ")]), 1)
         self.assertIn("40 x 30", text)
+        self.assertRegex(text.splitlines()[-1], r"^3 files: 3 done; [0-9.e-]+ s$")
+
+
+class EveryTool(CliCase):
+    """What holds for all tools: a folder for many, the list of files, the lines."""
+
+    def setUp(self):
+        super().setUp()
+        self.names = []
+        for i in range(3):
+            self.names.append(picture_files.png(self.folder / f"p{i}.png", picture_files.noise(12 + i, 9, seed=i)).name)
+        (self.folder / "bad.png").write_bytes(b"no picture at all")
+        self.run_ok("imgmesh-build", *self.names, "-o", "in/", "-q")
+        self.containers = [f"in/p{i}.glb" for i in range(3)]
+        (self.folder / "in/bad.glb").write_bytes(b"no container at all")
+
+    CASES = (("imgmesh-reconstruct", ["-o", "out/"], ["p0.png", "p1.png", "p2.png"]),
+             ("imgmesh-reconstruct", ["-o", "out/", "--format", ".EXR"], ["p0.exr", "p1.exr", "p2.exr"]),
+             ("imgmesh-segment", ["-o", "out/", "--segments", "2", "--report", "out/"],
+              ["p0.json", "p0.png", "p1.json", "p1.png", "p2.json", "p2.png"]),
+             ("imgmesh-warp", ["-o", "out/", "--handle", "3,3:1,1"], ["p0.glb", "p1.glb", "p2.glb"]),
+             ("imgmesh-warp", ["--displacement", "out/", "--handle", "3,3:1,1"], ["p0.exr", "p1.exr", "p2.exr"]),
+             ("imgmesh-convert", ["-o", "out/", "--draco", "none"], ["p0.glb", "p1.glb", "p2.glb"]),
+             ("imgmesh-convert", ["-o", "out/", "--format", "svg"], ["p0.svg", "p1.svg", "p2.svg"]),
+             ("imgmesh-info", [], []))
+
+    def test_many_files(self):
+        """One bad file of four: the others are done, and each report is that of the file alone."""
+        for tool, args, outputs in self.CASES:
+            with self.subTest(tool=tool, args=args):
+                report = self.report(tool, *self.containers, "in/bad.glb", *args, code=4)
+                self.assertEqual([file["status"] for file in report["files"]], 3 * ["done"] + ["failed"])
+                self.assertEqual(report["files"][3]["failure"]["code"], 4)
+                self.assertEqual((report["summary"]["done"], report["summary"]["failed"]), (3, 1))
+                written = sorted(p.name for p in self.folder.glob("out/*"))
+                self.assertEqual(written, outputs)
+                alone = self.report(tool, self.containers[1], *args)
+                self.assertEqual({k: v for k, v in alone.items() if k not in ("$schema", "generator")}, report["files"][1])
+                for path in self.folder.glob("out/*"):
+                    path.unlink()
+
+    def test_lines_of_json(self):
+        for tool, args, _ in self.CASES:
+            with self.subTest(tool=tool, args=args):
+                result = self.run_tool(tool, *self.containers, "in/bad.glb", *args, "--jsonl")
+                self.assert_error_lines(tool, result, 4, 1)
+                lines = [json.loads(line) for line in result.stdout.splitlines()]
+                for line in lines:
+                    validate_report(tool, line)
+                self.assertEqual(sorted(line["input"] for line in lines[:-1]), ["in/bad.glb", *self.containers])
+                self.assertEqual(lines[-1]["summary"]["files"], 4)
+                self.assertEqual([line["failure"]["message"] for line in lines[:-1] if line["status"] == "failed"],
+                                 [result.stderr.strip().removeprefix(f"{tool}: error: ")])
+
+    def test_what_a_report_says_of_a_file(self):
+        report = self.report("imgmesh-build", "p0.png", "-o", "x.glb", "--faces", "9", "--mask", "p0.png", "--texture")
+        image = report["images"][0]
+        self.assertEqual(image["sha256"], hashlib.sha256((self.folder / "p0.png").read_bytes()).hexdigest())
+        self.assertEqual({k: image["parameters"][k] for k in ("faces", "refine", "texture", "mask", "density", "draco")},
+                         {"faces": 9, "refine": 2, "texture": True, "mask": "picture", "density": None,
+                          "draco": "edgebreaker"})
+        facts = self.report("imgmesh-info", "x.glb")["bytes"]
+        self.assertEqual([image[k] for k in ("bytes", "mesh_bytes", "layer_bytes", "texture_bytes")],
+                         [facts[k] for k in ("total", "meshes", "layers", "texture")])
+        failed = self.report("imgmesh-build", "bad.png", "-o", "y.glb", code=4)["images"][0]
+        self.assertEqual(failed["sha256"], hashlib.sha256(b"no picture at all").hexdigest())
+        report = self.report("imgmesh-reconstruct", "x.glb", "-o", "x.png", "--scale", "2.5", "--mode", "flat")
+        self.assertEqual((report["parameters"]["scale"], report["parameters"]["level"]), (2.5, 0))
+
+    def test_lines_come_as_files_finish(self):
+        """The first line is there while the last file, a pipe that nobody writes to yet, still waits."""
+        for option in ("--jsonl", "--threads"):
+            os.mkfifo(self.folder / "slow.glb")
+            process = subprocess.Popen([str(BIN / "imgmesh-info"), "in/p0.glb", "slow.glb", option,
+                                        *(["2"] if option == "--threads" else [])], cwd=self.folder,
+                                       stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+            self.assertIn(b"in/p0.glb", process.stdout.readline())
+            (self.folder / "slow.glb").write_bytes((self.folder / "in/p1.glb").read_bytes())
+            self.assertEqual(process.communicate(timeout=60)[0].count(b"\n"), 2)
+            (self.folder / "slow.glb").unlink()
+
+    def interrupted(self, *args, times=1):
+        """Ends a run whose second file never comes, and gives what it printed."""
+        shutil.rmtree(self.folder / "out", ignore_errors=True)
+        if not (self.folder / "slow.glb").exists():
+            os.mkfifo(self.folder / "slow.glb")
+        process = subprocess.Popen([str(BIN / "imgmesh-convert"), "in/p0.glb", "slow.glb", "in/p1.glb", "-o", "out/",
+                                    "--threads", "2", *args], cwd=self.folder, stdout=subprocess.PIPE,
+                                   stderr=subprocess.PIPE, encoding="utf-8")
+        end = time.monotonic() + 60
+        while not (self.folder / "out/p1.glb").exists() and time.monotonic() < end:
+            time.sleep(0.01)
+        start = time.monotonic()
+        for _ in range(times):
+            process.send_signal(signal.SIGINT)
+            time.sleep(0.05)
+        out, err = process.communicate(timeout=60)
+        self.assertEqual(process.returncode, -signal.SIGINT)
+        self.assertEqual(sorted(p.name for p in (self.folder / "out").glob("*.glb")), ["p0.glb", "p1.glb"])
+        self.assertEqual(list((self.folder / "out").glob(".imgmesh-[0-9]*")), [])
+        return out, err, time.monotonic() - start
+
+    def test_interruption(self):
+        out, err, seconds = self.interrupted("--json")
+        self.assertLess(seconds, 10)
+        self.assertEqual(err, "imgmesh-convert: error: interrupted: 2 of 3 files are done\n")
+        report = json.loads(out)
+        validate_report("imgmesh-convert", report)
+        self.assertEqual([file["status"] for file in report["files"]], ["done", "interrupted", "done"])
+        self.assertEqual(report["summary"]["interrupted"], 1)
+        lines = [json.loads(line) for line in self.interrupted("--jsonl")[0].splitlines()]
+        for line in lines:
+            validate_report("imgmesh-convert", line)
+        self.assertEqual([line.get("status") for line in lines], ["done", "done", "interrupted", None])
+        self.assertIn("slow.glb: not done\n3 files: 2 done, 1 not done; ", self.interrupted()[0])
+
+    def test_second_interruption_ends_at_once(self):
+        out, _, seconds = self.interrupted("--json", times=2)
+        self.assertEqual(out, "")
+        self.assertLess(seconds, 0.9)
 
 
 if __name__ == "__main__":

@@ -100,11 +100,12 @@ class Unwritable(CliCase):
         self.assert_error("imgmesh-build", ["in.png", "-o", "in.png/deeper/"], 3, "in.png/deeper/")
 
     def test_a_folder_stands_there(self):
-        for tool, source, names in self.runs:
+        for _, _, names in self.runs:
             for name in names:
                 (self.folder / name).mkdir()
-                if tool == "imgmesh-reconstruct":
-                    self.assert_error(tool, [source, "-o", name], 3, name)
+        # A folder named as the output gets the file; one where the file is due stays.
+        (self.folder / "x.png/c.png").mkdir()
+        self.assert_error("imgmesh-reconstruct", ["c.glb", "-o", "x.png"], 3, "x.png/c.png")
 
     def test_names_beside_a_gltf_that_others_have(self):
         """What stands there stays: the container's own files get other names."""

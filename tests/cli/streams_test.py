@@ -56,7 +56,11 @@ class Streams(CliCase):
         validate_report("imgmesh-build", json.loads(report))
 
     def test_errors_stay_on_standard_error_with_json(self):
-        self.assert_error("imgmesh-info", ["none.glb", "--json"], 3, "none.glb")
+        result = self.run_tool("imgmesh-info", "none.glb", "--json")
+        self.assert_error_lines("imgmesh-info", result, 3, 1)
+        failure = json.loads(result.stdout)["failure"]
+        self.assertEqual(result.stderr, f"imgmesh-info: error: {failure['message']}\n")
+        self.assertEqual(failure["code"], 3)
         self.assert_error("imgmesh-build", ["in.png", "-o", "a.glb", "--json", "--faces", "x"], 2, "--faces")
 
     def test_names_that_would_break_a_line(self):

@@ -10,6 +10,9 @@ class Option;
 
 namespace imgmesh {
 
+/// The heading of what all tools have.
+inline constexpr const char* kGeneralGroup = "General";
+
 /// Makes `app` show its options in groups under headings, wrapped. Call it before adding
 /// options.
 void set_help_style(CLI::App& app);

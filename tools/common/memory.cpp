@@ -98,12 +98,19 @@ void check_memory(const std::string& what, double bytes, std::uint64_t most) {
                     " of memory, --max-memory is ", format_bytes(most)));
 }
 
-void check_work(const std::string& path, const MeshImage& mesh_image, double bytes_a_pixel,
-                std::uint64_t most) {
+void JobMemory::take(const std::string& what, double bytes) {
+    check_memory(what, bytes, most_);
+    // Given back first: who holds a share while waiting for more may wait for another who does the same.
+    share_.reset();
+    bytes_ += bytes;
+    share_.emplace(*gate_, bytes_);
+}
+
+void JobMemory::take_for(const std::string& path, const MeshImage& mesh_image, double bytes_a_pixel) {
     const SourceInfo& source = mesh_image.source;
     const double pixels = static_cast<double>(source.width) * source.height;
-    check_memory(cat(path, ": an image of ", source.width, "x", source.height, " pixels"),
-                 container_memory(mesh_image, pixels * bytes_a_pixel), most);
+    take(cat(path, ": an image of ", source.width, "x", source.height, " pixels"),
+         container_memory(mesh_image, pixels * bytes_a_pixel));
 }
 
 void MemoryGate::enter(double bytes) {

@@ -5,6 +5,7 @@
 #include <condition_variable>
 #include <cstdint>
 #include <mutex>
+#include <optional>
 #include <string>
 
 #include "libcore/mesh/mesh_image.h"
@@ -29,11 +30,6 @@ double container_memory(const MeshImage& mesh_image, double work);
 /// Throws Error(kBadFile) if `bytes`, an estimate, are more than `most`; `what` needs them, as in
 /// "a.glb: a drawing of 40 x 30 pixels".
 void check_memory(const std::string& what, double bytes, std::uint64_t most);
-
-/// check_memory() for a program that works on a container and takes `bytes_a_pixel` for each of its pixels,
-/// beside the maps and meshes of its levels.
-void check_work(const std::string& path, const MeshImage& mesh_image, double bytes_a_pixel,
-                std::uint64_t most);
 
 /// Lets jobs run at the same time as long as all of them together take no more than a limit.
 class MemoryGate {
@@ -62,6 +58,26 @@ class MemoryGate {
     double most_;
     double taken_ = 0;
     int jobs_ = 0;
+};
+
+/// What the work on one file takes, while other files are worked on.
+class JobMemory {
+  public:
+    /// most: the limit of all jobs of `gate` together, and of each [bytes].
+    JobMemory(MemoryGate& gate, std::uint64_t most) : gate_(&gate), most_(most) {}
+
+    /// Throws as check_memory() does, else waits until the other jobs leave that much, and what was taken
+    /// before. It is theirs again when this object ends.
+    void take(const std::string& what, double bytes);
+    /// The same for work on a container that takes `bytes_a_pixel` for each of its pixels, beside the maps
+    /// and meshes of its levels.
+    void take_for(const std::string& path, const MeshImage& mesh_image, double bytes_a_pixel);
+
+  private:
+    MemoryGate* gate_;
+    std::uint64_t most_;
+    double bytes_ = 0;
+    std::optional<MemoryGate::Share> share_;
 };
 
 }  // namespace imgmesh

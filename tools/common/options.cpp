@@ -21,6 +21,7 @@ CLI::Option* add_value(CLI::App& app, const std::string& name, const std::string
         },
         help.otherwise.empty() ? help.text : cat(help.text, " (default ", help.otherwise, ")"));
     option->type_name(type);
+    if (help.exact) option->default_str(help.otherwise);
     return option;
 }
 
@@ -44,12 +45,6 @@ CLI::Option* add_flag(CLI::App& app, const std::string& name, std::function<void
     return app.add_flag_callback(name, std::move(take), help);
 }
 
-CLI::Option* add_input(CLI::App& app, const std::string& name, std::string& input, const std::string& help) {
-    return add_value(
-               app, name, "", [&input](const std::string& text) { input = text; }, help)
-        ->required();
-}
-
 CLI::Option* add_inputs(CLI::App& app, const std::string& name, std::vector<std::string>& inputs,
                         const std::string& help) {
     CLI::Option* option = app.add_option(
@@ -65,8 +60,8 @@ CLI::Option* add_inputs(CLI::App& app, const std::string& name, std::vector<std:
         ->required();
 }
 
-CLI::Option* add_output(CLI::App& app, std::string& output, const std::string& help) {
-    return add_file(app, "-o,--output", output, help)->required();
+CLI::Option* require(CLI::Option* option) {
+    return option->required();
 }
 
 CLI::Option* add_file(CLI::App& app, const std::string& name, std::string& target, const std::string& help) {
@@ -108,6 +103,20 @@ std::string typed(const CLI::App& app, std::initializer_list<const char*> names)
         return option->get_expected_min() == 0 ? name : cat(name, ' ', option->results().front());
     }
     return "";
+}
+
+std::vector<OptionValue> option_values(const CLI::App& app) {
+    std::vector<OptionValue> values;
+    for (const CLI::Option* option : app.get_options()) {
+        if (!option->nonpositional() || option->get_lnames().empty()) continue;
+        OptionValue& value = values.emplace_back();
+        value.name = "--" + option->get_lnames().front();
+        value.group = option->get_group();
+        value.flag = option->get_expected_max() == 0;
+        value.values = option->results();
+        if (!option->get_default_str().empty()) value.otherwise = option->get_default_str();
+    }
+    return values;
 }
 
 std::vector<std::string> split_list(const std::string& text) {

@@ -30,6 +30,7 @@ struct Help {
 
     std::string text;       ///< without a full stop
     std::string otherwise;  ///< the default in words; "" if the option's target has it, or if there is none
+    bool exact = false;     ///< `otherwise` is what could be typed
 };
 
 /// An option that calls `take` with its one value. `name` is the long option, perhaps after a short one.
@@ -41,12 +42,11 @@ CLI::Option* add_values(CLI::App& app, const std::string& name, const std::strin
 CLI::Option* add_flag(CLI::App& app, const std::string& name, std::function<void()> take,
                       const std::string& help);
 
-/// The files to read: one name, or at least one if `inputs` is a vector. Required.
-CLI::Option* add_input(CLI::App& app, const std::string& name, std::string& input, const std::string& help);
+/// The files to read, at least one. Required.
 CLI::Option* add_inputs(CLI::App& app, const std::string& name, std::vector<std::string>& inputs,
                         const std::string& help);
-/// -o, --output. Required.
-CLI::Option* add_output(CLI::App& app, std::string& output, const std::string& help);
+/// Refuses a command line without `option`.
+CLI::Option* require(CLI::Option* option);
 /// An option for the name of a file, which is not empty.
 CLI::Option* add_file(CLI::App& app, const std::string& name, std::string& target, const std::string& help);
 
@@ -64,6 +64,17 @@ bool given(const CLI::App& app, const std::string& name);
 /// Returns the first of these options that was given, as it was typed ("--refine 6"); "" if none was.
 std::string typed(const CLI::App& app, std::initializer_list<const char*> names);
 
+/// An option as it was given, or not.
+struct OptionValue {
+    std::string name;  ///< the long one, "--level"
+    std::string group;
+    bool flag = false;
+    std::vector<std::string> values;       ///< as typed; empty if it was not given
+    std::optional<std::string> otherwise;  ///< its default, if that could be typed
+};
+/// Returns all options but the inputs, in the order of the help.
+std::vector<OptionValue> option_values(const CLI::App& app);
+
 /// Returns the items of a list, which commas separate.
 std::vector<std::string> split_list(const std::string& text);
 
@@ -76,7 +87,10 @@ T chosen_type(const std::optional<T>&);
 /// Returns `help` with the default in `target`, unless that is an optional one.
 template <typename Target>
 Help with_default(Help help, const Target& target) {
-    if constexpr (std::is_arithmetic_v<Target>) help.otherwise = cat(target);
+    if constexpr (std::is_arithmetic_v<Target>) {
+        help.otherwise = cat(target);
+        help.exact = true;
+    }
     return help;
 }
 
@@ -108,7 +122,10 @@ CLI::Option* add_number(CLI::App& app, const std::string& name, Number& target, 
 template <typename Target, typename Value>
 CLI::Option* add_choice(CLI::App& app, const std::string& name, Target& target, const Choices<Value>& choices,
                         Help help) {
-    if constexpr (std::is_same_v<Target, Value>) help.otherwise = name_of(choices, target);
+    if constexpr (std::is_same_v<Target, Value>) {
+        help.otherwise = name_of(choices, target);
+        help.exact = true;
+    }
     help.text += ": " + choice_names(choices);
     return add_value(
         app, name, "NAME",

@@ -1,8 +1,12 @@
 #include "tools/common/output.h"
 
+#include <sys/stat.h>
+
 #include <filesystem>
+#include <map>
 #include <set>
 #include <system_error>
+#include <utility>
 
 #include "formats/files/atomic_file.h"
 #include "libcore/base/error.h"
@@ -23,12 +27,15 @@ void check_output(const std::string& path, bool overwrite) {
 }
 
 void check_distinct(const std::vector<std::string>& inputs, const std::vector<std::string>& outputs) {
+    struct stat info = {};
+    std::map<std::pair<dev_t, ino_t>, std::string> input_of;
+    for (const std::string& input : inputs)
+        if (::stat(input.c_str(), &info) == 0) input_of.emplace(std::pair(info.st_dev, info.st_ino), input);
     for (const std::string& output : outputs) {
-        for (const std::string& input : inputs) {
-            std::error_code error;  // of files that do not exist, which are no conflict
-            if (fs::equivalent(input, output, error))
-                throw Error(ErrorKind::kBadArgument, cat(output, ": would replace the input ", input));
-        }
+        if (::stat(output.c_str(), &info) != 0) continue;  // what does not exist is no conflict
+        const auto same = input_of.find({info.st_dev, info.st_ino});
+        if (same != input_of.end())
+            throw Error(ErrorKind::kBadArgument, cat(output, ": would replace the input ", same->second));
     }
 }
 

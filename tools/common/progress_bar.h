@@ -7,8 +7,8 @@
 
 namespace imgmesh {
 
-/// One line on standard error, redrawn in place. It appears only after a second of work, and disappears
-/// before anything else is printed.
+/// One line on standard error, redrawn in place: a bar, the stage and the time left. It appears only after a
+/// second of work, and disappears before anything else is printed.
 class ProgressBar {
   public:
     /// A bar that is not `enabled` never draws.
@@ -20,14 +20,24 @@ class ProgressBar {
     /// `fraction` is the share of the whole in [0, 1]. Any thread may call it.
     void show(double fraction, std::string_view stage);
     void clear();
+    /// Clears the line and calls `print`, during which no other thread draws.
+    template <typename Print>
+    void above(Print&& print) {
+        const std::lock_guard lock(mutex_);
+        erase();
+        print();
+    }
 
   private:
     using Clock = std::chrono::steady_clock;
 
+    void erase();
+
     std::mutex mutex_;
     bool enabled_;
     bool visible_ = false;
-    Clock::time_point next_ = Clock::now() + std::chrono::seconds(1);
+    Clock::time_point start_ = Clock::now();
+    Clock::time_point next_ = start_ + std::chrono::seconds(1);
 };
 
 }  // namespace imgmesh

@@ -6,24 +6,22 @@
 #include <CLI/CLI.hpp>
 #include <cerrno>
 #include <csignal>
-#include <cstring>
 #include <filesystem>
-#include <iostream>
-#include <memory>
 #include <new>
 #include <nlohmann/json.hpp>
 #include <optional>
-#include <sstream>
 
 #include "formats/files/atomic_file.h"
 #include "libcore/base/parallel.h"
+#include "tools/common/batch.h"
 #include "tools/common/config_file.h"
+#include "tools/common/console.h"
 #include "tools/common/help.h"
 #include "tools/common/huge_pages.h"
+#include "tools/common/jobs.h"
 #include "tools/common/memory.h"
 #include "tools/common/options.h"
-#include "tools/common/progress_bar.h"
-#include "tools/common/text.h"
+#include "tools/common/parameters.h"
 #include "tools/common/usage_error.h"
 
 namespace imgmesh {
@@ -49,7 +47,7 @@ constexpr ExitCodeMeaning kExitCodes[] = {
 constexpr int kMaxThreads = 1024;
 
 struct CommonOptions {
-    bool json = false;
+    bool json = false, json_lines = false;
     bool quiet = false;
     bool overwrite = true;
     std::optional<int> threads;  // none: all
@@ -64,12 +62,18 @@ std::string exit_code_table() {
 }
 
 void add_common_options(CLI::App& app, CommonOptions& common) {
-    const std::string group = "General";
+    const std::string group = kGeneralGroup;
     app.set_help_flag("-h,--help", "Print the options that most people need, and exit")->group(group);
     app.set_help_all_flag("--help-all", "Print all options, and exit")->group(group);
     app.set_version_flag("--version", app.get_name() + " " IMGMESH_VERSION, "Print the version and exit")
         ->group(group);
     app.add_flag("--json", common.json, "Print the report as one JSON object")->group(group);
+    exclude(app,
+            in_group(add_flag(
+                         app, "--jsonl", [&common] { common.json_lines = true; },
+                         "Print the report of each file as one line of JSON as it finishes, then a summary"),
+                     group),
+            {"--json"});
     app.add_flag("-q,--quiet", common.quiet, "Print no text report and no progress")->group(group);
     app.add_flag("--overwrite,!--no-overwrite", common.overwrite,
                  "Replace files that exist, or refuse to (default --overwrite)")
@@ -98,94 +102,57 @@ void hold_standard_streams() {
     }
 }
 
-// Throws Error(kIo) if standard output does not take the whole text.
-void write_stdout(const std::string& text) {
-    std::size_t done = 0;
-    while (done < text.size()) {
-        const ssize_t n = ::write(STDOUT_FILENO, text.data() + done, text.size() - done);
-        if (n >= 0) {
-            done += static_cast<std::size_t>(n);
-        } else if (errno != EINTR) {
-            throw Error(ErrorKind::kIo, cat("standard output: cannot write: ", std::strerror(errno)));
-        }
-    }
+void add_files(CLI::App& app, const Tool& tool, FileOptions& files) {
+    add_inputs(app, tool.input_name, files.inputs, tool.input_help);
+    if (tool.output_help.empty()) return;
+    CLI::Option* const output = add_file(app, "-o,--output", files.output, tool.output_help);
+    if (tool.output_required) require(output);
+    advanced(app, add_value(app, "--format", "NAME",
+                            [&files](const std::string& text) { files.type = file_type("--format", text); },
+                            {"Kind of the files in a folder of -o, as in " + tool.type()}));
 }
 
-// A message quotes names, and those from files may be of any length.
-std::string message_line(const std::string& message) {
-    constexpr std::size_t kLongest = 1000;
-    return shortened(printable_line(message), kLongest);
-}
-
-void print_error(const std::string& tool, const std::string& message) {
-    std::cerr << tool << ": error: " << message_line(message) << std::endl;
-}
-
-void print_warning(const std::string& tool, const std::string& message) {
-    std::cerr << tool << ": warning: " << message_line(message) << std::endl;
-}
-
-// The exit code of failures that did not stop the run.
-ExitCode joint_code(const std::vector<Failure>& failures) {
-    if (failures.empty()) return ExitCode::kOk;
-    for (const Failure& f : failures) {
-        if (f.code != failures.front().code) return ExitCode::kBadFile;
-    }
-    return failures.front().code;
-}
-
-ExitCode run_parsed(const Tool& tool, const CommonOptions& common) {
-    Context context;
-    context.generator = tool.name + " " IMGMESH_VERSION;
-    context.overwrite = common.overwrite;
-    context.max_memory = common.max_memory.value_or(usual_max_memory());
-    ProgressBar bar(!common.quiet && ::isatty(STDERR_FILENO));
-    context.progress = [&bar](double fraction, std::string_view stage) { bar.show(fraction, stage); };
-
+ExitCode run_parsed(const Tool& tool, const CLI::App& app, const FileOptions& files,
+                    const CommonOptions& common) {
+    BatchOptions options;
+    options.generator = tool.name + " " IMGMESH_VERSION;
+    options.json = common.json;
+    options.json_lines = common.json_lines;
+    options.quiet = common.quiet;
+    options.overwrite = common.overwrite;
+    options.max_memory = common.max_memory.value_or(usual_max_memory());
+    options.parameters = parameters_report(tool, app);
+    const std::vector<Job> jobs = plan_jobs(tool, files);
+    make_folders(tool, files);
     const ThreadLimit limit(common.threads.value_or(hardware_threads()));
-    Report report = {{"$schema", tool.name + ".report.schema.json"}, {"generator", context.generator}};
-    report.update(tool.run(context));
-    if (!context.warnings.empty()) report["warnings"] = context.warnings;
-    bar.clear();
-
-    for (const std::string& warning : context.warnings) print_warning(tool.name, warning);
-    for (const Failure& f : context.failures) print_error(tool.name, f.message);
-    std::ostringstream text;
-    if (common.json) {
-        // File names may not be UTF-8, which JSON requires.
-        text << printable_json(report.dump(2, ' ', false, Report::error_handler_t::replace)) << '\n';
-    } else if (!common.quiet) {
-        std::ostringstream lines;
-        tool.print(report, lines);
-        text << printable_text(lines.str());
-    }
-    write_stdout(text.str());
-    return joint_code(context.failures);
+    return run_batch(tool, jobs, options);
 }
 
 ExitCode parse_and_run(const Tool& tool, int argc, char** argv) {
     CLI::App app(tool.description, tool.name);
     CommonOptions common;
+    FileOptions files;
     set_help_style(app);
+    add_files(app, tool, files);
     tool.add_options(app);
     add_common_options(app, common);
     try {
         app.parse(argc, argv);
     } catch (const CLI::CallForHelp&) {
-        write_stdout(everyday_help(app));
+        write_stream(STDOUT_FILENO, everyday_help(app));
         return ExitCode::kOk;
     } catch (const CLI::CallForAllHelp&) {
-        write_stdout(full_help(app));
+        write_stream(STDOUT_FILENO, full_help(app));
         return ExitCode::kOk;
     } catch (const CLI::CallForVersion& version) {
-        write_stdout(cat(version.what(), '\n'));
+        write_stream(STDOUT_FILENO, cat(version.what(), '\n'));
         return ExitCode::kOk;
     } catch (const CLI::FileError& e) {
         throw Error(ErrorKind::kIo, cat("--config: ", e.what()));
     } catch (const CLI::ParseError& e) {
         throw Error(ErrorKind::kBadArgument, usage_error(app, e.what()));
     }
-    return run_parsed(tool, common);
+    return run_parsed(tool, app, files, common);
 }
 
 }  // namespace

@@ -18,15 +18,6 @@ std::vector<std::string> option_names(const CLI::App& app) {
     return names;
 }
 
-// "1 CONTAINER", or "no arguments without a name"
-std::string expected_arguments(const CLI::App& app) {
-    std::string list;
-    for (const CLI::Option* option :
-         app.get_options([](const CLI::Option* o) { return o->get_positional(); }))
-        list += (list.empty() ? "" : " ") + option->get_name(true);
-    return list.empty() ? "no files" : list;
-}
-
 }  // namespace
 
 std::string usage_error(const CLI::App& app, const std::string& what) {
@@ -39,12 +30,7 @@ std::string usage_error(const CLI::App& app, const std::string& what) {
         return cat("unknown option ", shortened(name), did_you_mean(name, option_names(app)),
                    " (see --help)");
     }
-    const std::size_t surplus = left.size() - static_cast<std::size_t>(std::ranges::count(left, "--"));
-    if (surplus == 0) return cat(what, " (see --help)");
-    const std::string first =
-        *std::ranges::find_if(left, [](const std::string& word) { return word != "--"; });
-    return cat(surplus, surplus == 1 ? " argument too many: '" : " arguments too many, the first is '",
-               shortened(first), "'; expected ", expected_arguments(app), " (see --help)");
+    return cat(what, " (see --help)");
 }
 
 }  // namespace imgmesh

@@ -10,7 +10,7 @@ class App;
 namespace imgmesh {
 
 /// Returns the error line for what `app` could not parse: an unknown option with the one that was probably
-/// meant, or the number of surplus arguments, or else `what`, the parser's own words.
+/// meant, or else `what`, the parser's own words.
 std::string usage_error(const CLI::App& app, const std::string& what);
 
 }  // namespace imgmesh

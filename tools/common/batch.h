@@ -1,0 +1,30 @@
+// Works on the files of a command line, and tells of each as it finishes.
+#pragma once
+
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "tools/common/tool_main.h"
+
+namespace imgmesh {
+
+/// How a batch runs and what it prints.
+struct BatchOptions {
+    std::string generator;    ///< "imgmesh-build 0.1.0"
+    bool json = false;        ///< one object at the end
+    bool json_lines = false;  ///< one object a line for each file as it finishes, then the summary
+    bool quiet = false;
+    bool overwrite = true;
+    std::uint64_t max_memory = 0;
+    Report parameters;  ///< what the command line says of the results, for the reports
+};
+
+/// Does the work of `tool` on all jobs, several at a time, and prints. A job that fails does not stop the
+/// others. Returns the exit code: that of all failures, or kBadFile if they differ. SIGINT, SIGTERM and
+/// SIGHUP end a batch of several jobs with its report a second later, the second one at once. Throws
+/// Error(kIo) if the report cannot be written.
+ExitCode run_batch(const Tool& tool, const std::vector<Job>& jobs, const BatchOptions& options);
+
+}  // namespace imgmesh
