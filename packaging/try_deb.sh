@@ -59,6 +59,16 @@ imgmesh-warp -q kodim23.glb --image kodim23.png --handle 200,150:9,-4 -o moved.p
 imgmesh-segment -q kodim23.glb -o labels.png --outlines outlines.png
 ls -l
 
+# The module for Python, which the package recommends and does not need.
+apt-get install -qq -y --no-install-recommends python3-numpy >install.log 2>&1 || { tail -n 30 install.log; exit 1; }
+python3 -B -c '
+import imgmesh
+mesh = imgmesh.build("kodim23.png")
+mesh.write("python.glb")
+imgmesh.write_image("python.jpg", mesh.reconstruct())
+print(mesh, imgmesh.compare("kodim23.png", mesh))'
+cmp python.glb kodim23.glb
+
 apt-get purge -qq -y imgmesh >/dev/null 2>&1
 if find / -xdev -not -path '/proc/*' -not -path '/root/*' -name '*imgmesh*' | grep -v '^/var/\(lib\|log\|cache\)/'; then
     echo "left behind after purge"
