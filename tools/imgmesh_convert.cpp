@@ -7,7 +7,6 @@
 #include <ostream>
 
 #include "formats/container/container.h"
-#include "formats/export/mesh_export.h"
 #include "formats/files/extension.h"
 #include "formats/picture/image_io.h"
 #include "libcore/image/feature_space.h"
@@ -26,6 +25,7 @@
 #include "tools/common/text.h"
 #include "tools/common/texture_options.h"
 #include "tools/common/tool_main.h"
+#include "tools/convert_level.h"
 
 namespace fs = std::filesystem;
 using namespace imgmesh;
@@ -41,8 +41,6 @@ constexpr CountRange kLevelRange = {0, 1000};
 // Beyond, a sprite's outline is no longer its own.
 constexpr double kMostTolerance = 64;
 
-enum class Shading { kFlat, kGradient };
-
 struct Options {
     std::string input;
     std::string output;
@@ -51,6 +49,7 @@ struct Options {
     bool no_layers = false;
     TextureOptions texture;
     std::optional<int> level;
+    std::optional<ExportKind> as;
     std::optional<Shading> shading;
     std::optional<double> outline_tolerance;
     OutlineSide outline_side = OutlineSide::kOut;
@@ -83,6 +82,11 @@ void add_options(CLI::App& app, Options& o) {
                          "the input's texture, if it has one"},
                         true);
     in_group(add_count(app, "--level", o.level, kLevelRange, {"Level to export, 0 the finest", "0"}), level);
+    in_group(add_choice(app, "--as", o.as, export_kinds(),
+                        {"What a .json is (texturepacker, which PixiJS reads, spine or outline), a .tscn "
+                         "(polygon2d or meshinstance2d), or an .svg (outline)",
+                         "texturepacker, polygon2d, an .svg's triangles"}),
+             level);
     in_group(add_choice(app, "--shading", o.shading,
                         Choices<Shading>{{"flat", Shading::kFlat}, {"gradient", Shading::kGradient}},
                         {"Shading of an .svg's triangles", "flat"}),
@@ -90,9 +94,9 @@ void add_options(CLI::App& app, Options& o) {
     CLI::Option* const tolerance = in_group(
         add_number(
             app, "--outline-tolerance", o.outline_tolerance, {0, kMostTolerance},
-            {"Make the mesh of a sprite (.json, .obj, or a container with a texture) from its outline alone, "
-             "which may lie this many pixels from the image's",
-             "none: the base mesh"}),
+            {"Make the mesh of a sprite (.json, .tscn, .obj, or a container with a texture) from its outline "
+             "alone, or an outline itself, which may lie this many pixels from the image's",
+             "none: the base mesh, or the outline of the pixels"}),
         level);
     CLI::Option* const side =
         add_choice(app, "--outline-side", o.outline_side,
@@ -101,10 +105,14 @@ void add_options(CLI::App& app, Options& o) {
     in_group(needs(side, tolerance), level);
     CLI::Option* const image =
         add_value(app, "--image", "NAME", [&o](const std::string& text) { o.image = text; },
-                  {"Image that --texture puts on the meshes, or that a sprite's .json names",
+                  {"Image that --texture puts on the meshes, or that a sprite's .json or .tscn names",
                    "the output's name in .png"});
     add_read_options(app, o.read, image, true);
     add_container_limits(app, o.limits);
+}
+
+LevelOptions level_options(const Options& o) {
+    return {o.input, o.output, o.as, o.shading, o.outline_tolerance, o.outline_side, o.image};
 }
 
 // Throws Error(kBadArgument) for mistakes that can be found before the container is read.
@@ -114,25 +122,27 @@ void check_options(const Options& o) {
         if (given && !fits)
             throw Error(ErrorKind::kBadArgument, cat(option, ": -o ", o.output, " is no ", what));
     };
-    const bool container = is_container(o.output);
-    bool known = container;
-    for (const char* name : {".svg", ".ply", ".obj", ".json", ".png"}) known = known || extension == name;
-    if (!known)
+    const bool container = is_container(o.output), obj = extension == ".obj";
+    if (!container && !is_level_file(o.output))
         throw Error(
             ErrorKind::kBadArgument,
-            cat("-o ", o.output, ": expected a name in .glb, .gltf, .svg, .ply, .obj, .json or .png"));
+            cat("-o ", o.output, ": expected a name in .glb, .gltf, .svg, .ply, .obj, .json, .tscn or .png"));
+    const std::optional<ExportKind> kind = export_kind(level_options(o));
+    const bool outline = kind == ExportKind::kOutline, sprite = kind && !outline;
     only_for(o.draco.has_value(), "--draco", container, "container");
     only_for(!o.levels.empty(), "--levels", container, "container");
     only_for(o.no_layers, "--no-layers", container, "container");
-    only_for(o.texture.wanted.has_value(), "--texture", container, "container");
+    only_for(o.texture.wanted.has_value(), "--texture", container || obj, "container or .obj");
     if (container && o.level)
         throw Error(ErrorKind::kBadArgument, cat("--level: ", o.output, " keeps all levels; see --levels"));
-    only_for(o.shading.has_value(), "--shading", extension == ".svg", "SVG");
+    only_for(o.shading.has_value(), "--shading", extension == ".svg" && !outline, "SVG of triangles");
     if (container && !o.image.empty() && !o.texture.wanted.value_or(false))
         throw Error(ErrorKind::kBadArgument, "--image: of use to a container only with --texture");
-    only_for(!o.image.empty(), "--image", container || extension == ".json", "container or sprite's JSON");
-    only_for(o.outline_tolerance.has_value(), "--outline-tolerance",
-             container || extension == ".obj" || extension == ".json", "container, .obj or .json");
+    only_for(!o.image.empty(), "--image", container || obj || sprite, "container, .obj or sprite");
+    if (obj && !o.image.empty() && !o.texture.wanted.value_or(true))
+        throw Error(ErrorKind::kBadArgument, "--image and --no-texture: the image would be of no use");
+    only_for(o.outline_tolerance.has_value(), "--outline-tolerance", container || obj || sprite || outline,
+             "container, .obj, sprite or outline");
     if (o.outline_tolerance && !o.levels.empty())
         throw Error(ErrorKind::kBadArgument, "--outline-tolerance and --levels: an outline has one level");
     if (o.outline_tolerance && container && !o.texture.wanted.value_or(true))
@@ -201,58 +211,19 @@ Texture chosen_texture(const Options& o, MeshImage& m, Texture kept, Context& co
     });
 }
 
-// Face ids as colours; no face is transparent.
-Image id_image(const Level& level, bool has_mask) {
-    if (level.mesh.faces.size() > (1u << 24))
-        throw Error(ErrorKind::kUnsupported,
-                    cat("24 bits hold no ids of ", level.mesh.faces.size(), " faces"));
-    Image image = make_image(level.map.width, level.map.height, has_mask ? 4 : 3);
-    for (std::size_t i = 0; i < level.map.size(); ++i) {
-        const Id face = level.map[i].face;
-        float* pixel = image.data.data() + i * static_cast<std::size_t>(image.channels);
-        for (int c = 0; c < 3; ++c)
-            pixel[c] = face == kNone ? 0 : static_cast<float>(face >> 8 * c & 255) / 255.0f;
-        if (has_mask) pixel[3] = face == kNone ? 0 : 1;
-    }
-    return image;
-}
-
-void export_level(const Options& o, const MeshImage& m, int index, Context& context) {
-    const Level& level = m.levels[static_cast<std::size_t>(index)];
-    const std::string extension = lower_extension(o.output);
-    BaseMesh mesh = level.mesh;
-    if (!o.outline_tolerance) mesh.position = outer_positions(level.mesh, level.map);
-    if (extension == ".png") {
-        write_image(o.output, id_image(level, m.source.has_mask), {context.overwrite, SampleType::kUint8});
-        return;
-    }
-    if ((extension == ".ply" || extension == ".obj") && split_names(m.source.channel_names).color.empty())
-        throw Error(ErrorKind::kUnsupported, cat(o.input, ": the container has no colour to export"));
-    std::string text;
-    if (extension == ".svg")
-        text = o.shading == Shading::kGradient ? draw_svg_gradient(m, index)
-                                               : draw_svg(m, index, DrawMode::kFlat);
-    else if (extension == ".ply")
-        text = ply_from_mesh(mesh);
-    else if (extension == ".obj")
-        text = obj_from_mesh(mesh, m.source);
-    else
-        text = sprite_json_from_mesh(
-            mesh, m.source,
-            o.image.empty() ? fs::path(o.output).filename().replace_extension(".png").string() : o.image,
-            context.generator);
-    write_text(o.output, text, context.overwrite);
-}
-
-Report convert_one(const Options& o, Context& context) {
+Report convert_one(const Options& given, Context& context) {
+    Options o = given;
+    const bool obj = lower_extension(o.output) == ".obj";
+    if (obj && !o.image.empty()) o.texture.wanted = true;
     check_output(o.output, context.overwrite);
     context.progress(0, "read");
     Container container = read_container(o.input, container_limits(o.limits, context.max_memory));
     MeshImage& m = container.mesh_image;
     check_distinct(container.facts.files, {o.output});
-    if (o.texture.wanted.value_or(false) && !o.image.empty())
+    if (is_container(o.output) && o.texture.wanted.value_or(false) && !o.image.empty())
         check_distinct({o.image}, container_files(o.output));
-    const int level = o.level.value_or(0);
+    int level = o.level.value_or(0);
+    std::vector<std::string> files;
     check_level("--level", level, o.input, m);
     context.memory.take_for(o.input, m, bytes_of_pixel(o));
     context.progress(0.5, "write");
@@ -275,19 +246,33 @@ Report convert_one(const Options& o, Context& context) {
         }
         write_container(o.output, m, options);
     } else {
-        if (o.outline_tolerance) outline();
-        export_level(o, m, o.outline_tolerance ? 0 : level, context);
+        const LevelOptions exported = level_options(o);
+        const bool outline_mesh = o.outline_tolerance && export_kind(exported) != ExportKind::kOutline;
+        if (obj) options.texture = chosen_texture(o, m, std::move(container.texture), context);
+        if (outline_mesh) {
+            outline();
+            if (obj && !options.texture.picture.empty()) options.texture.coords = texture_coords(m);
+        }
+        const Texture* texture = options.texture.picture.empty() ? nullptr : &options.texture;
+        files = level_files(exported, texture);
+        for (const std::string& file : files) check_output(file, context.overwrite);
+        check_distinct(container.facts.files, files);
+        if (!o.image.empty()) check_distinct({o.image}, files);
+        if (outline_mesh) level = 0;
+        export_level(exported, m, level, texture, context);
     }
-    const Level& first = o.outline_tolerance ? m.levels[0] : m.levels[static_cast<std::size_t>(level)];
-    return {{"input", o.input},
-            {"output", o.output},
-            {"levels", is_container(o.output) ? m.levels.size() : 1},
-            {"level", is_container(o.output) ? 0 : level},
-            {"vertices", first.mesh.vertex_count()},
-            {"faces", first.mesh.faces.size()},
-            {"layers", is_container(o.output) && options.layers},
-            {"texture", !options.texture.picture.empty()},
-            {"bytes", fs::file_size(o.output)}};
+    const Level& first = m.levels[is_container(o.output) ? 0 : static_cast<std::size_t>(level)];
+    Report report = {{"input", o.input},
+                     {"output", o.output},
+                     {"levels", is_container(o.output) ? m.levels.size() : 1},
+                     {"level", is_container(o.output) ? 0 : o.level.value_or(0)},
+                     {"vertices", first.mesh.vertex_count()},
+                     {"faces", first.mesh.faces.size()},
+                     {"layers", is_container(o.output) && options.layers},
+                     {"texture", !options.texture.picture.empty()},
+                     {"bytes", fs::file_size(o.output)}};
+    if (files.size() > 1) report["outputs"] = files;
+    return report;
 }
 
 void print(const Report& report, std::ostream& out) {
@@ -298,6 +283,9 @@ void print(const Report& report, std::ostream& out) {
                             report["texture"] ? ", with a texture" : ""));
     table.add("mesh", cat(report["vertices"], " vertices, ", report["faces"], " faces"));
     table.add("file", format_bytes(report["bytes"].get<std::uint64_t>()));
+    if (report.contains("outputs"))
+        for (std::size_t i = 1; i < report["outputs"].size(); ++i)
+            table.add(i == 1 ? "beside it" : "", printable_line(report["outputs"][i].get<std::string>()));
     table.print(out, 2);
 }
 
@@ -317,7 +305,7 @@ int main(int argc, char** argv) {
          .input_help = "Containers to read (.glb, .gltf)",
          .output_help =
              "Container to write (.glb, .gltf), or a level of it as .svg, .ply, .obj, .json (a sprite's "
-             "mesh, as TexturePacker writes it) or .png (24-bit face ids, red the low byte); or a folder, "
+             "mesh), .tscn (a scene for Godot) or .png (24-bit face ids, red the low byte); or a folder, "
              "ended by /, for NAME.glb of each container",
          .type = [] { return "glb"; },
          .sources = {"--image"}},

@@ -3,10 +3,10 @@
 #include "formats/export/mesh_export.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "formats/export/text_numbers.h"
 #include "libcore/base/error.h"
 #include "libcore/image/color.h"
 
@@ -22,18 +22,6 @@ Vec3f srgb_of(const BaseMesh& mesh, Id v) {
         .cwiseMin(1.0f);
 }
 
-// Returns the shortest text that reads back as the same float, in any locale; no negative zero.
-std::string number(float value) {
-    char text[64];
-    const auto end = std::to_chars(text, text + sizeof text, value + 0.0f).ptr;
-    return {text, end};
-}
-
-// Returns a coordinate in pixels from the top-left corner of the image, along one axis.
-float from_corner(float x, int side) {
-    return std::clamp(x + 0.5f, 0.0f, static_cast<float>(side));
-}
-
 }  // namespace
 
 std::string ply_from_mesh(const BaseMesh& mesh) {
@@ -45,7 +33,7 @@ std::string ply_from_mesh(const BaseMesh& mesh) {
         mesh.faces.size(), "\nproperty list uchar uint vertex_indices\nend_header\n");
     for (Id v = 0; v < mesh.vertex_count(); ++v) {
         const Vec3f rgb = srgb_of(mesh, v);
-        out += number(mesh.position[v].x()) + ' ' + number(-mesh.position[v].y()) + " 0";
+        out += number_text(mesh.position[v].x()) + ' ' + number_text(-mesh.position[v].y()) + " 0";
         for (int c = 0; c < 3; ++c) out += ' ' + std::to_string(std::lround(rgb[c] * 255));
         out += '\n';
     }
@@ -57,13 +45,13 @@ std::string obj_from_mesh(const BaseMesh& mesh, const SourceInfo& source) {
     std::string out = "# imgmesh: pixels, y up; colours sRGB\n";
     for (Id v = 0; v < mesh.vertex_count(); ++v) {
         const Vec3f rgb = srgb_of(mesh, v);
-        out += "v " + number(mesh.position[v].x()) + ' ' + number(-mesh.position[v].y()) + " 0";
-        for (int c = 0; c < 3; ++c) out += ' ' + number(rgb[c]);
+        out += "v " + number_text(mesh.position[v].x()) + ' ' + number_text(-mesh.position[v].y()) + " 0";
+        for (int c = 0; c < 3; ++c) out += ' ' + number_text(rgb[c]);
         out += '\n';
     }
     for (const Vec2f& p : mesh.position)
-        out += "vt " + number((p.x() + 0.5f) / static_cast<float>(source.width)) + ' ' +
-               number(1 - (p.y() + 0.5f) / static_cast<float>(source.height)) + '\n';
+        out += "vt " + number_text((p.x() + 0.5f) / static_cast<float>(source.width)) + ' ' +
+               number_text(1 - (p.y() + 0.5f) / static_cast<float>(source.height)) + '\n';
     for (const auto& [a, b, c] : mesh.faces)
         out += cat("f ", a + 1, '/', a + 1, ' ', b + 1, '/', b + 1, ' ', c + 1, '/', c + 1, '\n');
     return out;

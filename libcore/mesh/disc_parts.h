@@ -4,17 +4,9 @@
 #include <vector>
 
 #include "libcore/mesh/base_mesh.h"
+#include "libcore/mesh/disc_part.h"
 
 namespace imgmesh {
-
-/// A part of a mesh that is a disc: its boundary is one closed walk.
-struct DiscPart {
-    /// For each of its vertices the mesh's vertex that it is a copy of. The first `hull` are the boundary,
-    /// counter-clockwise on screen; the others lie inside.
-    std::vector<Id> vertex;
-    std::size_t hull = 0;
-    std::vector<Face> faces;  ///< indices into `vertex`; orientation and order of the mesh's
-};
 
 /// Cuts `mesh` into discs: one for each set of faces that hang together by edges, in the order of their first
 /// faces. Each hole is joined to the outer boundary by a seam along edges of the mesh, the shortest as a

@@ -3,20 +3,10 @@
 
 #include <vector>
 
-#include "libcore/base/types.h"
 #include "libcore/image/mask.h"
+#include "libcore/mesh/loop.h"
 
 namespace imgmesh {
-
-/// A closed polygon [pixels]: inside is on its left on screen, so outer outlines run counter-clockwise and
-/// holes clockwise.
-using Loop = std::vector<Vec2d>;
-
-/// Where a simplified outline may lie.
-enum class OutlineSide {
-    kOut,  ///< never inside the mask: no pixel inside is cut
-    kBoth  ///< on either side
-};
 
 /// Returns the polygons along the pixel edges between inside and outside, without vertices on straight edges.
 /// Pixels that touch at a corner alone are apart; the polygons then share a point. Takes O(pixels) time.

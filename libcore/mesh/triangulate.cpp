@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "libcore/base/error.h"
+#include "libcore/mesh/loop_parts.h"
 
 namespace imgmesh {
 namespace {
@@ -27,19 +28,12 @@ class Triangulation {
         mesh_.channels = 0;
     }
 
-    BaseMesh run() {
-        std::vector<std::vector<Ring>> parts;  // an outer ring and its holes
-        std::vector<Ring> holes;
-        for (const Ring& ring : rings_) (area2(ring) > 0 ? parts.emplace_back() : holes).push_back(ring);
-        for (const Ring& hole : holes) {
-            std::vector<Ring>* smallest = nullptr;
-            for (std::vector<Ring>& part : parts)
-                if (contains(part[0], hole) && (!smallest || area2(part[0]) < area2((*smallest)[0])))
-                    smallest = &part;
-            if (!smallest) throw Error(ErrorKind::kInternal, "a hole lies in no outline");
-            smallest->push_back(hole);
+    BaseMesh run(const std::vector<Loop>& loops) {
+        for (const std::vector<std::size_t>& loops_of_part : loop_parts(loops)) {
+            std::vector<Ring> part;  // an outer ring and its holes
+            for (const std::size_t i : loops_of_part) part.push_back(rings_[i]);
+            clip_ears(joined(part));
         }
-        for (std::vector<Ring>& part : parts) clip_ears(joined(part));
         flip();
         return std::move(mesh_);
     }
@@ -47,27 +41,6 @@ class Triangulation {
   private:
     const Vec2f& at(Id v) const { return mesh_.position[v]; }
     double left(Id a, Id b, Id c) const { return signed_area2(at(a), at(b), at(c)); }
-
-    double area2(const Ring& ring) const {
-        double sum = 0;
-        for (std::size_t i = 0; i + 2 < ring.size(); ++i) sum += left(ring[0], ring[i + 1], ring[i + 2]);
-        return sum;
-    }
-
-    // A point just inside the material beside the hole's first edge decides, as corners may be shared.
-    bool contains(const Ring& ring, const Ring& hole) const {
-        const Vec2d a = at(hole[0]).cast<double>(), b = at(hole[1]).cast<double>();
-        const Vec2d along = (b - a).normalized(), p = (a + b) / 2 + 1e-3 * Vec2d(along.y(), -along.x());
-        bool in = false;
-        for (std::size_t i = 0; i < ring.size(); ++i) {
-            const Vec2f &from = at(ring[i]), &to = at(ring[(i + 1) % ring.size()]);
-            if ((from.y() > p.y()) != (to.y() > p.y()) && p.x() < from.x() + (p.y() - from.y()) *
-                                                                                 (double(to.x()) - from.x()) /
-                                                                                 (double(to.y()) - from.y()))
-                in = !in;
-        }
-        return in;
-    }
 
     // Whether the inner parts of a b and c d cross, or an end of one lies inside the other.
     bool cross(Id a, Id b, Id c, Id d) const {
@@ -212,7 +185,7 @@ class Triangulation {
 }  // namespace
 
 BaseMesh triangulated(const std::vector<Loop>& loops) {
-    return Triangulation(loops).run();
+    return Triangulation(loops).run(loops);
 }
 
 }  // namespace imgmesh
