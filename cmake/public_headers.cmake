@@ -27,6 +27,7 @@ set(IMGMESH_PUBLIC_HEADERS
   libcore/pipeline/build.h
   libcore/pipeline/build_params.h
   libcore/pipeline/presets.h
+  libcore/pipeline/targets.h
 
   libcore/recon/draw.h
   libcore/recon/draw_channels.h

@@ -8,6 +8,7 @@
 #include "tools/common/names.h"
 #include "tools/common/options.h"
 #include "tools/common/read_options.h"
+#include "tools/common/targets.h"
 
 namespace imgmesh {
 namespace {
@@ -136,7 +137,9 @@ void add_build_options(CLI::App& app, BuildOptions& o) {
 
     in_group(add_choice(app, "--draco", o.draco, draco_choices(), "Compression of the meshes"), "Container");
     add_texture_options(app, o.texture, "Put the image on the meshes, for engines and viewers", false);
+    add_strict_option(app, o.strict);
     after_parsing(app, [&] {
+        o.density = given(app, "--density");
         // Other options count more than the preset, wherever either was given: on the command line or in a
         // file.
         o.params = o.preset;

@@ -23,6 +23,8 @@ struct BuildOptions {
     AlphaParams alpha;
     std::string mask;
     TextureOptions texture;
+    bool density = false;  ///< whether a density was asked for: it is not only the default
+    bool strict = false;
 };
 
 /// Adds every option, those of BuildParams from param_table(). They are checked together when all have been

@@ -6,6 +6,7 @@
 #include "libcore/base/stopwatch.h"
 #include "libcore/mesh/outer_edge.h"
 #include "libcore/pipeline/build_source.h"
+#include "libcore/pipeline/targets.h"
 #include "tools/build_memory.h"
 #include "tools/build_options.h"
 #include "tools/build_report.h"
@@ -13,6 +14,7 @@
 #include "tools/common/in_file.h"
 #include "tools/common/output.h"
 #include "tools/common/read_options.h"
+#include "tools/common/targets.h"
 #include "tools/common/tool_main.h"
 
 using namespace imgmesh;
@@ -80,6 +82,8 @@ Report build_one(const BuildOptions& given, Context& context) {
         });
     BuildResult result = in_file(
         o.input, [&] { return build_mesh_image(image, plan.params, context.progress, std::move(mask)); });
+    const std::vector<std::string> missed = missed_targets(plan.params, result, o.density);
+    tell_missed(o.input, missed, o.strict, context.warnings);
     result.mesh_image.generator = context.generator;
     const MaskOrigin origin = mask_is_data     ? MaskOrigin::kNoData
                               : o.mask.empty() ? MaskOrigin::kAlpha
@@ -105,6 +109,7 @@ Report build_one(const BuildOptions& given, Context& context) {
                                                      : "ignored";
     report.update(image_report(image, use, o.params.values, result.report, written,
                                {read_seconds, write_seconds, whole.lap()}));
+    report.update(target_report(missed));
     report.update(read_report(read));
     return report;
 }

@@ -23,6 +23,7 @@
 #include "tools/common/output.h"
 #include "tools/common/read_options.h"
 #include "tools/common/source_image.h"
+#include "tools/common/targets.h"
 #include "tools/common/text.h"
 #include "tools/common/tool_main.h"
 #include "tools/segment_report.h"
@@ -44,6 +45,7 @@ struct Options {
     std::string image, outlines, flat, ucm, report, mesh;
     ReadImageOptions read;
     ContainerLimits limits;
+    bool strict = false;
 };
 
 Choices<DistanceRule> distance_choices() {
@@ -79,6 +81,7 @@ void add_options(CLI::App& app, Options& o) {
                  files);
     add_read_options(app, o.read, image, true);
     add_container_limits(app, o.limits);
+    add_strict_option(app, o.strict);
     o.read.channels.emplace();  // the colour and alpha
     in_group(
         add_file(app, "--outlines", o.outlines, "Image to write with the regions' borders drawn over it"),
@@ -137,20 +140,6 @@ FeatureImage picture_of(const Options& o, const MeshImage& mesh_image, const Lev
                      Range::kClipped);
 }
 
-// Calls segment(). Requests that cannot be met are reported in the words of the command line.
-Segmentation segment_named(const Options& o, const Level& level, const FeatureImage& picture,
-                           const SegmentParams& params, const Progress& progress) {
-    try {
-        return segment(level, picture, params, progress);
-    } catch (const Error& e) {
-        if (e.kind() != ErrorKind::kBadArgument) throw;
-        throw Error(e.kind(), cat(o.params.superpixels ? "--superpixels: "
-                                  : o.params.segments  ? "--segments: "
-                                                       : "",
-                                  e.what()));
-    }
-}
-
 Report segment_one(const Options& o, Context& context) {
     for (const std::string& output : outputs_of(o)) check_output(output, context.overwrite);
 
@@ -171,9 +160,13 @@ Report segment_one(const Options& o, Context& context) {
     params.compactness = o.compactness.value_or(params.compactness);
     params.distance = o.distance.value_or(params.distance);
     const FeatureImage picture = picture_of(o, mesh_image, level, context);
-    const Segmentation result =
-        segment_named(o, level, picture, params,
-                      [&](double f, std::string_view stage) { context.progress(0.3 + 0.4 * f, stage); });
+    const Segmentation result = segment(level, picture, params, [&](double f, std::string_view stage) {
+        context.progress(0.3 + 0.4 * f, stage);
+    });
+    std::vector<std::string> missed;
+    if (!result.missed.empty())
+        missed = {cat(o.params.superpixels ? "--superpixels: " : "--segments: ", result.missed)};
+    tell_missed(o.input, missed, o.strict, context.warnings);
     const LabelImage& labels = result.labels;
     const std::vector<RegionFacts> facts = region_facts(labels, picture);
 
@@ -202,6 +195,7 @@ Report segment_one(const Options& o, Context& context) {
         {"level", o.level},
         {"distance", params.superpixels ? "superpixels" : name_of(distance_choices(), params.distance)}};
     report.update(segmentation_report(result, facts));
+    report.update(target_report(missed));
     const std::pair<const char*, const std::string*> others[] = {
         {"image", &o.image}, {"outlines", &o.outlines}, {"flat", &o.flat},
         {"ucm", &o.ucm},     {"report", &o.report},     {"mesh", &o.mesh}};

@@ -184,16 +184,23 @@ void build_levels(const Pipeline& pipeline, const SimplifyParams& limits,
     std::vector<SimplifyResult> collapsed = pipeline.collapse(grid, limits, targets, tracking.hooks());
     report.collapses = collapsed.back().collapses;
     report.rejected = tracking.rejected();
-    report.levels.assign(collapsed.size(), {});
     mesh_image.visits = tracking.take_visits();
     mesh_image.levels.clear();
-    for (std::size_t k = 0; k < collapsed.size(); ++k) {
-        const double share = 0.3 / static_cast<double>(collapsed.size()),
-                     begin = 0.7 + share * static_cast<double>(k);
+    report.levels.clear();
+    // Each collapse takes a vertex: with as many as the level before, a level has the same mesh.
+    std::vector<std::size_t> kept;
+    for (std::size_t k = 0; k < collapsed.size(); ++k)
+        if (k == 0 || collapsed[k].mesh.vertex_count() != collapsed[kept.back()].mesh.vertex_count())
+            kept.push_back(k);
+    for (const std::size_t k : kept) {
+        const double share = 0.3 / static_cast<double>(kept.size()),
+                     begin = 0.7 + share * static_cast<double>(report.levels.size());
         std::optional<PixelMap> tracked;
         if (tracking.tracked()) tracked = tracking.take_map(k);
+        LevelReport& figures = report.levels.emplace_back();
         mesh_image.levels.push_back(pipeline.finish(std::move(collapsed[k]), limits, std::move(tracked),
-                                                    report.levels[k], begin, begin + share));
+                                                    figures, begin, begin + share));
+        figures.target = k;
     }
 }
 
@@ -216,7 +223,6 @@ class RmsMeshes : public MeasuredMeshes {
         SimplifyResult collapsed = collapse(vertices, true);
         collapses_ = collapsed.collapses;
         level_ = pipeline_.finish(std::move(collapsed), limits_, {}, figures_, 0.7, 1);
-        least_ = std::min(least_, figures_.map_rms);
         // The search is in features.
         return {static_cast<std::int64_t>(level_.mesh.vertex_count()),
                 figures_.map_rms * static_cast<double>(pipeline_.space.unit)};
@@ -233,7 +239,6 @@ class RmsMeshes : public MeasuredMeshes {
         const auto count = static_cast<std::int64_t>(collapsed.mesh.vertex_count());
         return {count, kEstimateShare * pipeline_.estimated_rms(std::move(collapsed))};
     }
-    double least() const { return least_; }
 
   private:
     SimplifyResult collapse(std::int64_t vertices, bool lods) {
@@ -259,7 +264,6 @@ class RmsMeshes : public MeasuredMeshes {
     Level level_;
     LevelReport figures_;
     std::int64_t collapses_ = 0;
-    double least_ = std::numeric_limits<double>::infinity();
 };
 
 // Returns the level that StopParams::rms asks for. Sets limits.smoothing to that of its collapse.
@@ -277,10 +281,8 @@ void build_to_rms(const Pipeline& pipeline, SimplifyParams& limits, MeshImage& m
     const double share = kAhead * kUsualShare * std::pow(kUsualRms / std::max(rms, 1e-3), kPower);
     const double guess = std::clamp(share, 1.0 / 4096, kMost) * static_cast<double>(vertices);
     RmsMeshes meshes(pipeline, grid, limits, mesh_image);
-    if (!search_rms(std::max(std::int64_t{4}, vertices), std::llround(guess), rms, meshes))
-        throw Error(ErrorKind::kUnsupported,
-                    cat("rms is ", rms / static_cast<double>(pipeline.space.unit),
-                        ", but the least that could be reached is ", meshes.least()));
+    // Without success, the search ends with the mesh of all vertices.
+    if (!search_rms(std::max(std::int64_t{4}, vertices), std::llround(guess), rms, meshes)) meshes.keep();
 }
 
 }  // namespace

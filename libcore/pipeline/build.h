@@ -2,6 +2,7 @@
 // first.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -19,6 +20,7 @@ struct LevelReport {
     double map_rms = 0;
     double gouraud_rms = 0;             ///< of the base mesh drawn without the map, in the same unit
     std::vector<double> auxiliary_rms;  ///< of each auxiliary channel, through the map [its own unit]
+    std::size_t target = 0;             ///< which of the wanted levels this is; the missing ones are alike
 };
 
 /// Wall time of the stages, all levels together [s].
@@ -51,7 +53,10 @@ struct BuildResult {
 /// progress  called now and then, on this thread
 /// mask      the pixels to mesh, of the image's size; empty() for all. Exactly the others have no face in
 ///           the map. Percents and shares are of the pixels inside.
-/// return    levels, finest first; a container keeps their positions, colours and weights exactly
+/// return    levels, finest first, each once: a wanted level with the same mesh as the one before is left
+/// out.
+///           missed_targets() (targets.h) tells what was not reached. A container keeps positions, colours
+///           and weights exactly
 ///
 /// The result is the same for any number of threads. With default parameters takes about 2 us of processor
 /// time and 110 bytes of memory for each pixel (docs/performance.md).

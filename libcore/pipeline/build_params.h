@@ -19,7 +19,7 @@ struct StopParams {
     std::optional<double>
         error;  ///< no collapse above this total quadric error (paper sec. 3.1) [L*u*v*^2 px^2]
     /// instead: as few vertices (to about 3 %) as an RMS of at most this through the pixel map takes; 0 or
-    /// more [L*u*v*]. One level only. Error(kUnsupported) if even the dense mesh has a larger RMS.
+    /// more [L*u*v*]. One level only. The dense mesh if even that has a larger RMS.
     std::optional<double> rms;
     double density = 1.0;  ///< percent of the pixels that stay vertices; in (0, 100]
 };

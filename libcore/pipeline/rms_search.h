@@ -29,7 +29,9 @@ class MeasuredMeshes {
 ///
 /// vertices  of the dense mesh, >= 4
 /// guess     where to start; rather too many
-/// return    false if even the dense mesh has a larger error; then keep() was never called
+/// return    false if even the dense mesh has a larger error; then keep() was never called, and the last call
+/// of
+///           finished() was for all vertices
 bool search_rms(std::int64_t vertices, std::int64_t guess, double rms, MeasuredMeshes& meshes);
 
 }  // namespace imgmesh

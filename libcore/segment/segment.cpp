@@ -30,19 +30,18 @@ void check(const Level& level, const FeatureImage& image, const SegmentParams& p
                     cat("the image has ", image.channels, " channels, expected L*, u*, v*"));
 }
 
-std::size_t merges_to_count(const Hierarchy& hierarchy, std::int64_t count, const std::string& what) {
+std::size_t merges_to_count(const Hierarchy& hierarchy, std::int64_t count, std::string& missed) {
     const std::size_t wanted = as_index(count);
     const std::size_t least = hierarchy.cells - hierarchy.merges.size(),
                       most = hierarchy.cells - hierarchy.forced;
     if (wanted > most)
-        throw Error(ErrorKind::kBadArgument,
-                    cat(what, " is ", count, ", at most ", most,
-                        hierarchy.forced > 0 ? " regions of that size can be had from " : " can be had from ",
-                        hierarchy.cells, " connected patches; a mesh with more faces has more"));
+        missed = cat(count, " regions were wanted, at most ", most,
+                     hierarchy.forced > 0 ? " of that size can be had from " : " can be had from ",
+                     hierarchy.cells, " connected patches, of which a mesh with more faces has more");
     if (wanted < least)
-        throw Error(ErrorKind::kBadArgument, cat(what, " is ", count, ", expected at least ", least,
-                                                 ": so many islands has the mask"));
-    return hierarchy.cells - wanted;
+        missed = cat(count, count == 1 ? " region was wanted, " : " regions were wanted, ", least,
+                     " are the fewest: so many islands has the mask");
+    return hierarchy.cells - std::clamp(wanted, least, most);
 }
 
 }  // namespace
@@ -87,9 +86,9 @@ Segmentation segment(const Level& level, const FeatureImage& image, const Segmen
     result.hierarchy =
         merge_regions(region_graph(result.cells, level.map, image, contrasts), distance, params.min_size);
     if (params.segments)
-        result.merges = merges_to_count(result.hierarchy, *params.segments, "segments");
+        result.merges = merges_to_count(result.hierarchy, *params.segments, result.missed);
     else if (params.superpixels)
-        result.merges = merges_to_count(result.hierarchy, *params.superpixels, "superpixels");
+        result.merges = merges_to_count(result.hierarchy, *params.superpixels, result.missed);
     else
         result.merges = merges_below(result.hierarchy, params.threshold);
     result.labels = labels_after(result.cells, result.hierarchy, result.merges);

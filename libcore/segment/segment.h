@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 
 #include "libcore/base/progress.h"
 #include "libcore/mesh/mesh_image.h"
@@ -31,7 +32,8 @@ struct Segmentation {
     Cells cells;
     Hierarchy hierarchy;  ///< all merges, also those after the labels' threshold
     std::size_t merges = 0;
-    LabelImage labels;  ///< after the first `merges` merges
+    LabelImage labels;   ///< after the first `merges` merges
+    std::string missed;  ///< why there are not as many regions as wanted; "" if there are
 };
 
 /// Draws the image of a level through its map: L*u*v*, zero outside the mask. For segment(), if the image
@@ -43,9 +45,11 @@ FeatureImage reconstruct_luv(const Level& level);
 /// size. The result is the same for any number of threads. Takes O(pixels + borders log borders) time for
 /// photographs.
 ///
-/// Throws Error(kBadArgument) for a parameter out of range, an image of another size, more regions than there
-/// are cells (of at least min_size pixels), or fewer than the mask has islands; Error(kUnsupported) for an
-/// image without colour or a mask without a pixel inside.
+/// Where more regions are wanted than there are cells (of at least min_size pixels), or fewer than the mask
+/// has islands, the number is as near as possible, and `missed` tells why.
+///
+/// Throws Error(kBadArgument) for a parameter out of range and an image of another size; Error(kUnsupported)
+/// for an image without colour or a mask without a pixel inside.
 Segmentation segment(const Level& level, const FeatureImage& image, const SegmentParams& params,
                      const Progress& progress = {});
 

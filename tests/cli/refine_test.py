@@ -81,7 +81,7 @@ class Refine(CliCase):
         self.assertLessEqual(image["map_rms"], 30)
         self.assertGreater(image["map_rms"], 27)
         self.assertEqual(self.report("imgmesh-info", "p.glb")["build"]["rms"], 30)
-        self.assertIn("rms", built("--rms", "1e-6", code=5)["failure"]["message"])
+        self.assertIn("1e-06", built("--rms", "1e-6", "--strict", code=5)["failure"]["message"])
         self.assert_error("imgmesh-build", ["noise.png", "-o", "q.glb", "--rms", "3", "--levels", "2"], 2, "--rms")
 
     def test_any_number_of_threads(self):

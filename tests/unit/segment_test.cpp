@@ -142,7 +142,9 @@ TEST_CASE("min size: small regions go to their closest neighbour first") {
     CHECK(result.labels.values == std::vector<Id>{0, 0, 0, 1, 1, 1, 1});
     CHECK(result.hierarchy.forced == 1);
     params.segments = 3;
-    CHECK_THROWS_AS(segment(level_of(map), picture, params), Error);
+    const Segmentation most = segment(level_of(map), picture, params);
+    CHECK(most.labels.count == 2);
+    CHECK(most.missed.starts_with("3 regions were wanted, at most 2 of that size can be had from 3"));
 }
 
 // An island smaller than the least size has no neighbour to merge with.
@@ -152,9 +154,6 @@ TEST_CASE("islands of a mask stay apart") {
     SegmentParams params = by_threshold(DistanceRule::kContour, 1e9);
     params.min_size = 100;
     CHECK(segment(level_of(map), picture, params).labels.values == std::vector<Id>{0, 0, kNone, 1, 1});
-    params.segments = 1;
-    CHECK_THROWS_WITH_AS(segment(level_of(map), picture, params), doctest::Contains("expected at least 2"),
-                         Error);
 }
 
 TEST_CASE("facts of regions") {
@@ -229,6 +228,28 @@ TEST_CASE("drawings: lines on the pixels before a border, alpha where there is a
     CHECK(flat.pixel(1, 0)[3] == 0.0f);
 }
 
+TEST_CASE("a number of regions that cannot be had is as near as possible, and told") {
+    const Level level = level_of(map_of_faces(5, 1, {0, 1, kNone, 2, 3}));
+    const FeatureImage picture{5, 1, 3, std::vector<float>(15, 1.0f)};
+    const auto segmented = [&](std::int64_t number, bool superpixels) {
+        SegmentParams params;
+        (superpixels ? params.superpixels : params.segments) = number;
+        return segment(level, picture, params);
+    };
+    for (const bool superpixels : {false, true}) {
+        CHECK(segmented(5, superpixels).labels.count == 4);
+        CHECK(segmented(5, superpixels)
+                  .missed.starts_with("5 regions were wanted, at most 4 can be had from 4"));
+        CHECK(segmented(1, superpixels).labels.count == 2);
+        CHECK(segmented(1, superpixels).missed ==
+              "1 region was wanted, 2 are the fewest: so many islands has the mask");
+        for (const std::int64_t number : {2, 3, 4}) {
+            CHECK(segmented(number, superpixels).labels.count == as_index(number));
+            CHECK(segmented(number, superpixels).missed.empty());
+        }
+    }
+}
+
 TEST_CASE("parameters out of range") {
     const Level level = level_of(map_of_faces(2, 1, {0, 1}));
     const FeatureImage picture{2, 1, 3, std::vector<float>(6, 1.0f)};
@@ -240,7 +261,6 @@ TEST_CASE("parameters out of range") {
     refused([](SegmentParams& p) { p.threshold = 0; });
     refused([](SegmentParams& p) { p.threshold = std::nan(""); });
     refused([](SegmentParams& p) { p.segments = 0; });
-    refused([](SegmentParams& p) { p.segments = 3; });
     refused([](SegmentParams& p) { p.superpixels = 0; });
     refused([](SegmentParams& p) { p.segments = p.superpixels = 1; });
     refused([](SegmentParams& p) { p.compactness = -1; });

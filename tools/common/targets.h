@@ -1,0 +1,22 @@
+// What was asked for in numbers and was not reached: told in the text and in the report, or refused.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "tools/common/tool_main.h"
+
+namespace imgmesh {
+
+/// Adds --strict.
+void add_strict_option(CLI::App& app, bool& strict);
+
+/// Appends a warning about `input` for each line of `missed`. Throws Error(kUnsupported) instead if `strict`,
+/// so that nothing is written.
+void tell_missed(const std::string& input, const std::vector<std::string>& missed, bool strict,
+                 std::vector<std::string>& warnings);
+
+/// Returns the members "target_reached" and, if that is false, "reason".
+Report target_report(const std::vector<std::string>& missed);
+
+}  // namespace imgmesh
