@@ -60,6 +60,16 @@ void copy_words(const std::uint8_t* row, std::size_t samples, int bits, std::uin
     }
 }
 
+// Returns what the decoder says last, or nothing. libheif 1.15 writes all warnings from the first wanted one
+// on, whatever room there is for them, and their texts are in one place, which keeps the last.
+std::string last_warning(heif_image* decoded) {
+    const int count = heif_image_get_decoding_warnings(decoded, 0, nullptr, 0);
+    if (count < 1) return {};
+    heif_error warning = {};
+    heif_image_get_decoding_warnings(decoded, count - 1, &warning, 1);
+    return warning.message ? one_line(warning.message) : std::string();
+}
+
 }  // namespace
 
 void decode_by_libheif(const DecodeTask& task, std::span<const std::uint8_t> bytes,
@@ -104,9 +114,8 @@ void decode_by_libheif(const DecodeTask& task, std::span<const std::uint8_t> byt
     out.sample_type = bits > 8 ? SampleType::kUint16 : SampleType::kUint8;
     out.associated_alpha = alpha && heif_image_handle_is_premultiplied_alpha(primary);
     out.color = color_of(primary, decoded, bytes);  // turned and mirrored already
-    heif_error warning = {};
-    if (heif_image_get_decoding_warnings(decoded, 0, &warning, 1) > 0 && warning.message)
-        out.warnings.push_back(cat("its decoder says: ", one_line(warning.message)));
+    if (const std::string warning = last_warning(decoded); !warning.empty())
+        out.warnings.push_back(cat("its decoder says: ", warning));
 
     int stride = 0;
     const std::uint8_t* const rows =
