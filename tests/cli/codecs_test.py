@@ -111,7 +111,7 @@ class Survival(CliCase):
         for name in broken:
             self.assertEqual(result.stderr.count(f" {name}: "), 1, result.stderr)
         self.assertIn("b9.jp2: cannot read the image: its decoder crashed (signal 11)\n", result.stderr)
-        self.assertEqual(sorted(p.stem for p in (self.folder / "out").iterdir()), [f"g{i:02}" for i in range(90)])
+        self.assertEqual(sorted(p.stem for p in (self.folder / "out").glob("[!.]*")), [f"g{i:02}" for i in range(90)])
 
     def test_alone_and_killed(self):
         (self.folder / "a.jp2").write_bytes(encoded(picture_files.noise(1800, 1300), "JPEG2000"))

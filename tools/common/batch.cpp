@@ -45,6 +45,8 @@ class Batch {
 
   private:
     void work(std::size_t index);
+    FileResult made_before(const Job& job);
+    void do_work(std::size_t index, FileResult& file);
     Progress progress_of(std::size_t index);
     void announce(const FileResult& file);
     void write(const std::string& text);
@@ -67,7 +69,7 @@ class Batch {
     double seconds_ = 0;
 
     std::atomic<std::size_t> next_ = 0, done_ = 0;
-    std::atomic<bool> stopped_ = false;
+    std::atomic<bool> stopped_ = false, lost_journal_ = false;
     MemoryGate gate_;
     ProgressBar bar_;
     const Progress show_;
@@ -82,17 +84,27 @@ Progress Batch::progress_of(std::size_t index) {
     };
 }
 
-void Batch::work(std::size_t index) {
-    const Job& job = jobs_[index];
-    {
-        const std::lock_guard lock(mutex_);
-        if (stopped_) return;
-        ++running_;
+// Returns the result of an earlier run, or one that is not done yet, with the hashes of what is read.
+FileResult Batch::made_before(const Job& job) {
+    FileResult file;
+    if (options_.json || options_.json_lines || options_.journal) {
+        file.input = FileState(job.input);
+        file.hashes = hash_inputs(job);
     }
+    if (!options_.journal) return file;
+    file.key = journal_key(tool_, options_.generator, job, options_.journal_parameters, file.hashes);
+    if (!options_.skip_existing || file.key.empty()) return file;
+    file.report = options_.journal->find(journal_name(job), file.key, written_files(job));
+    if (file.report.is_null()) return file;
+    file.status = FileStatus::kSkipped;
+    for (const char* member : {"input", "output", "status"}) file.report.erase(member);
+    return file;
+}
+
+void Batch::do_work(std::size_t index, FileResult& file) {
+    const Job& job = jobs_[index];
     Context context{options_.generator, options_.overwrite, options_.max_memory,
                     JobMemory(gate_, options_.max_memory), progress_of(index)};
-    FileResult file;
-    if (options_.json || options_.json_lines) file.hashes = hash_inputs(job);
     try {
         file.report = tool_.run(job, context);
     } catch (...) {
@@ -104,6 +116,26 @@ void Batch::work(std::size_t index) {
     file.status = context.failures.empty() ? FileStatus::kDone : FileStatus::kFailed;
     file.warnings = std::move(context.warnings);
     file.failures = std::move(context.failures);
+    // Of an input that was changed meanwhile nobody knows what was read.
+    if (file.status != FileStatus::kDone || file.key.empty() || FileState(job.input) != file.input) return;
+    try {
+        options_.journal->add(journal_name(job), file.key, written_files(job),
+                              file_report(job, file, options_.parameters));
+    } catch (const Error& error) {
+        if (!lost_journal_.exchange(true))
+            file.warnings.push_back(cat(error.what(), "; --skip-existing will not know what was made"));
+    }
+}
+
+void Batch::work(std::size_t index) {
+    const Job& job = jobs_[index];
+    {
+        const std::lock_guard lock(mutex_);
+        if (stopped_) return;
+        ++running_;
+    }
+    FileResult file = made_before(job);
+    if (file.status != FileStatus::kSkipped) do_work(index, file);
     {
         const std::lock_guard lock(mutex_);
         if (concluded_) return;  // and the process is about to end
@@ -172,6 +204,8 @@ std::string Batch::report_text() const {
     }
     if (options_.quiet) return "";
     if (many_) return summary_line();
+    if (files_[0].status == FileStatus::kSkipped)
+        return printable_line(file_line(tool_, jobs_[0], files_[0])) + '\n';
     if (files_[0].report.is_null()) return "";
     std::ostringstream lines;
     tool_.print(file_report(jobs_[0], files_[0], options_.parameters), lines);

@@ -2,10 +2,12 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
+#include "tools/common/journal.h"
 #include "tools/common/tool_main.h"
 
 namespace imgmesh {
@@ -18,13 +20,16 @@ struct BatchOptions {
     bool quiet = false;
     bool overwrite = true;
     std::uint64_t max_memory = 0;
-    Report parameters;  ///< what the command line says of the results, for the reports
+    Report parameters;                      ///< what the command line says of the results, for the reports
+    std::unique_ptr<Journal> journal = {};  ///< of the outputs' folder; null: none is kept
+    Report journal_parameters = {};         ///< what outputs depend on beside their inputs
+    bool skip_existing = false;             ///< leave outputs alone that the journal knows
 };
 
-/// Does the work of `tool` on all jobs, several at a time, and prints. A job that fails does not stop the
-/// others. Returns the exit code: that of all failures, or kBadFile if they differ. SIGINT, SIGTERM and
-/// SIGHUP end a batch of several jobs with its report a second later, the second one at once. Throws
-/// Error(kIo) if the report cannot be written.
+/// Does the work of `tool` on all jobs, several at a time, prints, and writes the journal. A job that fails
+/// does not stop the others. Returns the exit code: that of all failures, or kBadFile if they differ. SIGINT,
+/// SIGTERM and SIGHUP end a batch of several jobs with its report a second later, the second one at once.
+/// Throws Error(kIo) if the report cannot be written.
 ExitCode run_batch(const Tool& tool, const std::vector<Job>& jobs, const BatchOptions& options);
 
 }  // namespace imgmesh

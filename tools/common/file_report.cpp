@@ -1,5 +1,7 @@
 #include "tools/common/file_report.h"
 
+#include <sys/stat.h>
+
 #include <algorithm>
 
 #include "formats/files/sha256.h"
@@ -14,6 +16,8 @@ const char* status_name(FileStatus status) {
             return "done";
         case FileStatus::kFailed:
             return "failed";
+        case FileStatus::kSkipped:
+            return "skipped";
         case FileStatus::kInterrupted:
             break;
     }
@@ -21,6 +25,14 @@ const char* status_name(FileStatus status) {
 }
 
 }  // namespace
+
+FileState::FileState(const std::string& path) {
+    struct stat info = {};
+    if (::stat(path.c_str(), &info) != 0) return;
+    facts_ = {info.st_dev, info.st_ino, static_cast<std::uint64_t>(info.st_size),
+              static_cast<std::uint64_t>(info.st_mtim.tv_sec),
+              static_cast<std::uint64_t>(info.st_mtim.tv_nsec)};
+}
 
 std::map<std::string, std::string> hash_inputs(const Job& job) {
     std::map<std::string, std::string> hashes;
@@ -59,6 +71,7 @@ Report file_report(const Job& job, const FileResult& file, const Report& paramet
 
 std::string file_line(const Tool& tool, const Job& job, const FileResult& file) {
     const std::string names = job.output.empty() ? job_name(job) : cat(job_name(job), " -> ", job.output);
+    if (file.status == FileStatus::kSkipped) return cat(names, ": skipped, made before");
     if (file.report.is_null()) return cat(names, ": failed, code ", static_cast<int>(file.failures[0].code));
     return cat(names, ": ", tool.line(file.report));
 }
@@ -69,6 +82,7 @@ Report summary_report(const std::vector<FileResult>& files, double seconds) {
     };
     return {{"files", files.size()},
             {"done", count(FileStatus::kDone)},
+            {"skipped", count(FileStatus::kSkipped)},
             {"failed", count(FileStatus::kFailed)},
             {"interrupted", count(FileStatus::kInterrupted)},
             {"seconds", seconds}};

@@ -1,6 +1,8 @@
 // What is told of one file, and of all together.
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -13,7 +15,20 @@ namespace imgmesh {
 enum class FileStatus {
     kInterrupted,  ///< not begun, or not done when the run was ended
     kDone,
+    kSkipped,  ///< an earlier run has done it
     kFailed,
+};
+
+/// Tells whether a file is still the same, without reading it.
+class FileState {
+  public:
+    FileState() = default;
+    /// Of a file that cannot be found, that of no file.
+    explicit FileState(const std::string& path);
+    bool operator==(const FileState&) const = default;
+
+  private:
+    std::array<std::uint64_t, 5> facts_ = {};
 };
 
 /// What has become of one job.
@@ -23,6 +38,8 @@ struct FileResult {
     std::vector<std::string> warnings = {};
     std::vector<Failure> failures = {};
     std::map<std::string, std::string> hashes = {};  ///< SHA-256 of what was read, by its name
+    FileState input = {};                            ///< before it was read
+    std::string key = {};                            ///< journal_key(), or empty
 };
 
 /// Returns the SHA-256 of the files that `job` reads. What cannot be read, or only once, has none.

@@ -12,6 +12,8 @@ namespace imgmesh {
 
 /// The heading of what all tools have.
 inline constexpr const char* kGeneralGroup = "General";
+/// That of limits, which decide whether there is a result, not which.
+inline constexpr const char* kLimitsGroup = "Limits";
 
 /// Makes `app` show its options in groups under headings, wrapped. Call it before adding
 /// options.

@@ -1,5 +1,6 @@
 #include "tools/common/jobs.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <map>
 #include <string_view>
@@ -110,6 +111,11 @@ std::vector<Job> plan_jobs(const Tool& tool, const FileOptions& files) {
         for (std::string& output : outputs_of(job)) outputs.push_back(std::move(output));
     check_distinct(files.inputs, outputs);
     return jobs;
+}
+
+bool fills_folder(const Tool& tool, const FileOptions& files) {
+    return is_folder(files.output) ||
+           std::ranges::any_of(tool.sides, [](const SideFile& side) { return is_folder(*side.value); });
 }
 
 void make_folders(const Tool& tool, const FileOptions& files) {

@@ -13,6 +13,7 @@ struct FileOptions {
     std::vector<std::string> inputs;
     std::string output;  ///< a file, a folder, or empty
     std::string type;    ///< of --format, without a dot; empty: the tool's own
+    bool skip_existing = false;
 };
 
 /// Returns the work on each input, in their order. Throws Error(kBadArgument) for mistakes that can be found
@@ -26,6 +27,9 @@ std::string file_type(const std::string& name, const std::string& text);
 
 /// Returns whether `path` names a folder: it ends with a slash, or it is one.
 bool is_folder(const std::string& path);
+
+/// Returns whether the outputs go into a folder.
+bool fills_folder(const Tool& tool, const FileOptions& files);
 
 /// Makes the folders that -o and the options of `tool` name.
 void make_folders(const Tool& tool, const FileOptions& files);

@@ -9,7 +9,7 @@ namespace imgmesh {
 
 void add_container_limits(CLI::App& app, ContainerLimits& limits) {
     const auto add = [&](const char* name, auto& target, std::int64_t most, const char* help) {
-        advanced(app, in_group(add_count(app, name, target, {1, most}, help), "Limits"));
+        advanced(app, in_group(add_count(app, name, target, {1, most}, help), kLimitsGroup));
     };
     const std::int64_t any = std::numeric_limits<std::int64_t>::max();
     add("--max-bytes", limits.max_bytes, any, "Refuse a container of more bytes, all files together");

@@ -16,4 +16,8 @@ namespace imgmesh {
 /// What the results do not depend on is left out: outputs and the general options.
 Report parameters_report(const Tool& tool, const CLI::App& app);
 
+/// The same without limits, which decide whether there is a result, and with the SHA-256 of the files that
+/// Tool::sources name. Null if one of them can be read only once.
+Report journal_parameters(const Tool& tool, const CLI::App& app);
+
 }  // namespace imgmesh

@@ -43,7 +43,7 @@ void add_read_options(CLI::App& app, ReadImageOptions& options, CLI::Option* ima
         {"Refuse an image of more pixels", cat(options.limits.max_pixels, ", and for a file of few bytes ",
                                                options.limits.max_pixels_per_byte, " a byte above 4194304")});
     if (image) needs(pixels, image);
-    advanced(app, in_group(pixels, "Limits"));
+    advanced(app, in_group(pixels, kLimitsGroup));
 }
 
 ReadImage read_with_warnings(const std::string& path, const ReadImageOptions& options,

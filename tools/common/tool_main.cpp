@@ -10,6 +10,7 @@
 #include <new>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <set>
 
 #include "formats/files/atomic_file.h"
 #include "libcore/base/parallel.h"
@@ -48,6 +49,7 @@ constexpr int kMaxThreads = 1024;
 
 struct CommonOptions {
     bool json = false, json_lines = false;
+    bool force = false;
     bool quiet = false;
     bool overwrite = true;
     std::optional<int> threads;  // none: all
@@ -87,7 +89,7 @@ void add_common_options(CLI::App& app, CommonOptions& common) {
     advanced(app, in_group(add_value(app, "--max-memory", "SIZE", memory,
                                      {"Refuse work that is estimated to take more memory, as in 2G",
                                       "three quarters of what there is"}),
-                           "Limits"));
+                           kLimitsGroup));
     in_group(add_config_option(app), group);
     app.footer(exit_code_table());
 }
@@ -102,7 +104,7 @@ void hold_standard_streams() {
     }
 }
 
-void add_files(CLI::App& app, const Tool& tool, FileOptions& files) {
+void add_files(CLI::App& app, const Tool& tool, FileOptions& files, CommonOptions& common) {
     add_inputs(app, tool.input_name, files.inputs, tool.input_help);
     if (tool.output_help.empty()) return;
     CLI::Option* const output = add_file(app, "-o,--output", files.output, tool.output_help);
@@ -110,6 +112,12 @@ void add_files(CLI::App& app, const Tool& tool, FileOptions& files) {
     advanced(app, add_value(app, "--format", "NAME",
                             [&files](const std::string& text) { files.type = file_type("--format", text); },
                             {"Kind of the files in a folder of -o, as in " + tool.type()}));
+    add_flag(
+        app, "--skip-existing", [&files] { files.skip_existing = true; },
+        "Leave outputs alone that were made from the same content by the same options and version");
+    advanced(app, add_flag(
+                      app, "--force", [&common] { common.force = true; },
+                      "Make them again, whatever --skip-existing says"));
 }
 
 ExitCode run_parsed(const Tool& tool, const CLI::App& app, const FileOptions& files,
@@ -124,6 +132,16 @@ ExitCode run_parsed(const Tool& tool, const CLI::App& app, const FileOptions& fi
     options.parameters = parameters_report(tool, app);
     const std::vector<Job> jobs = plan_jobs(tool, files);
     make_folders(tool, files);
+    // A batch that was begun without --skip-existing goes on with it as well.
+    options.skip_existing = files.skip_existing && !common.force;
+    if (!tool.output_help.empty() && (files.skip_existing || fills_folder(tool, files)))
+        options.journal_parameters = journal_parameters(tool, app);
+    if (!options.journal_parameters.is_null()) {
+        options.journal = std::make_unique<Journal>(journal_folder(jobs.front()));
+        std::set<std::string> names;
+        for (const Job& job : jobs) names.insert(journal_name(job));
+        if (options.skip_existing) options.journal->read(names);
+    }
     const ThreadLimit limit(common.threads.value_or(hardware_threads()));
     return run_batch(tool, jobs, options);
 }
@@ -133,7 +151,7 @@ ExitCode parse_and_run(const Tool& tool, int argc, char** argv) {
     CommonOptions common;
     FileOptions files;
     set_help_style(app);
-    add_files(app, tool, files);
+    add_files(app, tool, files, common);
     tool.add_options(app);
     add_common_options(app, common);
     try {
