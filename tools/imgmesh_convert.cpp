@@ -13,6 +13,7 @@
 #include "libcore/mesh/outer_edge.h"
 #include "libcore/mesh/outline_mesh.h"
 #include "libcore/recon/draw.h"
+#include "tools/common/compression_options.h"
 #include "tools/common/container_input.h"
 #include "tools/common/in_file.h"
 #include "tools/common/limits.h"
@@ -44,9 +45,9 @@ constexpr double kMostTolerance = 64;
 struct Options {
     std::string input;
     std::string output;
-    std::optional<DracoMode> draco;
+    CompressionOptions compression;
     std::vector<int> levels;
-    bool no_layers = false;
+    bool no_map = false;
     TextureOptions texture;
     std::optional<int> level;
     std::optional<ExportKind> as;
@@ -60,9 +61,7 @@ struct Options {
 
 void add_options(CLI::App& app, Options& o) {
     const std::string container = "Container", level = "Level";
-    in_group(add_choice(app, "--draco", o.draco, draco_choices(),
-                        {"Compression of the meshes", "that of the input"}),
-             container);
+    add_compression_options(app, o.compression, "as in the input; with --no-map none");
     in_group(
         add_value(app, "--levels", "LIST",
                   [&o](const std::string& text) {
@@ -73,9 +72,13 @@ void add_options(CLI::App& app, Options& o) {
                   {"Levels to keep, the finest first, as in 0,2; they are numbered anew", "all"}),
         container);
     in_group(add_flag(
-                 app, "--no-layers", [&o] { o.no_layers = true; },
-                 "Write the meshes alone: a plain glTF asset that imgmesh cannot read"),
+                 app, "--no-map", [&o] { o.no_map = true; },
+                 "Write the meshes alone: a plain glTF asset for engines, that imgmesh cannot read"),
              container);
+    // Its name until it had one in imgmesh-build, too.
+    in_group(add_flag(
+                 app, "--no-layers", [&o] { o.no_map = true; }, "The same as --no-map"),
+             "");
     add_texture_options(app, o.texture,
                         {"Put an image on the meshes, for engines and viewers: that of --image, or else the "
                          "reconstruction",
@@ -129,9 +132,11 @@ void check_options(const Options& o) {
             cat("-o ", o.output, ": expected a name in .glb, .gltf, .svg, .ply, .obj, .json, .tscn or .png"));
     const std::optional<ExportKind> kind = export_kind(level_options(o));
     const bool outline = kind == ExportKind::kOutline, sprite = kind && !outline;
-    only_for(o.draco.has_value(), "--draco", container, "container");
+    only_for(o.compression.draco.has_value(), "--draco", container, "container");
     only_for(!o.levels.empty(), "--levels", container, "container");
-    only_for(o.no_layers, "--no-layers", container, "container");
+    only_for(o.compression.method.has_value(), "--compression", container, "container");
+    only_for(o.no_map, "--no-map", container, "container");
+    check_compression(o.compression, !o.no_map && !o.outline_tolerance);
     only_for(o.texture.wanted.has_value(), "--texture", container || obj, "container or .obj");
     if (container && o.level)
         throw Error(ErrorKind::kBadArgument, cat("--level: ", o.output, " keeps all levels; see --levels"));
@@ -180,7 +185,7 @@ void keep_levels(const Options& o, MeshImage& m, Texture& texture) {
 Texture chosen_texture(const Options& o, MeshImage& m, Texture kept, Context& context) {
     if (!o.texture.wanted && !kept.picture.empty()) return kept;
     if (!o.texture.wanted.value_or(false)) {
-        if (o.no_layers) extend_to_outer_edge(m);
+        if (o.no_map) extend_to_outer_edge(m);
         return {};
     }
     const SourceInfo& source = m.source;
@@ -233,10 +238,10 @@ Report convert_one(const Options& given, Context& context) {
         options.metadata = container.metadata;
         options.texture = chosen_texture(o, m, std::move(container.texture), context);
         keep_levels(o, m, options.texture);
-        options.draco = o.draco.value_or(container.facts.draco);
         options.overwrite = context.overwrite;
         options.keep = container.facts.files;
-        options.layers = !o.no_layers && !o.outline_tolerance;
+        options.layers = !o.no_map && !o.outline_tolerance;
+        compress(options, o.compression, options.layers ? container.facts.draco : DracoMode::kOff);
         if (o.outline_tolerance) {
             if (options.texture.picture.empty())
                 throw Error(ErrorKind::kBadArgument,

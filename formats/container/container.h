@@ -31,6 +31,7 @@ struct ContainerOptions {
     /// Files that stay although the .gltf that is replaced refers to them, such as those just read.
     std::vector<std::string> keep = {};
     bool layers = true;    ///< false: without pixel maps, a plain glTF asset that read_container() refuses
+    bool meshopt = false;  ///< EXT_meshopt_compression instead of Draco; only without layers
     Texture texture = {};  ///< with the coordinates of all vertices of all levels
     ExrMetadata metadata = {};  ///< of the source, if it is an EXR; without an exr_metadata_fault()
 };

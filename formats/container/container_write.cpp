@@ -45,19 +45,23 @@ void check_writable(const MeshImage& image, const Texture& texture) {
 // Stores the mesh of `level` in `buffer`. Draco's coder changes it: for the mesh that a reader will get,
 // `map` is then a rewritten copy of the level's. `coords` are those of its texture; empty if there is none.
 AssetLevel store_level(const Level& level, const StoredLayout& layout, std::span<const Vec2f> coords,
-                       DracoMode mode, std::vector<std::uint8_t>& buffer, PixelMap& map) {
+                       DracoMode mode, MeshoptWriter* meshopt, std::vector<std::uint8_t>& buffer,
+                       PixelMap& map) {
     StoredMesh mesh = stored_from_base(level.mesh, layout);
     for (const Vec2f& c : coords) mesh.texcoord.push_back({c.x(), c.y()});
     AssetLevel out;
     out.has_texcoords = !coords.empty();
     if (mode == DracoMode::kOff) {
-        out.indices = append_values(buffer, mesh.faces);
-        out.positions = append_values(buffer, mesh.position);
-        if (layout.color) out.colors = append_values(buffer, mesh.color);
-        if (layout.hdr) out.hdr = append_values(buffer, mesh.hdr);
-        for (const std::vector<float>& channel : mesh.channels)
-            out.channels.push_back(append_values(buffer, channel));
-        if (out.has_texcoords) out.texcoords = append_values(buffer, mesh.texcoord);
+        if (meshopt) mesh = ordered_for_meshopt(mesh);
+        const auto append = [&](const auto& values) {
+            return meshopt ? meshopt->add(values) : append_values(buffer, values);
+        };
+        out.indices = append(mesh.faces);
+        out.positions = append(mesh.position);
+        if (layout.color) out.colors = append(mesh.color);
+        if (layout.hdr) out.hdr = append(mesh.hdr);
+        for (const std::vector<float>& channel : mesh.channels) out.channels.push_back(append(channel));
+        if (out.has_texcoords) out.texcoords = append(mesh.texcoord);
     } else {
         DracoMesh draco = encode_draco_mesh(mesh, mode);
         out.is_draco = true;
@@ -157,6 +161,8 @@ std::vector<std::string> container_files(const std::string& path) {
 
 void write_container(const std::string& path, const MeshImage& mesh_image, const ContainerOptions& options) {
     const FileVariant variant = variant_of(path);
+    if (options.meshopt && options.layers)
+        throw Error(ErrorKind::kInternal, "a container with pixel maps cannot have meshopt compression");
     check_writable(mesh_image, options.texture);
     const SourceInfo& source = mesh_image.source;
     const std::string fault = exr_metadata_fault(options.metadata, source.width, source.height);
@@ -171,17 +177,21 @@ void write_container(const std::string& path, const MeshImage& mesh_image, const
     std::vector<LayerView> parts;
     std::deque<PixelMap> rewritten;
     const Texture& texture = options.texture;
+    const DracoMode draco = options.meshopt ? DracoMode::kOff : options.draco;
+    MeshoptWriter meshopt(buffer);
     for (const Level& level : mesh_image.levels) {
         std::span<const Vec2f> coords;
         if (!texture.picture.empty()) coords = texture.coords[asset.levels.size()];
         PixelMap& map = rewritten.emplace_back();
-        asset.levels.push_back(
-            store_level(level, layout_of(asset.source), coords, options.draco, buffer, map));
+        asset.levels.push_back(store_level(level, layout_of(asset.source), coords, draco,
+                                           options.meshopt ? &meshopt : nullptr, buffer, map));
         parts.push_back({level_name(parts.size()),
-                         options.draco == DracoMode::kOff ? &level.map : &map,
+                         draco == DracoMode::kOff ? &level.map : &map,
                          {},
                          asset.levels.back().topology});
     }
+    asset.meshopt = meshopt.views();
+    asset.fallback_length = meshopt.fallback_length();
     parts.front().visits = mesh_image.visits;
     if (!texture.picture.empty()) {
         asset.texture_type = picture_type(texture.picture);

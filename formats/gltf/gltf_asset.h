@@ -11,6 +11,7 @@
 #include "formats/findings/limits.h"
 #include "formats/gltf/byte_range.h"
 #include "formats/gltf/draco_mesh.h"
+#include "formats/gltf/meshopt_views.h"
 #include "libcore/mesh/mesh_image.h"
 
 namespace imgmesh {
@@ -57,6 +58,11 @@ struct Asset {
 
     ByteRange texture;         ///< the image on the meshes, in the buffer
     std::string texture_type;  ///< its mimeType; empty for no texture
+
+    /// Compressed arrays of the levels, whose ranges are then in a fallback buffer of this length; only for a
+    /// writer.
+    std::vector<MeshoptView> meshopt = {};
+    std::uint64_t fallback_length = 0;
 
     std::vector<LevelPlace> places;  ///< of the levels, as read
     // What a validator may check further; always true for a reader. A writer omits IMGMESH_pixel_map if

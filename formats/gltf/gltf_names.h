@@ -5,6 +5,7 @@ namespace imgmesh {
 
 inline constexpr const char* kPixelMap = "IMGMESH_pixel_map";
 inline constexpr const char* kDraco = "KHR_draco_mesh_compression";
+inline constexpr const char* kMeshopt = "EXT_meshopt_compression";
 inline constexpr const char* kUnlit = "KHR_materials_unlit";
 inline constexpr const char* kLod = "MSFT_lod";
 /// The vertices' colours in a container with a texture, which viewers would multiply by COLOR_0.

@@ -313,10 +313,12 @@ Asset asset_from_json(std::string_view text, const ContainerLimits& limits, Find
     const json document = parse_json(text, {.max_depth = limits.max_json_depth}, findings);
     if (!document.is_object()) refuse("gltf.structure", "the document is not a JSON object");
     findings.attempt("/asset", [&] { check_version(document); });
-    check_required(document, findings);
     const json* extensions = find(document, "extensions");
     const json* root = extensions ? find(*extensions, kPixelMap) : nullptr;
-    if (!root) refuse("ext.missing", cat("the asset has no extension ", kPixelMap));
+    if (!root)
+        refuse("ext.missing", cat("the asset has no pixel map, that is, no extension ", kPixelMap,
+                                  "; imgmesh-build makes one from the image"));
+    check_required(document, findings);
 
     Asset asset;
     const std::string at_root = cat("/extensions/", kPixelMap);

@@ -62,13 +62,39 @@ class Convert(CliCase):
 
     def test_without_layers(self):
         for extension in ("glb", "gltf"):
-            report = self.report("imgmesh-convert", "c.glb", "-o", f"m.{extension}", "--no-layers", "--draco", "none")
+            report = self.report("imgmesh-convert", "c.glb", "-o", f"m.{extension}", "--no-map")
             self.assertFalse(report["layers"])
             self.assert_error("imgmesh-info", [f"m.{extension}"], 4, "ext.missing")
             self.assertNotIn(b"IMGMESH", (self.folder / f"m.{extension}").read_bytes())
         self.assertEqual(sorted(f for f in self.files() if f.startswith("m.")), ["m.bin", "m.glb", "m.gltf"])
         mesh = json.loads((self.folder / "m.gltf").read_text())
         self.assertEqual(mesh["accessors"][0]["count"], 3 * self.facts["levels"][0]["faces"])
+        # Without Draco, which some engines read as zeros; and the option's old name.
+        self.assertNotIn("extensionsRequired", mesh)
+        self.run_ok("imgmesh-convert", "c.glb", "-o", "old.glb", "--no-layers", "-q")
+        self.assertEqual((self.folder / "old.glb").read_bytes(), (self.folder / "m.glb").read_bytes())
+
+    def test_meshopt(self):
+        """A plain mesh decodes to the same faces; the compressed file is far smaller."""
+        size = {}
+        for method in ("none", "draco", "meshopt"):
+            self.run_ok("imgmesh-convert", "c.glb", "-o", f"{method}.gltf", "--no-map", "--compression", method, "-q")
+            size[method] = (self.folder / f"{method}.bin").stat().st_size
+        self.assertLess(size["meshopt"], 0.5 * size["none"])
+        mesh = json.loads((self.folder / "meshopt.gltf").read_text())
+        self.assertEqual(mesh["extensionsRequired"], ["EXT_meshopt_compression"])
+        self.assertEqual(mesh["buffers"][1]["extensions"], {"EXT_meshopt_compression": {"fallback": True}})
+        for accessor in mesh["accessors"]:
+            view = mesh["bufferViews"][accessor["bufferView"]]
+            inner = view["extensions"]["EXT_meshopt_compression"]
+            self.assertEqual((view["buffer"], inner["buffer"]), (1, 0))
+            self.assertEqual((inner["count"], inner["count"] * inner["byteStride"]), (accessor["count"], view["byteLength"]))
+            self.assertLessEqual(view.get("byteOffset", 0) + view["byteLength"], mesh["buffers"][1]["byteLength"])
+            self.assertLessEqual(inner.get("byteOffset", 0) + inner["byteLength"], mesh["buffers"][0]["byteLength"])
+        self.assert_error("imgmesh-info", ["meshopt.gltf"], 4, "ext.missing", "no pixel map", "imgmesh-build")
+        for tool, output in (("imgmesh-reconstruct", "x.png"), ("imgmesh-warp", "x.glb"), ("imgmesh-convert", "x.glb"),
+                             ("imgmesh-segment", "x.png")):
+            self.assert_error(tool, ["meshopt.gltf", "-o", output], 4, "no pixel map", "imgmesh-build")
 
     def test_svg(self):
         size = {}
@@ -161,7 +187,9 @@ class Convert(CliCase):
                  (["-o", "x.glb", "--levels", "1,0"], "--levels"), (["-o", "x.glb", "--levels", "0,0"], "--levels"),
                  (["-o", "x.glb", "--levels", ""], "--levels"), (["-o", "x.glb", "--level", "0"], "--level"),
                  (["-o", "x.svg", "--level", "2"], "--level"), (["-o", "x.svg", "--level", "-1"], "--level"),
-                 (["-o", "x.svg", "--draco", "none"], "--draco"), (["-o", "x.ply", "--no-layers"], "--no-layers"),
+                 (["-o", "x.svg", "--draco", "none"], "--draco"), (["-o", "x.ply", "--no-map"], "--no-map"),
+                 (["-o", "x.glb", "--compression", "meshopt"], "--no-map"), (["-o", "x.ply", "--compression", "none"], "container"),
+                 (["-o", "x.glb", "--compression", "draco", "--draco", "none"], "--draco"),
                  (["-o", "x.ply", "--levels", "0"], "--levels"), (["-o", "x.png", "--shading", "flat"], "--shading"),
                  (["-o", "x.svg", "--shading", "smooth"], "gradient"), (["-o", "x.png", "--image", "y"], "--image"),
                  (["-o", "c.glb"], "input"), (["-o", "x.glb", "--draco", "zip"], "edgebreaker")]

@@ -234,6 +234,10 @@ def make_cases(bin_folder, folder):
         run("imgmesh-convert", "draco.glb", "-o", f"{name}.gltf", "--draco", draco)
         cases.append(Case(f"{name}.gltf", "draco-plain.glb"))
     cases.append(Case("draco-plain.glb", "draco-plain.glb"))
+    # Meshes without a pixel map; the texture's mesh reaches to the image's sides already.
+    for extension in ("glb", "gltf"):
+        run("imgmesh-convert", "masked-texture.glb", "-o", f"meshopt.{extension}", "--no-map", "--compression", "meshopt")
+        cases.append(Case(f"meshopt.{extension}", "masked-texture-plain.glb", viewers=("three",)))
     # A mesh that is bent takes its texture along.
     run("imgmesh-warp", "draco-texture-plain.glb", "--handle", "60,50:6,-3", "-o", "warped-texture.gltf")
     run("imgmesh-convert", "warped-texture.gltf", "-o", "warped-texture-plain.glb", "--draco", "none")

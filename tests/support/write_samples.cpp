@@ -79,6 +79,16 @@ void write_with_channels(const std::filesystem::path& folder, const std::string&
     write_container((folder / ("light " + name + ".glb")).string(), light, {mode, true});
 }
 
+// Meshes without pixel maps, compressed for engines without Draco.
+void write_plain(const std::filesystem::path& folder, const std::string& name, const MeshImage& image) {
+    ContainerOptions options;
+    options.layers = false;
+    options.meshopt = true;
+    write_container((folder / (name + ".glb")).string(), image, options);
+    options.texture = {red_png(), texture_coords(image)};
+    write_container((folder / (name + ".gltf")).string(), image, options);
+}
+
 // Faces of any regions, one region of a single face, and some faces left out.
 void write_regions(const std::filesystem::path& folder, const std::string& name, const MeshImage& image) {
     const BaseMesh& mesh = image.levels[0].mesh;
@@ -97,7 +107,7 @@ int main(int argc, char** argv) {
     }
     const std::filesystem::path folder = argv[1];
     std::filesystem::remove_all(folder);
-    std::filesystem::create_directories(folder / "regions");
+    for (const char* name : {"regions", "plain"}) std::filesystem::create_directories(folder / name);
     const std::pair<const char*, DracoMode> modes[] = {{"edgebreaker", DracoMode::kEdgebreaker},
                                                        {"sequential", DracoMode::kSequential},
                                                        {"none", DracoMode::kOff}};
@@ -118,7 +128,10 @@ int main(int argc, char** argv) {
                     write_container((folder / (name + extension)).string(), image, {mode, true});
                 write_picture((folder / (name + ".ppm")).string(), image);
                 write_with_channels(folder, name, image, mode);
-                if (mode == DracoMode::kOff) write_regions(folder / "regions", name, image);
+                if (mode == DracoMode::kOff) {
+                    write_regions(folder / "regions", name, image);
+                    write_plain(folder / "plain", name, image);
+                }
             }
     return 0;
 }

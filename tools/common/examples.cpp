@@ -36,7 +36,7 @@ constexpr Example kCompare[] = {
 
 constexpr Example kConvert[] = {
     {"imgmesh-convert photo.glb -o photo.gltf", "JSON with the binary files beside it"},
-    {"imgmesh-convert photo.glb -o small.glb --levels 1 --no-layers",
+    {"imgmesh-convert photo.glb -o small.glb --levels 1 --no-map",
      "The mesh of one level without its pixel map, for engines and viewers"},
     {"imgmesh-convert photo.glb -o photo.svg --shading gradient", "The mesh as a vector drawing"},
     {"imgmesh-convert sprite.glb -o sprite.json --outline-tolerance 2",

@@ -23,6 +23,7 @@ class HelpFormatter : public CLI::Formatter {
     std::string make_help(const CLI::App* app, std::string name, CLI::AppFormatMode mode) const override {
         std::string out = make_description(app) + make_usage(app, std::move(name)) + make_positionals(app);
         for (const std::string& group : app->get_groups()) {
+            if (group.empty()) continue;  // old names of options
             const std::vector<const CLI::Option*> options = app->get_options([&](const CLI::Option* option) {
                 return option->get_group() == group && option->nonpositional() &&
                        (mode == CLI::AppFormatMode::All || !advanced_.count(option));

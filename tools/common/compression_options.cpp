@@ -1,0 +1,39 @@
+#include "tools/common/compression_options.h"
+
+#include "tools/common/help.h"
+#include "tools/common/names.h"
+
+namespace imgmesh {
+
+void add_compression_options(CLI::App& app, CompressionOptions& options, const std::string& otherwise) {
+    const std::string group = "Container";
+    in_group(add_choice(app, "--draco", options.draco, draco_choices(),
+                        {"Compression of the meshes by Draco", otherwise}),
+             group);
+    CLI::Option* const method = add_choice(
+        app, "--compression", options.method,
+        Choices<Compression>{
+            {"draco", Compression::kDraco}, {"meshopt", Compression::kMeshopt}, {"none", Compression::kOff}},
+        {"Compression of the meshes: draco, meshopt for engines without Draco and only with --no-map, or "
+         "none",
+         otherwise});
+    exclude(app, in_group(method, group), {"--draco"});
+}
+
+void check_compression(const CompressionOptions& options, bool with_map) {
+    if (with_map && options.method == Compression::kMeshopt)
+        throw Error(ErrorKind::kBadArgument,
+                    "--compression meshopt: only for meshes without a pixel map, which --no-map writes");
+}
+
+void compress(ContainerOptions& container, const CompressionOptions& options, DracoMode otherwise) {
+    container.draco = options.draco.value_or(otherwise);
+    if (!options.method) return;
+    container.meshopt = options.method == Compression::kMeshopt;
+    // With Draco the mode stays that of the input, if it has one.
+    if (options.method == Compression::kDraco && otherwise == DracoMode::kOff)
+        container.draco = DracoMode::kEdgebreaker;
+    if (options.method == Compression::kOff) container.draco = DracoMode::kOff;
+}
+
+}  // namespace imgmesh
