@@ -61,7 +61,9 @@ set(IMGMESH_PUBLIC_HEADERS
   formats/container/edit_file.h
   formats/container/validate.h
   formats/export/label_files.h
+  formats/export/mesh_arrays.h
   formats/export/mesh_export.h
+  formats/export/npy.h
   formats/exr/exr_metadata.h
   formats/exr/exr_parts.h
   formats/findings/finding_codes.h

@@ -2,8 +2,8 @@
 #include <pybind11/stl.h>
 
 #include "formats/container/container.h"
+#include "formats/export/mesh_arrays.h"
 #include "libcore/base/error.h"
-#include "libcore/image/feature_space.h"
 #include "python/bind.h"
 #include "python/image_value.h"
 #include "python/mesh_value.h"
@@ -22,10 +22,6 @@ void check_level(const MeshValue& mesh, int level) {
 }
 
 namespace {
-
-bool has_color(const MeshImage& mesh_image) {
-    return !split_names(mesh_image.source.channel_names).color.empty();
-}
 
 const LevelValue& level_of(const py::object& self) {
     return *self.cast<std::shared_ptr<LevelValue>>();
@@ -50,22 +46,11 @@ py::array features(const py::object& self) {
     return view(self, {static_cast<py::ssize_t>(mesh.vertex_count()), mesh.channels}, mesh.feature.data());
 }
 
-// Vertex colours as a new array: encoded sRGB, or linear RGB of an HDR image.
 py::object colors(const py::object& self) {
     const LevelValue& value = level_of(self);
-    const MeshImage& mesh_image = value.mesh->mesh_image();
-    if (!has_color(mesh_image)) return py::none();
-    const BaseMesh& mesh = value.level().mesh;
-    const bool hdr = mesh_image.source.gamut == Gamut::kHdr;
-    std::vector<float> rgb;
-    rgb.reserve(mesh.vertex_count() * 3);
-    for (std::size_t v = 0; v < mesh.vertex_count(); ++v) {
-        const Vec3f luv(mesh.feature_of(static_cast<Id>(v)));
-        const Vec3f linear = linear_from_luv(in_gamut(luv, mesh_image.source.gamut));
-        const Vec3f color = hdr ? linear : encoded_from_linear(ColorSpace::kSrgb, linear);
-        rgb.insert(rgb.end(), color.data(), color.data() + 3);
-    }
-    const auto count = static_cast<py::ssize_t>(mesh.vertex_count());
+    std::vector<float> rgb = vertex_colors(value.level().mesh, value.mesh->mesh_image().source);
+    if (rgb.empty()) return py::none();
+    const auto count = static_cast<py::ssize_t>(rgb.size() / 3);
     return array_of(std::move(rgb), {count, 3});
 }
 

@@ -122,7 +122,7 @@ void check_options(const Options& o) {
         throw Error(ErrorKind::kBadArgument, "--compactness: means something with --superpixels only");
     if (!can_write_labels(o.output))
         throw Error(ErrorKind::kBadArgument,
-                    cat("-o ", o.output, ": expected a name that ends with .exr or .png"));
+                    cat("-o ", o.output, ": expected a name that ends with .exr, .png, .tif or .npy"));
     expect_extension("--ucm", o.ucm, ".exr");
     expect_extension("--report", o.report, ".json");
     expect_extension("--mesh", o.mesh, ".glb");
@@ -229,9 +229,9 @@ int main(int argc, char** argv) {
          .description = "Cut the images of containers into regions.",
          .input_name = "CONTAINER",
          .input_help = "Containers to read (.glb, .gltf)",
-         .output_help =
-             "Labels to write, as .exr (UINT id) or .png (16 bit), or a folder, ended by /, for NAME.png "
-             "of each container; with several containers the other outputs are folders as well",
+         .output_help = "Labels to write, as .exr (UINT id), .tif (32 bit), .npy (uint32) or .png (16 bit), "
+                        "or a folder, ended by /, for NAME.png "
+                        "of each container; with several containers the other outputs are folders as well",
          .type = [] { return "png"; },
          .sources = {"--image"}},
         {add_options,

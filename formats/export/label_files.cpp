@@ -6,18 +6,23 @@
 #include <OpenEXR/ImfOutputFile.h>
 
 #include <algorithm>
+#include <array>
 
+#include "formats/export/label_tiff.h"
+#include "formats/export/npy.h"
 #include "formats/exr/memory_output.h"
 #include "formats/files/atomic_file.h"
 #include "formats/files/extension.h"
 #include "formats/files/library_error.h"
 #include "formats/picture/image_io.h"
 #include "libcore/base/error.h"
+#include "libcore/base/index.h"
 
 namespace imgmesh {
 namespace {
 
 constexpr Id kPngNone = 65535;
+constexpr std::array kExtensions = {".exr", ".png", ".tif", ".tiff", ".npy"};
 
 template <typename Value>
 void write_layer(const std::string& path, const std::string& channel, Imf::PixelType type, int width,
@@ -40,15 +45,27 @@ void write_layer(const std::string& path, const std::string& channel, Imf::Pixel
 }  // namespace
 
 bool can_write_labels(const std::string& path) {
-    return lower_extension(path) == ".exr" || lower_extension(path) == ".png";
+    const std::string extension = lower_extension(path);
+    return std::ranges::any_of(kExtensions, [&](const char* known) { return extension == known; });
 }
 
 void write_labels(const std::string& path, int width, int height, std::span<const Id> labels,
                   bool overwrite) {
     if (!can_write_labels(path))
-        throw Error(ErrorKind::kBadArgument, cat(path, ": labels are written as .exr or .png"));
-    if (lower_extension(path) == ".exr") {
+        throw Error(ErrorKind::kBadArgument, cat(path, ": labels are written as .exr, .png, .tif or .npy"));
+    const std::string extension = lower_extension(path);
+    if (extension == ".exr") {
         write_layer(path, "id", Imf::UINT, width, height, labels, overwrite);
+        return;
+    }
+    if (extension == ".npy") {
+        write_npy(path, {"", "u4", {as_index(height), as_index(width)}, bytes_of(labels)}, overwrite);
+        return;
+    }
+    if (extension != ".png") {
+        AtomicFile file(path, overwrite);
+        file.write(tiff_from_labels(width, height, labels));
+        file.commit();
         return;
     }
     Image image = make_image(width, height, 1);
@@ -58,7 +75,7 @@ void write_labels(const std::string& path, int width, int height, std::span<cons
             throw Error(ErrorKind::kBadArgument,
                         cat(path, ": a 16-bit PNG holds labels up to ", kPngNone - 1, ", there is label ",
                             *std::ranges::max_element(labels, {}, [](Id l) { return l == kNone ? 0 : l; }),
-                            "; expected .exr"));
+                            "; expected .exr, .tif or .npy"));
         image.data[i] = static_cast<float>(std::min(labels[i], kPngNone)) / float(kPngNone);
     }
     write_image(path, image, {overwrite, SampleType::kUint16});

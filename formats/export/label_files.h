@@ -8,11 +8,12 @@
 
 namespace imgmesh {
 
-/// Whether write_labels() can write a file of this extension: .exr or .png.
+/// Whether write_labels() can write a file of this extension: .exr, .png, .tif, .tiff or .npy.
 bool can_write_labels(const std::string& path);
 
 /// Writes one label a pixel, such as LabelImage::values: width * height of them, rows from top to bottom,
-/// kNone for none. An .exr gets one UINT channel `id`; a .png is 16-bit grey, with 65535 for none.
+/// kNone for none. An .exr gets one UINT channel `id`; a .tif is of unsigned 32-bit integers, and an .npy an
+/// array of uint32, both with 4294967295 for none; a .png is 16-bit grey, with 65535 for none.
 ///
 /// The file appears whole or not at all; same bytes for the same labels. Throws Error: kBadArgument for
 /// another extension and, in a .png, for a label above 65534; kIo if the file cannot be written, or exists

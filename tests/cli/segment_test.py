@@ -5,6 +5,7 @@ import struct
 import jsonschema
 import numpy as np
 import OpenImageIO as oiio
+from PIL import Image
 
 import picture_files
 from support import ROOT, CliCase, main
@@ -62,6 +63,37 @@ class Segment(CliCase):
             self.assertEqual(channel, "id")
         self.assertEqual(labels.shape, (report["height"], report["width"]))
         return report, labels
+
+    def test_labels_for_other_programs(self):
+        """The same numbers in every kind of file; 4294967295 is none in those of 32 bits."""
+        y, x = np.mgrid[0:40, 0:60]
+        mask = np.hypot(x - 30, y - 20) < 15
+        picture_files.png(self.folder / "mask.png", mask[..., None].astype(float))
+        self.build("in.png", "--faces", "400", "--mask", "mask.png", output="masked.glb")
+        for container, inside in (("c.glb", np.ones_like(mask)), ("masked.glb", mask)):
+            labels = self.segment("--segments", "9", container=container)[1]
+            for name in ("out.npy", "out.tif", "out.tiff"):
+                self.run_ok("imgmesh-segment", container, "-o", name, "-q", "--segments", "9")
+            found = np.load(self.folder / "out.npy")
+            self.assertEqual(found.dtype, np.uint32)
+            np.testing.assert_array_equal(found, labels)
+            np.testing.assert_array_equal(found == NONE, ~inside)
+            image = Image.open(self.folder / "out.tif")  # as signed integers
+            np.testing.assert_array_equal(np.asarray(image).astype(np.uint32), labels)
+            np.testing.assert_array_equal(read_layer(self.folder / "out.tif", "uint")[1], labels)
+            self.assertEqual(image.tag_v2[42113], "4294967295")
+            self.assertEqual((self.folder / "out.tif").read_bytes(), (self.folder / "out.tiff").read_bytes())
+
+    def test_labels_of_images_of_one_pixel_and_of_many_strips(self):
+        for width, height in ((1, 1), (1, 300), (700, 210)):
+            picture_files.png(self.folder / "odd.png", picture_files.noise(width, height))
+            self.build("odd.png", "--preset", "fast", output="odd.glb")
+            for name in ("odd.npy", "odd.tif", "odd.exr"):
+                self.run_ok("imgmesh-segment", "odd.glb", "-o", name, "-q")
+            labels = np.load(self.folder / "odd.npy")
+            self.assertEqual(labels.shape, (height, width))
+            np.testing.assert_array_equal(read_layer(self.folder / "odd.exr", "uint")[1], labels)
+            np.testing.assert_array_equal(np.asarray(Image.open(self.folder / "odd.tif")).astype(np.uint32), labels)
 
     def test_the_disc_is_a_region(self):
         """One sharp disc on a soft ramp: two regions are the disc and the rest."""
@@ -217,7 +249,7 @@ class Segment(CliCase):
                             (["--flat", "f"], ["--flat"]),
                             (["--ucm", "./x.exr"], ["x.exr", "two outputs"])):
             self.assert_error("imgmesh-segment", ["c.glb", "-o", "x.exr", *args], 2, *words)
-        self.assert_error("imgmesh-segment", ["c.glb", "-o", "x.tif"], 2, "x.tif", ".exr or .png")
+        self.assert_error("imgmesh-segment", ["c.glb", "-o", "x.jpg"], 2, "x.jpg", ".exr, .png, .tif or .npy")
         self.assert_error("imgmesh-segment", ["c.glb", "-o", "x.exr", "--mesh", "c.glb"], 2, "c.glb")
         self.assert_error("imgmesh-segment", ["c.glb", "-o", "x.exr", "--ucm", "no/u.exr"], 3, "no")
         self.assert_error("imgmesh-segment", ["in.png", "-o", "x.exr"], 4, "in.png")
