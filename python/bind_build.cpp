@@ -5,6 +5,7 @@
 #include "libcore/base/range.h"
 #include "libcore/mesh/outer_edge.h"
 #include "libcore/pipeline/build_source.h"
+#include "libcore/pipeline/targets.h"
 #include "python/bind.h"
 #include "python/build_arguments.h"
 #include "python/errors.h"
@@ -29,6 +30,7 @@ struct Request {
     ReadImageOptions read;
     std::optional<TextureType> texture;
     std::optional<int> threads;
+    bool strict = false, density = false;  ///< whether density was asked for
     py::object mask, progress;
 };
 
@@ -45,20 +47,22 @@ std::optional<T> take_as(py::dict& arguments, const char* name) {
 }
 
 // What build() takes beside the parameters of the table.
-constexpr const char* kOthers[] = {
-    "preset",      "mask", "alpha", "alpha_threshold", "texture", "threads",   "progress",
-    "color_space", "part", "layer", "non_finite",      "nodata",  "max_pixels"};
+constexpr const char* kOthers[] = {"preset", "mask",       "alpha",    "alpha_threshold", "texture",
+                                   "strict", "threads",    "progress", "color_space",     "part",
+                                   "layer",  "non_finite", "nodata",   "max_pixels"};
 
 Request request_of(const py::object& source, py::dict arguments) {
     Request r;
     r.name = is_path(source) ? path_text(source) : "image";
     const bool values = arguments.contains("values") && py::bool_(arguments["values"]);
+    r.density = arguments.contains("density") && !arguments["density"].is_none();
     r.params = take_build_params(arguments);
     r.read = take_read_options(arguments);
     r.read.values = values;
     r.mask = take(arguments, "mask");
     r.progress = take(arguments, "progress");
     r.threads = take_as<int>(arguments, "threads");
+    r.strict = take_as<bool>(arguments, "strict").value_or(false);
     r.alpha.use =
         word_value("alpha", take_as<std::string>(arguments, "alpha"), alpha_uses()).value_or(AlphaUse::kAuto);
     r.alpha.threshold = take_as<double>(arguments, "alpha_threshold");
@@ -126,6 +130,8 @@ MeshPointer build(const py::object& source, const py::kwargs& given) {
             });
         BuildResult result =
             in_file(r.name, [&] { return build_mesh_image(image, plan.params, progress, std::move(mask)); });
+        mesh->missed = missed_targets(plan.params, result, r.density);
+        tell_missed(r.name, mesh->missed, r.strict, warnings);
         result.mesh_image.generator = kGenerator;
         const MaskOrigin origin = mask_is_data ? MaskOrigin::kNoData
                                   : has_mask   ? MaskOrigin::kPicture
@@ -148,7 +154,7 @@ MeshPointer build(const py::object& source, const py::kwargs& given) {
 
 constexpr char kBuild[] =
     R"(build(image, *, preset=None, mask=None, alpha='auto', alpha_threshold=None, texture=None,
-      progress=None, threads=None, **parameters) -> Mesh
+      strict=False, progress=None, threads=None, **parameters) -> Mesh
 
 Builds a mesh with a pixel map from an image, as imgmesh-build does: the same parameters give the same container.
 
@@ -161,6 +167,7 @@ alpha            keep it as a channel of the mesh, cut the image where it is bel
                  keeps what is soft and cuts the rest
 alpha_threshold  the least alpha, or brightness of a mask, of the pixels that are meshed, above 0 to 1
 texture          png or jpeg: put the image on the meshes, for engines and viewers
+strict           a number that cannot be reached, as of faces, is an UnsupportedError instead of a warning
 progress         called with the fraction done, 0 to 1, and the name of the stage, a few times a second
 threads          the most threads; the result is the same for any number
 

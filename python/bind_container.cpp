@@ -118,7 +118,7 @@ py::object report(const MeshValue& mesh) {
     }
     return py::dict(
         py::arg("pixels") = r.pixels, py::arg("clipped_samples") = r.clipped_samples,
-        py::arg("collapses") = r.collapses, py::arg("levels") = levels,
+        py::arg("collapses") = r.collapses, py::arg("levels") = levels, py::arg("missed") = mesh.missed,
         py::arg("seconds") = py::dict(py::arg("collapse") = r.seconds.collapse,
                                       py::arg("refine") = r.seconds.refine, py::arg("map") = r.seconds.map));
 }

@@ -34,6 +34,7 @@ using SegmentationPointer = std::shared_ptr<SegmentationValue>;
 struct Request {
     SegmentParams params;
     int level = 0;
+    bool strict = false;
 };
 
 Request request_of(const std::optional<double>& threshold, const std::optional<std::int64_t>& segments,
@@ -77,6 +78,7 @@ SegmentationPointer run(const MeshValue& mesh, const Request& r, const py::objec
         value->facts = region_facts(value->labels(), value->picture);
         return true;
     });
+    if (!value->result.missed.empty()) tell_missed("segment", {value->result.missed}, r.strict, warnings);
     warn(warnings);
     return value;
 }
@@ -131,7 +133,7 @@ void write(const SegmentationValue& value, const py::object& path, bool overwrit
 
 constexpr char kSegment[] =
     R"(segment(*, threshold=None, segments=None, superpixels=None, min_size=1, compactness=None, distance=None, level=0,
-        image=None, progress=None, threads=None) -> Segmentation
+        image=None, strict=False, progress=None, threads=None) -> Segmentation
 
 Cuts the image of a level into regions, as imgmesh-segment does. The default is threshold=5.
 
@@ -143,9 +145,10 @@ compactness  of superpixels; higher is rounder (default 10)
 distance     contour (default), or paper: by mean colours
 level        of the pyramid, 0 the finest
 image        the image itself, to measure on instead of the reconstruction: a path, an Image or an array
+strict       a number of regions that cannot be had is an UnsupportedError instead of a warning
 progress     called with the fraction done and the name of the stage
 
-Raises ArgumentError for a parameter out of range, and for more regions than there are patches.)";
+Raises ArgumentError for a parameter out of range.)";
 
 }  // namespace
 
@@ -162,6 +165,9 @@ void bind_segment(py::module_& module) {
             "regions", regions,
             "For each region a dict: pixels, luv (mean L*u*v*), box (left, top, right, bottom, "
             "inclusive), neighbors (region -> pixels of common border).")
+        .def_property_readonly(
+            "missed", [](const SegmentationValue& v) { return v.result.missed; },
+            "Why there are not as many regions as wanted; empty if there are.")
         .def("flat", flat, "flat() -> Image\n\nDraws each region in its mean colour.")
         .def("outlines", outlines, "outlines() -> Image\n\nDraws the image with the regions' borders.")
         .def("contours", contours,
@@ -181,16 +187,17 @@ void bind_segment(py::module_& module) {
         [](const MeshValue& self, const std::optional<double>& threshold,
            const std::optional<std::int64_t>& segments, const std::optional<std::int64_t>& superpixels,
            std::int64_t min_size, const std::optional<double>& compactness,
-           const std::optional<std::string>& distance, int level, const py::object& image,
+           const std::optional<std::string>& distance, int level, const py::object& image, bool strict,
            const py::object& progress, const std::optional<int>& threads) {
-            return run(self,
-                       request_of(threshold, segments, superpixels, min_size, compactness, distance, level),
-                       image, progress, threads);
+            Request r = request_of(threshold, segments, superpixels, min_size, compactness, distance, level);
+            r.strict = strict;
+            return run(self, r, image, progress, threads);
         },
         py::kw_only(), py::arg("threshold") = py::none(), py::arg("segments") = py::none(),
         py::arg("superpixels") = py::none(), py::arg("min_size") = 1, py::arg("compactness") = py::none(),
         py::arg("distance") = py::none(), py::arg("level") = 0, py::arg("image") = py::none(),
-        py::arg("progress") = py::none(), py::arg("threads") = py::none(), kSegment);
+        py::arg("strict") = false, py::arg("progress") = py::none(), py::arg("threads") = py::none(),
+        kSegment);
 }
 
 }  // namespace imgmesh::python

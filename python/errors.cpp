@@ -50,6 +50,14 @@ void warn(const std::vector<std::string>& texts) {
         if (PyErr_WarnEx(class_of("Warning"), text.c_str(), kCaller) != 0) throw py::error_already_set();
 }
 
+void tell_missed(const std::string& name, const std::vector<std::string>& missed, bool strict,
+                 std::vector<std::string>& warnings) {
+    for (const std::string& line : missed) {
+        if (strict) throw Error(ErrorKind::kUnsupported, cat(name, ": ", line));
+        warnings.push_back(cat(name, ": ", line));
+    }
+}
+
 void bind_errors(py::module_&) {
     py::register_local_exception_translator(translate);
 }

@@ -3,6 +3,8 @@
 
 #include <memory>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "formats/container/container.h"
 #include "libcore/pipeline/build.h"
@@ -13,6 +15,7 @@ namespace imgmesh::python {
 struct MeshValue {
     Container container;
     std::optional<BuildReport> report = {};  ///< of a mesh that was built here
+    std::vector<std::string> missed = {};    ///< by that build, as missed_targets() tells it
 
     const MeshImage& mesh_image() const { return container.mesh_image; }
 };

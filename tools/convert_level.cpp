@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "formats/export/godot.h"
+#include "formats/export/mesh_arrays.h"
 #include "formats/export/mesh_export.h"
 #include "formats/export/obj.h"
 #include "formats/export/outlines.h"
@@ -133,7 +134,7 @@ const Choices<ExportKind>& export_kinds() {
 
 bool is_level_file(const std::string& output) {
     const std::string extension = lower_extension(output);
-    for (const char* name : {".svg", ".ply", ".obj", ".json", ".tscn", ".png"})
+    for (const char* name : {".svg", ".ply", ".obj", ".json", ".tscn", ".png", ".npz"})
         if (extension == name) return true;
     return false;
 }
@@ -174,6 +175,10 @@ void export_level(const LevelOptions& o, const MeshImage& m, int index, const Te
     const std::optional<ExportKind> kind = export_kind(o);
     if (extension == ".png") {
         write_image(o.output, id_image(level, m.source.has_mask), {context.overwrite, SampleType::kUint8});
+        return;
+    }
+    if (extension == ".npz") {
+        write_mesh_arrays(o.output, m, static_cast<std::size_t>(index), context.overwrite);
         return;
     }
     if (texture) {

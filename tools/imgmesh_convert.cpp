@@ -34,7 +34,7 @@ using namespace imgmesh;
 namespace {
 
 // Reading and writing take this, beside the container itself [bytes a pixel]; measured as in docs/limits.md.
-constexpr double kTextureBytes = 46, kImageBytes = 34, kContainerBytes = 24, kTextBytes = 8;
+constexpr double kTextureBytes = 46, kImageBytes = 34, kContainerBytes = 24, kTextBytes = 8, kArrayBytes = 20;
 
 // More than a container can have; its own number is checked when it has been read.
 constexpr CountRange kLevelRange = {0, 1000};
@@ -127,9 +127,9 @@ void check_options(const Options& o) {
     };
     const bool container = is_container(o.output), obj = extension == ".obj";
     if (!container && !is_level_file(o.output))
-        throw Error(
-            ErrorKind::kBadArgument,
-            cat("-o ", o.output, ": expected a name in .glb, .gltf, .svg, .ply, .obj, .json, .tscn or .png"));
+        throw Error(ErrorKind::kBadArgument,
+                    cat("-o ", o.output,
+                        ": expected a name in .glb, .gltf, .svg, .ply, .obj, .json, .tscn, .png or .npz"));
     const std::optional<ExportKind> kind = export_kind(level_options(o));
     const bool outline = kind == ExportKind::kOutline, sprite = kind && !outline;
     only_for(o.compression.draco.has_value(), "--draco", container, "container");
@@ -162,7 +162,8 @@ void check_options(const Options& o) {
 // Returns what making the output takes.
 double bytes_of_pixel(const Options& o) {
     if (is_container(o.output)) return o.texture.wanted.value_or(false) ? kTextureBytes : kContainerBytes;
-    return lower_extension(o.output) == ".png" ? kImageBytes : kTextBytes;
+    const std::string extension = lower_extension(o.output);
+    return extension == ".png" ? kImageBytes : extension == ".npz" ? kArrayBytes : kTextBytes;
 }
 
 void keep_levels(const Options& o, MeshImage& m, Texture& texture) {
@@ -310,8 +311,9 @@ int main(int argc, char** argv) {
          .input_help = "Containers to read (.glb, .gltf)",
          .output_help =
              "Container to write (.glb, .gltf), or a level of it as .svg, .ply, .obj, .json (a sprite's "
-             "mesh), .tscn (a scene for Godot) or .png (24-bit face ids, red the low byte); or a folder, "
-             "ended by /, for NAME.glb of each container",
+             "mesh), .tscn (a scene for Godot), .npz (arrays for numpy) or .png (24-bit face ids, red the "
+             "low "
+             "byte); or a folder, ended by /, for NAME.glb of each container",
          .type = [] { return "glb"; },
          .sources = {"--image"}},
         {add_options, check_options, convert_one, print, line}, options, argc, argv);

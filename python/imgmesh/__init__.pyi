@@ -97,6 +97,7 @@ class _Report(TypedDict):
     clipped_samples: int
     collapses: int
     levels: list[_LevelReport]
+    missed: list[str]
     seconds: dict[str, float]
 
 class _Facts(TypedDict):
@@ -161,6 +162,7 @@ class Mesh(_Arrays):
         distance: Literal["contour", "paper"] | None = None,
         level: int = 0,
         image: _ImageLike | None = None,
+        strict: bool = False,
         progress: _Progress | None = None,
         threads: int | None = None,
     ) -> Segmentation: ...
@@ -198,6 +200,8 @@ class Segmentation:
     def count(self) -> int: ...
     @property
     def regions(self) -> list[_Region]: ...
+    @property
+    def missed(self) -> str: ...
     def flat(self) -> Image: ...
     def outlines(self) -> Image: ...
     def contours(self) -> NDArray[np.float32]: ...
@@ -245,6 +249,7 @@ def build(
     alpha: Literal["auto", "keep", "cut", "ignore"] | None = "auto",
     alpha_threshold: float | None = None,
     texture: Literal["png", "jpeg"] | None = None,
+    strict: bool | None = False,
     progress: _Progress | None = None,
     threads: int | None = None,
     color_space: _ColorSpace | None = None,

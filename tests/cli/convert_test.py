@@ -1,8 +1,10 @@
 """imgmesh-convert: the same image in every file variant, and exports that other programs read."""
 import json
 import xml.etree.ElementTree
+import zipfile
 
 import numpy as np
+from PIL import Image
 
 import picture_files
 from support import CliCase, main
@@ -197,6 +199,55 @@ class Convert(CliCase):
             self.assert_error("imgmesh-convert", ["c.glb", *args], 2, word)
         self.assert_error("imgmesh-convert", ["c.glb", "-o", "x.glb", "--max-pixels", "10"], 4, "limits.pixels")
         self.assert_error("imgmesh-convert", ["in.png", "-o", "x.glb"], 4, "in.png")
+
+    def test_arrays_for_numpy(self):
+        """With the arrays alone the reconstruction is the tool's, in L*u*v*; Python's zipfile finds every sum right."""
+        picture_files.png(self.folder / "soft.png", np.concatenate([picture_files.ramp(40, 20), np.linspace(
+            0, 1, 800).reshape(20, 40, 1)], axis=-1))
+        self.build("soft.png", "--density", "20", "--visits", output="soft.glb")
+        for container, level, names in (("c.glb", 0, b"R G B"), ("c.glb", 1, b"R G B"), ("soft.glb", 0, b"R G B A")):
+            self.run_ok("imgmesh-convert", container, "-o", "a.npz", "-q", "--level", level)
+            with zipfile.ZipFile(self.folder / "a.npz") as file:
+                self.assertIsNone(file.testzip())
+            arrays = np.load(self.folder / "a.npz")
+            channels = len(names.split())
+            facts = self.report("imgmesh-info", container)
+            height, width = facts["height"], facts["width"]
+            v, f = facts["levels"][level]["vertices"], facts["levels"][level]["faces"]
+            expected = {"vertices": ("f4", (v, 2)), "faces": ("u4", (f, 3)), "features": ("f4", (v, channels)),
+                        "colors": ("f4", (v, 3)), "face_ids": ("u4", (height, width)),
+                        "barycentrics": ("f4", (height, width, 2)), "channel_names": ("S1", (channels,))}
+            if container == "soft.glb":
+                expected["visits"] = ("u4", (height, width))
+            self.assertEqual({n: (arrays[n].dtype.str.lstrip("<|"), arrays[n].shape) for n in arrays.files}, expected)
+            self.assertEqual(b" ".join(arrays["channel_names"]), names)
+            inside = arrays["face_ids"] != 0xFFFFFFFF
+            faces = np.where(inside, arrays["face_ids"], 0)
+            corners = arrays["features"][arrays["faces"][faces]]
+            u, w = arrays["barycentrics"][..., :1], arrays["barycentrics"][..., 1:]
+            drawn = (1 - u - w) * corners[..., 0, :] + u * corners[..., 1, :] + w * corners[..., 2, :]
+            self.run_ok("imgmesh-reconstruct", container, "-o", "drawn.png", "-q", "--level", level)
+            rgb = np.asarray(Image.open(self.folder / "drawn.png")) / 255  # OpenImageIO would multiply alpha in
+            linear = np.where(rgb[..., :3] <= 0.04045, rgb[..., :3] / 12.92, ((rgb[..., :3] + 0.055) / 1.055) ** 2.4)
+            lightness = 116 * np.cbrt(linear @ [0.2126, 0.7152, 0.0722]) - 16
+            self.assertLess(np.abs(lightness - drawn[..., 0])[inside].max(), 1)
+            if channels == 4:
+                self.assertLess(np.abs(rgb[..., 3] - drawn[..., 3])[inside].max(), 0.003)
+                self.assertEqual(rgb[~inside][:, 3].sum(), 0)
+
+    def test_arrays_of_odd_containers(self):
+        picture_files.png(self.folder / "one.png", picture_files.ramp(1, 1))
+        self.build("one.png", output="one.glb")
+        self.run_ok("imgmesh-convert", "one.glb", "-o", "one.npz", "-q")
+        self.assertEqual(np.load(self.folder / "one.npz")["face_ids"].shape, (1, 1))
+        picture_files.write_float(self.folder / "heights.exr", picture_files.noise(9, 7, 1), names=["height"])
+        self.build("heights.exr", "--values", output="heights.glb")
+        self.run_ok("imgmesh-convert", "heights.glb", "-o", "heights.npz", "-q")
+        arrays = np.load(self.folder / "heights.npz")
+        self.assertNotIn("colors", arrays.files)
+        self.assertEqual((arrays["channel_names"].tolist(), arrays["features"].shape[1]), ([b"height"], 1))
+        self.assert_error("imgmesh-convert", ["c.glb", "-o", "x.npz", "--draco", "none"], 2, "--draco", "x.npz")
+        self.assert_error("imgmesh-convert", ["c.glb", "-o", "x.npz", "--level", "7"], 2, "--level 7")
 
 
 if __name__ == "__main__":

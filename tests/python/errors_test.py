@@ -54,7 +54,8 @@ class Errors(unittest.TestCase):
         bad = picture_files.ramp(24, 16)
         bad[3, 5, 1] = np.nan
         self.check(imgmesh.BadFileError, ("channel G of pixel (5, 3)", "not a finite number"), imgmesh.build, bad)
-        self.check(imgmesh.BadFileError, ("channel R of pixel (0, 0)",), imgmesh.build, np.full((4, 4, 3), 1e300))
+        with np.errstate(over="ignore"):
+            self.check(imgmesh.BadFileError, ("channel R of pixel (0, 0)",), imgmesh.build, np.full((4, 4, 3), 1e300))
         self.check(imgmesh.BadFileError, ("the mask is 3x2", "24x16"), imgmesh.build, IMAGE, mask=np.ones((2, 3), bool))
         self.check(imgmesh.UnsupportedError, ("mask: no pixel is inside",), imgmesh.build, IMAGE,
                    mask=np.zeros((16, 24), bool))
@@ -91,7 +92,7 @@ class Errors(unittest.TestCase):
         self.check(imgmesh.ArgumentError, (), mesh.reconstruct, scale=2)
         self.check(imgmesh.UnsupportedError, ("visit",), mesh.reconstruct, mode="visits")
         self.check(imgmesh.ArgumentError, ("threshold and segments",), mesh.segment, threshold=3, segments=2)
-        self.check(imgmesh.ArgumentError, (), mesh.segment, segments=10 ** 6)
+        self.check(imgmesh.UnsupportedError, ("1000000 regions were wanted",), mesh.segment, segments=10 ** 6, strict=True)
         self.check(imgmesh.BadFileError, ("24x16",), mesh.warp, IMAGE[:8], [])
         self.check(imgmesh.BadFileError, ("edits: /edits/0",), mesh.warp, IMAGE, [{"handels": []}])
         self.check(imgmesh.ArgumentError, ("size and retarget",), mesh.warp, IMAGE, size=(3, 3), retarget=(3, 3))
@@ -103,6 +104,16 @@ class Errors(unittest.TestCase):
             warnings.simplefilter("error", imgmesh.Warning)
             with self.assertRaises(imgmesh.Warning):
                 imgmesh.build(soft, refine=2)
+
+    def test_what_is_not_reached(self):
+        with self.assertWarnsRegex(imgmesh.Warning, "image: 5000 faces were wanted"):
+            mesh = imgmesh.build(IMAGE, faces=5000)
+        self.assertEqual(len(mesh.report["missed"]), 1)
+        self.assertEqual(imgmesh.build(IMAGE).report["missed"], [])
+        self.check(imgmesh.UnsupportedError, ("5000 faces were wanted",), imgmesh.build, IMAGE, faces=5000, strict=True)
+        with self.assertWarnsRegex(imgmesh.Warning, "9999 regions were wanted"):
+            self.assertIn("9999 regions", mesh.segment(segments=9999).missed)
+        self.assertEqual(mesh.segment().missed, "")
 
     def test_the_kinds(self):
         for kind, base in ((imgmesh.ArgumentError, ValueError), (imgmesh.FileError, OSError),
