@@ -1,13 +1,13 @@
 // imgmesh-convert: a container as another file variant or with another compression, with fewer levels, or in
 // another format.
 #include <algorithm>
-#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <ostream>
 
 #include "formats/container/container.h"
 #include "formats/files/extension.h"
+#include "formats/files/stream_file.h"
 #include "formats/picture/image_io.h"
 #include "libcore/image/feature_space.h"
 #include "libcore/mesh/outer_edge.h"
@@ -28,7 +28,6 @@
 #include "tools/common/tool_main.h"
 #include "tools/convert_level.h"
 
-namespace fs = std::filesystem;
 using namespace imgmesh;
 
 namespace {
@@ -261,6 +260,9 @@ Report convert_one(const Options& given, Context& context) {
         }
         const Texture* texture = options.texture.picture.empty() ? nullptr : &options.texture;
         files = level_files(exported, texture);
+        if (files.size() > 1 && stream_descriptor(o.output) >= 0)
+            throw Error(ErrorKind::kBadArgument,
+                        "-o -: an .obj with a texture needs files beside it; --no-texture leaves that out");
         for (const std::string& file : files) check_output(file, context.overwrite);
         check_distinct(container.facts.files, files);
         if (!o.image.empty()) check_distinct({o.image}, files);
@@ -276,7 +278,7 @@ Report convert_one(const Options& given, Context& context) {
                      {"faces", first.mesh.faces.size()},
                      {"layers", is_container(o.output) && options.layers},
                      {"texture", !options.texture.picture.empty()},
-                     {"bytes", fs::file_size(o.output)}};
+                     {"bytes", output_bytes(o.output)}};
     if (files.size() > 1) report["outputs"] = files;
     return report;
 }

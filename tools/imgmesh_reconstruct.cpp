@@ -1,6 +1,5 @@
 // imgmesh-reconstruct: a container in, an image out.
 #include <cmath>
-#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <ostream>
@@ -158,7 +157,7 @@ Report draw_one(const Options& o, Context& context) {
             {"height", height},
             {"vertices", level.mesh.vertex_count()},
             {"faces", level.mesh.faces.size()},
-            {"bytes", std::filesystem::file_size(o.output)}};
+            {"bytes", output_bytes(o.output)}};
 }
 
 void print(const Report& report, std::ostream& out) {

@@ -2,7 +2,6 @@
 // edited container.
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <ostream>
@@ -219,7 +218,7 @@ Report warp_one(const Options& o, Context& context) {
     together.commit();
     if (!o.output.empty()) {
         report["output"] = o.output;
-        report["bytes"] = std::filesystem::file_size(o.output);
+        report["bytes"] = output_bytes(o.output);
     }
     return report;
 }

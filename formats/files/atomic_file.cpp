@@ -16,6 +16,7 @@
 #include <utility>
 
 #include "formats/files/stale_temporaries.h"
+#include "formats/files/stream_file.h"
 #include "libcore/base/error.h"
 
 namespace imgmesh {
@@ -136,15 +137,21 @@ int create_temporary(const std::string& target, std::string& name) {
 // ---- Files -----------------------------------------------------------------------------------------------
 class AtomicFile::Temporary {
   public:
-    Temporary(std::string path, bool overwrite)
-        : path_(std::move(path)), target_(resolve_target(path_, overwrite)), overwrite_(overwrite) {
+    Temporary(std::string path, bool overwrite) : path_(std::move(path)), overwrite_(overwrite) {
+        // A stream's file has no name to be given: it is written as it is.
+        if (const int stream = stream_descriptor(path_); stream >= 0) {
+            claim_ = ::fcntl(stream, F_DUPFD_CLOEXEC, 0);
+            if (claim_ < 0) fail(path_, "cannot write", errno);
+            return;
+        }
+        target_ = resolve_target(path_, overwrite);
         remove_stale_temporaries(std::filesystem::path(target_).parent_path().string());
         claim_ = create_temporary(target_, name_);
         if (claim_ < 0) fail(path_, "cannot write", errno);
         if (overwrite_) share_as(target_);
     }
     ~Temporary() {
-        if (!kept_) {
+        if (!kept_ && !is_stream()) {
             ::unlink(name_.c_str());
             forget_temporary(name_.c_str());
         }
@@ -165,6 +172,8 @@ class AtomicFile::Temporary {
     void keep() { kept_ = true; }
 
   private:
+    bool is_stream() const { return name_.empty(); }
+
     std::string path_;    // as given: for messages
     std::string target_;  // of the rename: `path_` with symbolic links followed
     std::string name_;
@@ -174,6 +183,7 @@ class AtomicFile::Temporary {
 };
 
 void AtomicFile::Temporary::share_as(const std::string& path) {
+    if (is_stream()) return;
     struct stat info = {}, own = {};
     if (::stat(path.c_str(), &info) != 0 || ::fstat(claim_, &own) != 0) return;
     mode_t mode = info.st_mode & 0777;
@@ -199,6 +209,7 @@ void AtomicFile::Temporary::write_parts(std::span<const std::span<const std::uin
 }
 
 void AtomicFile::Temporary::check_rename() const {
+    if (is_stream()) return;
     if (!is_named(claim_, name_))
         throw Error(ErrorKind::kIo, cat(path_, ": cannot write: somebody has exchanged the file ", name_));
     struct stat there = {};
@@ -208,6 +219,7 @@ void AtomicFile::Temporary::check_rename() const {
 }
 
 void AtomicFile::Temporary::rename() {
+    if (is_stream()) return;
     check_rename();
     int status = 0;
     if (overwrite_) {
@@ -335,7 +347,7 @@ std::vector<std::uint8_t> read_file(const std::string& path, std::uint64_t max_b
     };
     // Opening a named pipe waits for its writer, unless it is not to block.
     const int wait = kind == FileKind::kRegular ? O_NONBLOCK : 0;
-    const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOCTTY | wait));
+    const Descriptor file(::open(system_path(path).c_str(), O_RDONLY | O_CLOEXEC | O_NOCTTY | wait));
     struct stat info = {};
     if (file.fd < 0 || ::fstat(file.fd, &info) != 0) fail(path, "cannot read", errno);
     if (S_ISDIR(info.st_mode)) throw Error(ErrorKind::kIo, cat(path, ": cannot read: it is a folder"));

@@ -10,6 +10,7 @@
 #include <memory>
 #include <vector>
 
+#include "formats/files/stream_file.h"
 #include "libcore/base/error.h"
 
 namespace imgmesh {
@@ -48,7 +49,8 @@ std::string sha256_hex(std::initializer_list<std::span<const std::uint8_t>> piec
     return hash.hex();
 }
 
-std::string file_sha256_hex(const std::string& path) {
+std::string file_sha256_hex(const std::string& name) {
+    const std::string path = system_path(name);
     // A pipe that is only opened and closed loses what its writer has begun to write.
     struct stat info = {};
     if (::stat(path.c_str(), &info) != 0 || !S_ISREG(info.st_mode)) return "";

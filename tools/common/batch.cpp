@@ -152,8 +152,11 @@ void Batch::work(std::size_t index) {
 void Batch::announce(const FileResult& file) {
     const Job& job = jobs_[static_cast<std::size_t>(&file - files_.data())];
     bar_.above([&] {
-        for (const std::string& warning : file.warnings) print_warning(tool_.name, warning);
-        for (const Failure& failure : file.failures) print_error(tool_.name, failure.message);
+        // JSON on standard error has them already, and has no other lines among its own.
+        if (options_.stream != STDERR_FILENO || !(options_.json || options_.json_lines)) {
+            for (const std::string& warning : file.warnings) print_warning(tool_.name, warning);
+            for (const Failure& failure : file.failures) print_error(tool_.name, failure.message);
+        }
         if (options_.json_lines)
             write(json_text(with_head(tool_, options_.generator, file_report(job, file, options_.parameters)),
                             true));
@@ -167,7 +170,7 @@ void Batch::announce(const FileResult& file) {
 void Batch::write(const std::string& text) {
     if (lost_output_) return;
     try {
-        write_stream(STDOUT_FILENO, text);
+        write_stream(options_.stream, text);
     } catch (const Error& error) {
         lost_output_ = error;
         if (tool_.output_help.empty()) stopped_ = true;

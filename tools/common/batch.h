@@ -18,6 +18,7 @@ struct BatchOptions {
     bool json = false;        ///< one object at the end
     bool json_lines = false;  ///< one object a line for each file as it finishes, then the summary
     bool quiet = false;
+    int stream = 1;  ///< where reports go: standard output, or standard error if that has an output
     bool overwrite = true;
     std::uint64_t max_memory = 0;
     Report parameters;                      ///< what the command line says of the results, for the reports

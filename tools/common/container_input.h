@@ -7,7 +7,7 @@
 
 namespace imgmesh {
 
-/// Returns whether a file name is that of a container: .glb or .gltf.
+/// Returns whether a file name is that of a container: .glb or .gltf. Of standard input, the content decides.
 bool is_container(const std::string& path);
 
 /// Throws Error(kBadArgument) if `option` names a level that the container `path` does not have.

@@ -5,7 +5,9 @@
 #include <algorithm>
 
 #include "formats/files/sha256.h"
+#include "formats/files/stream_file.h"
 #include "tools/common/jobs.h"
+#include "tools/common/pipes.h"
 
 namespace imgmesh {
 namespace {
@@ -28,7 +30,7 @@ const char* status_name(FileStatus status) {
 
 FileState::FileState(const std::string& path) {
     struct stat info = {};
-    if (::stat(path.c_str(), &info) != 0) return;
+    if (::stat(system_path(path).c_str(), &info) != 0) return;
     facts_ = {info.st_dev, info.st_ino, static_cast<std::uint64_t>(info.st_size),
               static_cast<std::uint64_t>(info.st_mtim.tv_sec),
               static_cast<std::uint64_t>(info.st_mtim.tv_nsec)};
@@ -47,7 +49,7 @@ Report file_report(const Job& job, const FileResult& file, const Report& paramet
         report["input"] = job.input;
     else
         report["inputs"] = {{{"input", job.reference}}, {{"input", job.input}}};
-    if (!job.output.empty()) report["output"] = job.output;
+    if (!job.output.empty()) report["output"] = shown_name(job.output);
     report["status"] = status_name(file.status);
     if (!file.report.is_null()) report.update(file.report);
     const auto add_hash = [&](Report& input) {
@@ -60,6 +62,7 @@ Report file_report(const Job& job, const FileResult& file, const Report& paramet
     } else {
         add_hash(report);
     }
+    if (report.contains("output")) report["output"] = shown_name(report["output"].get<std::string>());
     Report all = parameters;
     if (report.contains("parameters")) all.update(report["parameters"]);
     report["parameters"] = std::move(all);

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "formats/files/atomic_file.h"
+#include "formats/files/stream_file.h"
 #include "libcore/base/error.h"
 
 namespace fs = std::filesystem;
@@ -16,6 +17,7 @@ namespace fs = std::filesystem;
 namespace imgmesh {
 
 void check_output(const std::string& path, bool overwrite) {
+    if (stream_descriptor(path) >= 0) return;
     std::error_code error;
     const fs::path parent = fs::path(path).parent_path();
     if (!parent.empty() && !fs::is_directory(parent, error))
@@ -53,6 +55,10 @@ void write_text(const std::string& path, const std::string& text, bool overwrite
     AtomicFile file(path, overwrite);
     file.write({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
     file.commit();
+}
+
+std::uint64_t output_bytes(const std::string& path) {
+    return fs::file_size(system_path(path));
 }
 
 void make_folder(const std::string& path) {

@@ -1,6 +1,7 @@
 // Checks of output files, before any work.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,9 @@ void check_separate(const std::vector<std::string>& outputs);
 
 /// Writes `text` as a whole file, atomically.
 void write_text(const std::string& path, const std::string& text, bool overwrite);
+
+/// Returns the size of a file that was written.
+std::uint64_t output_bytes(const std::string& path);
 
 /// Returns `path` as a folder, which is made if it does not exist. Throws Error(kIo) if that fails.
 void make_folder(const std::string& path);

@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cerrno>
 #include <csignal>
 #include <filesystem>
@@ -23,6 +24,7 @@
 #include "tools/common/memory.h"
 #include "tools/common/options.h"
 #include "tools/common/parameters.h"
+#include "tools/common/pipes.h"
 #include "tools/common/usage_error.h"
 
 namespace imgmesh {
@@ -111,7 +113,8 @@ void add_files(CLI::App& app, const Tool& tool, FileOptions& files, CommonOption
     if (tool.output_required) require(output);
     advanced(app, add_value(app, "--format", "NAME",
                             [&files](const std::string& text) { files.type = file_type("--format", text); },
-                            {"Kind of the files in a folder of -o, as in " + tool.type()}));
+                            {"Kind of the files in a folder of -o, or on standard output (-o -), as in " +
+                             tool.type()}));
     add_flag(
         app, "--skip-existing", [&files] { files.skip_existing = true; },
         "Leave outputs alone that were made from the same content by the same options and version");
@@ -120,16 +123,36 @@ void add_files(CLI::App& app, const Tool& tool, FileOptions& files, CommonOption
                       "Make them again, whatever --skip-existing says"));
 }
 
-ExitCode run_parsed(const Tool& tool, const CLI::App& app, const FileOptions& files,
-                    const CommonOptions& common) {
+// What standard input may have [bytes]: not more than a container may have, nor than memory.
+std::uint64_t most_input(const BatchOptions& options) {
+    const Report& given = options.parameters;
+    if (!given.contains("max-bytes")) return options.max_memory;
+    return std::min(options.max_memory, given["max-bytes"].get<std::uint64_t>());
+}
+
+// `given`, with its output to standard output.
+Tool to_pipe(const Tool& given, const Pipes& pipes) {
+    Tool tool = given;
+    tool.run = [&](const Job& job, Context& context) {
+        Report report = given.run(job, context);
+        if (context.failures.empty()) pipes.deliver();
+        return report;
+    };
+    return tool;
+}
+
+ExitCode run_parsed(const Tool& given, const CLI::App& app, FileOptions files, const CommonOptions& common) {
     BatchOptions options;
-    options.generator = tool.name + " " IMGMESH_VERSION;
+    options.generator = given.name + " " IMGMESH_VERSION;
     options.json = common.json;
     options.json_lines = common.json_lines;
     options.quiet = common.quiet;
     options.overwrite = common.overwrite;
     options.max_memory = common.max_memory.value_or(usual_max_memory());
-    options.parameters = parameters_report(tool, app);
+    options.parameters = parameters_report(given, app);
+    const Pipes pipes(given, files, most_input(options));
+    const Tool tool = pipes.has_output() ? to_pipe(given, pipes) : given;
+    if (pipes.has_output()) options.stream = STDERR_FILENO;
     const std::vector<Job> jobs = plan_jobs(tool, files);
     make_folders(tool, files);
     // A batch that was begun without --skip-existing goes on with it as well.
