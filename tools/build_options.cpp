@@ -105,10 +105,12 @@ void add_build_options(CLI::App& app, BuildOptions& o) {
         choices.emplace_back(preset.name, preset.params);
         help += cat("; ", preset.name, " for ", preset.help);
     }
-    add_value(
-        app, "--preset", "NAME",
-        [&o, choices](const std::string& text) { o.preset = parse_choice("--preset", text, choices); },
-        help + ": " + choice_names(choices));
+    in_group(
+        add_value(
+            app, "--preset", "NAME",
+            [&o, choices](const std::string& text) { o.preset = parse_choice("--preset", text, choices); },
+            help + ": " + choice_names(choices)),
+        "Preset");
 
     const std::string image = "Image";
     in_group(add_file(app, "--mask", o.mask,

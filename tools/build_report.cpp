@@ -79,7 +79,7 @@ void print_build(const Report& image, std::ostream& out) {
                                         format_number(level["gouraud_rms"].get<double>())));
     }
     table.add("edge ratio", number("mean_edge_ratio"));
-    table.add("flipped", cat(image["flipped_pixel_triangles"], " pixel triangles"));
+    table.add("folds", cat(image["flipped_pixel_triangles"], " pixel triangles"));
     table.add("file", cat(format_bytes(image["bytes"].get<std::uint64_t>()), ", ", number("bytes_per_pixel"),
                           " bytes per pixel"));
     table.add("time", cat(number("seconds"), " s"));

@@ -67,7 +67,7 @@ void print_quality(const Report& input, std::ostream& out) {
     for (const auto& m : kMeshMeasures) print_distribution_row(m.title, input["mesh"][m.key], out);
     for (const auto& m : kMapMeasures) print_distribution_row(m.title, input["map"][m.key], out);
     TextTable table;
-    table.add("flipped", cat(input["map"]["flipped_triangles"], " pixel triangles"));
+    table.add("folds", cat(input["map"]["flipped_triangles"], " pixel triangles"));
     table.add("empty", cat(input["map"]["empty_patches"], " faces without pixels"));
     table.print(out, 4);
 }

@@ -12,6 +12,7 @@
 #include "tools/build_report.h"
 #include "tools/common/container_input.h"
 #include "tools/common/in_file.h"
+#include "tools/common/other_tool.h"
 #include "tools/common/output.h"
 #include "tools/common/read_options.h"
 #include "tools/common/targets.h"
@@ -48,7 +49,8 @@ ReadImageOptions read_options(const BuildOptions& o) {
 void check_options(const BuildOptions& o) {
     if (!is_container(o.output))
         throw Error(ErrorKind::kBadArgument,
-                    cat("-o ", o.output, ": expected a name in .glb or .gltf, or a folder"));
+                    cat("-o ", o.output, ": expected a name in .glb or .gltf, or a folder",
+                        other_tool("imgmesh-build", o.output)));
     if (!o.mask.empty()) check_distinct({o.mask}, container_files(o.output));
 }
 

@@ -56,27 +56,33 @@ Choices<DrawMode> mode_choices() {
 }
 
 void add_options(CLI::App& app, Options& o) {
-    add_choice(app, "--mode", o.mode, mode_choices(), {"How a container is drawn", "map"});
-    add_count(app, "--level", o.level, {0, std::numeric_limits<int>::max()},
-              {"Level of a container's pyramid, 0 the finest", "0"});
+    const std::string comparison = "Comparison", container = "Container", files = "Files";
+    in_group(add_number(app, "--tolerance", o.tolerance, {0},
+                        {"Exit with code 7 if the RMS error in L*u*v* of what one sees, alpha included, is "
+                         "larger, or with --values that of a channel",
+                         "none"}),
+             comparison);
+    in_group(add_flag(
+                 app, "--values", [&o] { o.read.values = true; },
+                 "The files hold data, not colours: compare the channels that both have, in their own unit"),
+             comparison);
+    in_group(add_choice(app, "--mode", o.mode, mode_choices(), {"How a container is drawn", "map"}),
+             container);
+    in_group(add_count(app, "--level", o.level, {0, std::numeric_limits<int>::max()},
+                       {"Level of a container's pyramid, 0 the finest", "0"}),
+             container);
+    in_group(
+        add_file(app, "--error-image", o.error_image,
+                 "Image to write of the errors in L*u*v*, alpha included, from black for none over blue, "
+                 "red and orange to white"),
+        files);
+    in_group(add_number(app, "--error-range", o.error_range, {0, kNoLimit, true},
+                        {"Error that the error image shows as white", cat(kErrorRange)}),
+             files);
+    in_group(add_file(app, "--plot", o.plot, "Histograms to write (.svg, .png)"), files);
     add_read_options(app, o.read, nullptr, true);
-    add_container_limits(app, o.limits);
-    add_flag(
-        app, "--values", [&o] { o.read.values = true; },
-        "The files hold data, not colours: compare the channels that both have, in their own unit");
     add_nodata_option(app, o.read);
-    add_number(
-        app, "--tolerance", o.tolerance, {0},
-        {"Exit with code 7 if the RMS error in L*u*v* of what one sees, alpha included, is larger, or with "
-         "--values that of a channel",
-         "none"});
-    add_file(app, "--error-image", o.error_image,
-             "Image to write of the errors in L*u*v*, alpha included, from black for none over blue, red and "
-             "orange to "
-             "white");
-    add_number(app, "--error-range", o.error_range, {0, kNoLimit, true},
-               {"Error that the error image shows as white", cat(kErrorRange)});
-    add_file(app, "--plot", o.plot, "Histograms to write (.svg, .png)");
+    add_container_limits(app, o.limits);
 }
 
 bool is_pair(const Options& o) {

@@ -20,6 +20,7 @@
 #include "tools/common/memory.h"
 #include "tools/common/names.h"
 #include "tools/common/options.h"
+#include "tools/common/other_tool.h"
 #include "tools/common/output.h"
 #include "tools/common/read_options.h"
 #include "tools/common/source_image.h"
@@ -105,10 +106,11 @@ void add_options(CLI::App& app, Options& o) {
                    Choices<OutlineSide>{{"out", OutlineSide::kOut}, {"both", OutlineSide::kBoth}},
                    "Where that outline may lie: outside alone, where it cuts no pixel, or on both sides");
     in_group(needs(side, tolerance), level);
-    CLI::Option* const image =
+    CLI::Option* const image = in_group(
         add_value(app, "--image", "NAME", [&o](const std::string& text) { o.image = text; },
                   {"Image that --texture puts on the meshes, or that a sprite's .json or .tscn names",
-                   "the output's name in .png"});
+                   "the output's name in .png"}),
+        "Files");
     add_read_options(app, o.read, image, true);
     add_container_limits(app, o.limits);
 }
@@ -128,7 +130,8 @@ void check_options(const Options& o) {
     if (!container && !is_level_file(o.output))
         throw Error(ErrorKind::kBadArgument,
                     cat("-o ", o.output,
-                        ": expected a name in .glb, .gltf, .svg, .ply, .obj, .json, .tscn, .png or .npz"));
+                        ": expected a name in .glb, .gltf, .svg, .ply, .obj, .json, .tscn, .png or .npz",
+                        other_tool("imgmesh-convert", o.output)));
     const std::optional<ExportKind> kind = export_kind(level_options(o));
     const bool outline = kind == ExportKind::kOutline, sprite = kind && !outline;
     only_for(o.compression.draco.has_value(), "--draco", container, "container");
@@ -249,7 +252,7 @@ Report convert_one(const Options& given, Context& context) {
             outline();
             options.texture.coords = texture_coords(m);
         }
-        write_container(o.output, m, options);
+        files = write_container(o.output, m, options);
     } else {
         const LevelOptions exported = level_options(o);
         const bool outline_mesh = o.outline_tolerance && export_kind(exported) != ExportKind::kOutline;
@@ -278,7 +281,7 @@ Report convert_one(const Options& given, Context& context) {
                      {"faces", first.mesh.faces.size()},
                      {"layers", is_container(o.output) && options.layers},
                      {"texture", !options.texture.picture.empty()},
-                     {"bytes", output_bytes(o.output)}};
+                     {"bytes", size_of_files(files)}};
     if (files.size() > 1) report["outputs"] = files;
     return report;
 }

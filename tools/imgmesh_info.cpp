@@ -30,13 +30,17 @@ struct Options {
 };
 
 void add_options(CLI::App& app, Options& o) {
-    CLI::Option* const validate = add_flag(
-        app, "--validate", [&o] { o.validate = true; },
-        "Only tell whether the container is sound, with every finding");
-    needs(add_flag(
-              app, "--warnings-as-errors", [&o] { o.warnings_as_errors = true; },
-              "Warnings make the container fail, too"),
-          validate);
+    const std::string validation = "Validation";
+    CLI::Option* const validate =
+        in_group(add_flag(
+                     app, "--validate", [&o] { o.validate = true; },
+                     "Only tell whether the container is sound, with every finding"),
+                 validation);
+    in_group(needs(add_flag(
+                       app, "--warnings-as-errors", [&o] { o.warnings_as_errors = true; },
+                       "Warnings make the container fail, too"),
+                   validate),
+             validation);
     add_container_limits(app, o.limits);
 }
 
@@ -199,9 +203,10 @@ void print_level(const Report& level, std::ostream& out) {
     table.add("triangles", cat("edge ratio ", number(mesh["mean_edge_ratio"]), ", shape ",
                                number(mesh["mean_shape"]), ", least ", number(mesh["min_shape"]),
                                ", least angle ", number(mesh["min_angle_deg"]), " degrees"));
-    table.add("map", cat(map["precision"].get<std::string>(), ", ", map["pixels"], " pixels, flipped ",
-                         map["flipped_triangles"], " triangles, moves ", number(map["mean_displacement"]),
-                         " pixels, at most ", number(map["max_displacement"])));
+    table.add("map",
+              cat(map["precision"].get<std::string>(), ", ", map["pixels"], " pixels, folds ",
+                  map["flipped_triangles"], " pixel triangles, moves ", number(map["mean_displacement"]),
+                  " pixels, at most ", number(map["max_displacement"])));
     table.print(out, 4);
 }
 

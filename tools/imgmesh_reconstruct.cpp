@@ -15,6 +15,7 @@
 #include "tools/common/memory.h"
 #include "tools/common/names.h"
 #include "tools/common/options.h"
+#include "tools/common/other_tool.h"
 #include "tools/common/output.h"
 #include "tools/common/text.h"
 #include "tools/common/tool_main.h"
@@ -48,12 +49,19 @@ Choices<SampleType> depth_choices() {
 }
 
 void add_options(CLI::App& app, Options& o) {
-    add_choice(app, "--mode", o.draw.mode, mode_choices(), "What to draw; map is the reconstruction");
-    add_count(app, "--level", o.level, {0}, "Level of the pyramid, 0 the finest");
-    add_number(app, "--scale", o.draw.scale, {0, kNoLimit, true},
-               "Size relative to the source's, for gouraud, wire and flat");
-    add_choice(app, "--depth", o.depth, depth_choices(),
-               {"Type of the samples to write", "that of the source"});
+    const std::string drawing = "Drawing";
+    in_group(
+        add_choice(app, "--mode", o.draw.mode, mode_choices(), "What to draw; map is the reconstruction"),
+        drawing);
+    in_group(add_count(app, "--level", o.level, {0}, "Level of the pyramid, 0 the finest"), drawing);
+    in_group(add_number(
+                 app, "--scale", o.draw.scale, {0, kNoLimit, true},
+                 "Size relative to the source's, for gouraud, wire and flat; the last two are antialiased at "
+                 "any size"),
+             drawing);
+    in_group(add_choice(app, "--depth", o.depth, depth_choices(),
+                        {"Type of the samples to write", "that of the source"}),
+             drawing);
     add_container_limits(app, o.limits);
 }
 
@@ -75,7 +83,8 @@ void check_options(const Options& o) {
         throw Error(ErrorKind::kBadArgument, cat(o.output, ": an SVG has neither --depth nor --scale"));
     if (!svg && !can_write_image(o.output))
         throw Error(ErrorKind::kBadArgument,
-                    cat("-o ", o.output, ": expected the name of an image, as in .png"));
+                    cat("-o ", o.output, ": expected the name of an image, as in .png",
+                        other_tool("imgmesh-reconstruct", o.output)));
 }
 
 // Throws Error(kBadArgument) if a scaled image would be larger than any that can be read.

@@ -68,22 +68,30 @@ OutputSize parse_size(const std::string& name, const std::string& text) {
 }
 
 void add_options(CLI::App& app, Options& o) {
-    CLI::Option* const image = add_file(app, "--image", o.image, "Image that the container was made from");
+    const std::string files = "Files", shape = "Shape";
+    CLI::Option* const image =
+        in_group(add_file(app, "--image", o.image, "Image that the container was made from"), files);
+    in_group(
+        add_file(app, "--edits", o.edits, "Edits to make (.json, schemas/imgmesh-warp.edits.schema.json)"),
+        files);
+    in_group(add_file(app, "--displacement", o.displacement,
+                      "Maps of the edit to write (.exr): an STMap, and the displacement of every pixel"),
+             files);
+    add_handle_options(app, o.handles);
+    in_group(add_value(app, kSize, "WxH", [&o](const std::string& text) { o.size = parse_size(kSize, text); },
+                       {"Size of the image and of the STMap", "that of the image"}),
+             shape);
+    CLI::Option* const retarget =
+        in_group(add_value(
+                     app, kRetarget, "WxH",
+                     [&o](const std::string& text) {
+                         o.size = parse_size(kRetarget, text);
+                         o.retarget = true;
+                     },
+                     "As --size, but detail keeps its proportions and the rest of the image gives way"),
+                 shape);
     add_read_options(app, o.read, image, true);
     add_container_limits(app, o.limits);
-    add_file(app, "--displacement", o.displacement,
-             "Maps of the edit to write (.exr): an STMap, and the displacement of every pixel");
-    add_file(app, "--edits", o.edits, "Edits to make (.json, schemas/imgmesh-warp.edits.schema.json)");
-    add_handle_options(app, o.handles);
-    add_value(app, kSize, "WxH", [&o](const std::string& text) { o.size = parse_size(kSize, text); },
-              {"Size of the image and of the STMap", "that of the image"});
-    CLI::Option* const retarget = add_value(
-        app, kRetarget, "WxH",
-        [&o](const std::string& text) {
-            o.size = parse_size(kRetarget, text);
-            o.retarget = true;
-        },
-        "As --size, but detail keeps its proportions and the rest of the image gives way");
     exclude(app, retarget, {kSize});
 }
 
@@ -190,6 +198,7 @@ Report warp_one(const Options& o, Context& context) {
                      {"largest_move", largest_move(field)},
                      {"folded_cells", folded_cells(field)}};
     context.progress(0.5, "draw");
+    std::vector<std::string> written = {o.output};
     JointFiles together;
     if (!o.displacement.empty()) {
         const InverseMap map = inverse_map(field, image ? alpha_of(*image) : std::vector<float>(), o.size);
@@ -207,7 +216,7 @@ Report warp_one(const Options& o, Context& context) {
         options.overwrite = context.overwrite;
         options.metadata = container.metadata;
         options.texture = container.texture;  // moves along: vertices keep their texture coordinates
-        write_container(o.output, warped, options);
+        written = write_container(o.output, warped, options);
     } else if (!o.output.empty()) {
         const Image out = warp_image(*image, field, o.size);
         context.progress(0.8, "write");
@@ -218,7 +227,7 @@ Report warp_one(const Options& o, Context& context) {
     together.commit();
     if (!o.output.empty()) {
         report["output"] = o.output;
-        report["bytes"] = output_bytes(o.output);
+        report["bytes"] = size_of_files(written);
     }
     return report;
 }

@@ -47,8 +47,10 @@ struct ContainerOptions {
 /// last: at any moment either the old container or the new one is there. The same mesh image and options give
 /// the same bytes. Takes O(pixels + faces) time. Throws Error: kBadArgument for another extension; kIo if a
 /// file cannot be written.
-void write_container(const std::string& path, const MeshImage& mesh_image,
-                     const ContainerOptions& options = {});
+///
+/// return  the files of the container, itself first
+std::vector<std::string> write_container(const std::string& path, const MeshImage& mesh_image,
+                                         const ContainerOptions& options = {});
 
 /// The files that write_container() writes for `path`, itself first. A .gltf has a .bin and a .exr as sidecar
 /// files; if other files have these names already, they get names with a hash. Throws Error(kBadArgument) for

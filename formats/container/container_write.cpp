@@ -105,8 +105,10 @@ void write_glb(const std::string& path, Asset& asset, const std::vector<std::uin
 // The rename of the .gltf switches to the new container. Until then the files of the old one stay, and only
 // then are they removed. A crash in between leaves files that nothing refers to; a signal waits until all is
 // done.
-void write_gltf(const std::string& path, Asset& asset, const std::vector<std::uint8_t>& buffer,
-                const std::vector<std::uint8_t>& layers, const ContainerOptions& options) {
+std::vector<std::string> write_gltf(const std::string& path, Asset& asset,
+                                    const std::vector<std::uint8_t>& buffer,
+                                    const std::vector<std::uint8_t>& layers,
+                                    const ContainerOptions& options) {
     // Another writer of the same name waits: each finds the other's files whole, and leaves none behind.
     const FolderLock lock(std::filesystem::path(path).parent_path().string());
     const std::vector<std::string> old_files = sidecars_of(path);
@@ -137,6 +139,10 @@ void write_gltf(const std::string& path, Asset& asset, const std::vector<std::ui
         if (!kept && name != asset.buffer_name && name != asset.layers_name)
             std::filesystem::remove(file, error);
     }
+    std::vector<std::string> files = {path};
+    for (const std::string& name : {asset.buffer_name, asset.layers_name})
+        if (!name.empty()) files.push_back(std::filesystem::path(path).replace_filename(name).string());
+    return files;
 }
 
 }  // namespace
@@ -159,7 +165,8 @@ std::vector<std::string> container_files(const std::string& path) {
     return {path, stem + ".bin", stem + ".exr"};
 }
 
-void write_container(const std::string& path, const MeshImage& mesh_image, const ContainerOptions& options) {
+std::vector<std::string> write_container(const std::string& path, const MeshImage& mesh_image,
+                                         const ContainerOptions& options) {
     const FileVariant variant = variant_of(path);
     if (options.meshopt && options.layers)
         throw Error(ErrorKind::kInternal, "a container with pixel maps cannot have meshopt compression");
@@ -200,10 +207,9 @@ void write_container(const std::string& path, const MeshImage& mesh_image, const
     asset.has_layers = options.layers;
     const std::vector<std::uint8_t> layers =
         options.layers ? encode_exr_layers(parts) : std::vector<std::uint8_t>();
-    if (variant == FileVariant::kGlb)
-        write_glb(path, asset, buffer, layers, options.overwrite);
-    else
-        write_gltf(path, asset, buffer, layers, options);
+    if (variant == FileVariant::kGltf) return write_gltf(path, asset, buffer, layers, options);
+    write_glb(path, asset, buffer, layers, options.overwrite);
+    return {path};
 }
 
 }  // namespace imgmesh

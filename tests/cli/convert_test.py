@@ -34,6 +34,14 @@ class Convert(CliCase):
             return float(f"{value:.9g}") if isinstance(value, float) else value
         return [rounded(level) for level in self.report("imgmesh-info", name)["levels"]]
 
+    def test_bytes_are_those_of_all_files(self):
+        for name, args in (("x.gltf", []), ("bare.gltf", ["--no-layers"]), ("y.glb", []), ("z.svg", [])):
+            before = set(self.files())
+            report = self.report("imgmesh-convert", "c.glb", "-o", name, *args)
+            written = {path: len(data) for path, data in self.files().items() if path not in before}
+            self.assertEqual(report["bytes"], sum(written.values()), name)
+            self.assertEqual(sorted(report.get("outputs", [name])), sorted(written))
+
     def test_round_trips_keep_the_map_exactly(self):
         before = self.map_as_set("c.glb")
         source = "c.glb"

@@ -230,6 +230,15 @@ class Usage(CliCase):
         self.assert_error("imgmesh-reconstruct", ["in.glb", "-o", "out.docx"], 2, "out.docx")
         self.assert_error("imgmesh-reconstruct", ["in.glb", "-o", "out"], 2, "out")
 
+    def test_output_of_another_tool(self):
+        for tool, args, meant in (("imgmesh-build", ["in.png", "-o", "x.obj"], "imgmesh-convert writes .obj from a container"),
+                                  ("imgmesh-build", ["in.png", "-o", "x.jpg"], "imgmesh-reconstruct writes .jpg from a container"),
+                                  ("imgmesh-reconstruct", ["in.glb", "-o", "x.ply"], "imgmesh-convert writes .ply"),
+                                  ("imgmesh-reconstruct", ["in.glb", "-o", "x.gltf"], "imgmesh-convert writes .gltf"),
+                                  ("imgmesh-convert", ["in.glb", "-o", "x.jpg"], "imgmesh-reconstruct writes .jpg")):
+            self.assert_error(tool, args, 2, meant)
+        self.assertNotIn("writes", self.assert_error("imgmesh-build", ["in.png", "-o", "x.docx"], 2).stderr)
+
     def test_two_pictures_of_one_name(self):
         """Refused before any work: the images are not there, and the folder is not made."""
         self.assert_error("imgmesh-build", ["a/x.png", "b/y.png", "c/x.jpg", "-o", "out/"], 2, "a/x.png", "c/x.jpg")

@@ -31,7 +31,7 @@ constexpr Example kCompare[] = {
     {"imgmesh-compare photo.png photo.glb", "How far a container's reconstruction is from its image"},
     {"imgmesh-compare photo.glb", "The quality of a container's triangles and map"},
     {"imgmesh-compare before.png after.png --tolerance 1",
-     "Exit code 7 if any sample differs by more than one step of 8 bits"},
+     "Exit code 7 if the error (RMS in L*u*v*) is larger than 1, for scripts"},
 };
 
 constexpr Example kConvert[] = {

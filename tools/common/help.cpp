@@ -33,7 +33,7 @@ class HelpFormatter : public CLI::Formatter {
         out += "\nExamples:\n";
         for (const Example& example : examples_of(app->get_name()))
             out += cat("  ", example.command, "\n      ", example.meaning, "\n");
-        return out + make_footer(app);
+        return out + "\n" + make_footer(app);
     }
 
     std::string make_option(const CLI::Option* option, bool is_positional) const override {

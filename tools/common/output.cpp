@@ -51,6 +51,12 @@ void check_separate(const std::vector<std::string>& outputs) {
     }
 }
 
+std::uint64_t size_of_files(const std::vector<std::string>& files) {
+    std::uint64_t bytes = 0;
+    for (const std::string& file : files) bytes += output_bytes(file);
+    return bytes;
+}
+
 void write_text(const std::string& path, const std::string& text, bool overwrite) {
     AtomicFile file(path, overwrite);
     file.write({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});

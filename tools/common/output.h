@@ -17,6 +17,9 @@ void check_distinct(const std::vector<std::string>& inputs, const std::vector<st
 /// Throws Error(kBadArgument) if two of the `outputs` are one file, by any name.
 void check_separate(const std::vector<std::string>& outputs);
 
+/// Returns how many bytes these files have together.
+std::uint64_t size_of_files(const std::vector<std::string>& files);
+
 /// Writes `text` as a whole file, atomically.
 void write_text(const std::string& path, const std::string& text, bool overwrite);
 

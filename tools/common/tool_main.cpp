@@ -42,7 +42,8 @@ constexpr ExitCodeMeaning kExitCodes[] = {
     {ExitCode::kUsage, "wrong use of the command line"},
     {ExitCode::kIo, "cannot read or write"},
     {ExitCode::kBadFile, "a file's content is not what it must be"},
-    {ExitCode::kUnsupported, "a valid request or file that imgmesh does not support"},
+    {ExitCode::kUnsupported,
+     "a valid request or file that imgmesh does not support, or with --strict a number not reached"},
     {ExitCode::kDifferent, "compared, and different"},
 };
 
@@ -109,18 +110,22 @@ void hold_standard_streams() {
 void add_files(CLI::App& app, const Tool& tool, FileOptions& files, CommonOptions& common) {
     add_inputs(app, tool.input_name, files.inputs, tool.input_help);
     if (tool.output_help.empty()) return;
-    CLI::Option* const output = add_file(app, "-o,--output", files.output, tool.output_help);
+    CLI::Option* const output =
+        in_group(add_file(app, "-o,--output", files.output, tool.output_help), "Files");
     if (tool.output_required) require(output);
-    advanced(app, add_value(app, "--format", "NAME",
-                            [&files](const std::string& text) { files.type = file_type("--format", text); },
-                            {"Kind of the files in a folder of -o, or on standard output (-o -), as in " +
-                             tool.type()}));
-    add_flag(
+    const auto in_files = [](CLI::Option* option) { return in_group(option, "Files"); };
+    advanced(
+        app,
+        in_files(add_value(
+            app, "--format", "NAME",
+            [&files](const std::string& text) { files.type = file_type("--format", text); },
+            {"Kind of the files in a folder of -o, or on standard output (-o -), as in " + tool.type()})));
+    in_files(add_flag(
         app, "--skip-existing", [&files] { files.skip_existing = true; },
-        "Leave outputs alone that were made from the same content by the same options and version");
-    advanced(app, add_flag(
+        "Leave outputs alone that were made from the same content by the same options and version"));
+    advanced(app, in_files(add_flag(
                       app, "--force", [&common] { common.force = true; },
-                      "Make them again, whatever --skip-existing says"));
+                      "Make them again, whatever --skip-existing says")));
 }
 
 // What standard input may have [bytes]: not more than a container may have, nor than memory.
