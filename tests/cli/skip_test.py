@@ -117,6 +117,17 @@ class Journal(CliCase):
             report = self.report(tool, *containers, *args, "--skip-existing")
             self.assertEqual([file["input"] for file in report["files"] if file["status"] == "done"], [name])
 
+    def test_files_beside_an_output(self):
+        """An .obj has a .mtl and a texture, which count as it does."""
+        args = ("imgmesh-convert", "out/p0.glb", "out/p1.glb", "-o", "e/", "--format", "obj", "--texture", "--skip-existing")
+        beside = [p for p in self.report(*args)["files"][0]["outputs"] if not p.endswith(".obj")]
+        self.assertEqual(self.report(*args)["summary"]["skipped"], 2)
+        (self.folder / beside[-1]).write_bytes(b"")
+        self.assertEqual(self.report(*args)["summary"]["done"], 1)
+        text = self.run_ok(*args).stdout
+        self.assertIn("e/p0.obj: skipped, made before\n", text)
+        self.assertIn("2 files: 0 done, 2 skipped; ", text)
+
     def test_one_file_without_a_folder(self):
         """Leaves no journal, unless it is asked for."""
         self.run_ok("imgmesh-build", "p0.png", "-o", "one.glb", "-q")
@@ -132,6 +143,7 @@ class Journal(CliCase):
         deep = "[" * 100000 + "]" * 100000
         bad = [dict(entry, files=files) for files in (None, [], 3, [3], [{"bytes": "x"}], [{"bytes": -1, "sha256": None}])]
         bad += [dict(entry, report=report) for report in (None, [], "x")] + [dict(entry, journal=2), dict(entry, key=[]), []]
+        bad += [dict(entry, report={"outputs": outputs}) for outputs in (3, [3], ["../x"], {"a": "/etc/passwd"})]
         garbage = [b"\xff\x00{", deep.encode(), b'{"report": ' + deep.encode() + b"}", b"x" * (3 << 20), b"{}", b"null"]
         garbage += [json.dumps(value).encode() for value in bad]
         for content, expected in ((b"\n".join([*garbage, b"".join(lines)]), "skipped"),

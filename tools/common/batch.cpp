@@ -180,7 +180,8 @@ void Batch::write(const std::string& text) {
 std::string Batch::summary_line() const {
     const Report summary = summary_report(files_, seconds_);
     std::string line = cat(files_.size(), " files: ", summary["done"], " done");
-    for (const auto& [key, text] : {std::pair("failed", "failed"), std::pair("interrupted", "not done")})
+    for (const auto& [key, text] : {std::pair("skipped", "skipped"), std::pair("failed", "failed"),
+                                    std::pair("interrupted", "not done")})
         if (summary[key] != 0) line += cat(", ", summary[key], ' ', text);
     return cat(line, "; ", format_number(seconds_), " s\n");
 }

@@ -52,6 +52,19 @@ Report facts_of(const std::vector<std::string>& files) {
     return facts;
 }
 
+// Adds the files that a report lists beside the output `first` and that stand in the same folder: whoever
+// wrote the report may not point elsewhere. Returns false if that is not what it has.
+bool add_beside(const Report& report, const std::string& first, std::vector<std::string>& files) {
+    if (!report.contains("outputs")) return true;
+    for (const Report& path : report["outputs"]) {
+        if (!path.is_string()) return false;
+        const fs::path name = fs::path(path.get<std::string>()).filename();
+        const fs::path file = fs::path(first).parent_path() / name;
+        if (name != fs::path(first).filename()) files.push_back(file.string());
+    }
+    return true;
+}
+
 std::span<const std::uint8_t> bytes_of(const std::string& text) {
     return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
 }
@@ -106,25 +119,29 @@ Report Journal::find(const std::string& output, const std::string& key,
     if (line == line_of_.end()) return nullptr;
     Report entry = parse_entry(line->second);
     if (entry["key"] != key) return nullptr;
+    std::vector<std::string> all = files;
+    if (!add_beside(entry["report"], files.front(), all)) return nullptr;
     // Sizes first: files that were cut short need not be read.
     const Report known = entry.contains("files") ? entry["files"] : Report();
-    if (!known.is_array() || known.size() != files.size()) return nullptr;
-    for (std::size_t i = 0; i < files.size(); ++i) {
+    if (!known.is_array() || known.size() != all.size()) return nullptr;
+    for (std::size_t i = 0; i < all.size(); ++i) {
         std::error_code error;
-        const std::uint64_t bytes = fs::file_size(files[i], error);
+        const std::uint64_t bytes = fs::file_size(all[i], error);
         if (error || !known[i].is_object() || !known[i].contains("bytes") || known[i]["bytes"] != bytes)
             return nullptr;
     }
-    if (facts_of(files) != known) return nullptr;
+    if (facts_of(all) != known) return nullptr;
     return std::move(entry["report"]);
 }
 
 void Journal::add(const std::string& output, const std::string& key, const std::vector<std::string>& files,
                   const Report& report) {
+    std::vector<std::string> all = files;
+    add_beside(report, files.front(), all);
     const Report entry = {{"journal", kVersion},
                           {"key", key},
                           {"output", output},
-                          {"files", facts_of(files)},
+                          {"files", facts_of(all)},
                           {"report", report}};
     std::string line = entry.dump(-1, ' ', false, Report::error_handler_t::replace) + '\n';
     const std::lock_guard lock(mutex_);
