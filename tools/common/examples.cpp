@@ -12,6 +12,8 @@ constexpr Example kBuild[] = {
      "The opaque part of a sprite, for an engine: two levels of detail, and the image as a texture"},
     {"imgmesh-build *.jpg -o meshes/ --rms 6",
      "A container of each image, with as few faces as a mean error of 6 in L*u*v* allows"},
+    {"imgmesh-build *.jpg -o meshes/ --skip-existing --jsonl > night.jsonl",
+     "A night's batch that goes on where it was ended, with a line of JSON for each file"},
 };
 
 constexpr Example kReconstruct[] = {
