@@ -34,15 +34,24 @@ struct Callback {
 Progress python_progress(py::object callback) {
     if (!callback.is_none() && !PyCallable_Check(callback.ptr()))
         throw py::type_error("progress: expected a callable of the fraction and the stage");
+    if (callback.is_none()) return [](double, std::string_view) { check_signals(); };
     const auto shared = std::make_shared<Callback>(std::move(callback));
     return [shared](double fraction, std::string_view stage) {
-        const Clock::time_point now = Clock::now();
-        if (now < shared->next && fraction < 1) return;
+        check_signals();
+        if (Clock::now() < shared->next && fraction < 1) return;
         const py::gil_scoped_acquire acquire;
-        if (PyErr_CheckSignals() != 0) throw py::error_already_set();
-        if (!shared->function.is_none()) shared->function(fraction, py::str(stage.data(), stage.size()));
+        shared->function(fraction, py::str(stage.data(), stage.size()));
         shared->next = Clock::now() + kPause;
     };
+}
+
+void check_signals() {
+    thread_local Clock::time_point next;
+    const Clock::time_point now = Clock::now();
+    if (now < next) return;
+    next = now + kPause;
+    const py::gil_scoped_acquire acquire;
+    if (PyErr_CheckSignals() != 0) throw py::error_already_set();
 }
 
 int thread_count(const std::optional<int>& threads) {

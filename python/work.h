@@ -6,25 +6,30 @@
 #include <optional>
 #include <utility>
 
+#include "libcore/base/interrupt.h"
 #include "libcore/base/parallel.h"
 #include "libcore/base/progress.h"
 
 namespace imgmesh::python {
 
-/// Returns a progress function that, a few times a second, takes the GIL, lets Python handle signals and
-/// calls `callback` (None, or a callable of the fraction and the stage). It throws what these raise, and so
-/// ends the work.
+/// Returns a progress function that, a few times a second, takes the GIL and calls `callback` (None, or a
+/// callable of the fraction and the stage). It throws what that raises, and so ends the work.
 Progress python_progress(pybind11::object callback);
+
+/// Lets Python handle signals, if it has not done so for some time, and throws what they raise. For
+/// InterruptCheck, without the GIL.
+void check_signals();
 
 /// Returns the number of threads that was asked for, all for none. Throws Error(kBadArgument) unless it is
 /// from 1 to 1024.
 int thread_count(const std::optional<int>& threads);
 
-/// Returns the result of `work`, done without the GIL by at most `threads` threads.
+/// Returns the result of `work`, done without the GIL by at most `threads` threads. Ctrl-C ends it.
 template <typename Work>
 auto without_gil(const std::optional<int>& threads, Work&& work) {
     const ThreadLimit limit(thread_count(threads));
     const pybind11::gil_scoped_release release;
+    const InterruptCheck check(check_signals);
     return std::forward<Work>(work)();
 }
 

@@ -6,6 +6,10 @@
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
+#include <utility>
+
+#include "libcore/base/interrupt.h"
+
 #if defined(__SANITIZE_THREAD__)
 #include <atomic>
 #include <exception>
@@ -24,6 +28,23 @@ ThreadLimit::ThreadLimit(int threads)
                                                static_cast<std::size_t>(std::max(1, threads)))}) {}
 ThreadLimit::~ThreadLimit() = default;
 
+namespace {
+
+// That of this thread's InterruptCheck; null on threads that only help.
+thread_local const std::function<void()>* interrupt_check = nullptr;
+
+void check_interrupt() {
+    if (interrupt_check) (*interrupt_check)();
+}
+
+}  // namespace
+
+InterruptCheck::InterruptCheck(std::function<void()> check)
+    : check_(std::move(check)), outer_(std::exchange(interrupt_check, &check_)) {}
+InterruptCheck::~InterruptCheck() {
+    interrupt_check = outer_;
+}
+
 int hardware_threads() {
     return std::max(1, tbb::info::default_concurrency());
 }
@@ -37,7 +58,10 @@ void parallel_blocks(int begin, int end, int grain, const std::function<void(int
     std::mutex failure_mutex;
     const auto work = [&] {
         try {
-            for (int first; (first = next.fetch_add(grain)) < end;) body(first, std::min(first + grain, end));
+            for (int first; (first = next.fetch_add(grain)) < end;) {
+                check_interrupt();
+                body(first, std::min(first + grain, end));
+            }
         } catch (...) {
             const std::lock_guard lock(failure_mutex);
             failure = std::current_exception();
@@ -57,6 +81,7 @@ void parallel_blocks(int begin, int end, int grain, const std::function<void(int
     // block, it would hold several images at a time.
     tbb::this_task_arena::isolate([&] {
         tbb::parallel_for(0, blocks, [&](int b) {
+            check_interrupt();
             const int first = begin + b * grain;
             body(first, std::min(first + grain, end));
         });

@@ -48,7 +48,7 @@ class Work(unittest.TestCase):
             while True:
                 imgmesh.build(LARGE, preset="best", refine=300)
         presser.join()
-        self.assertLess(time.monotonic() - start, 20)  # the build would take minutes
+        self.assertLess(time.monotonic() - start, 10)  # the build would take minutes
 
     def test_other_threads_run_meanwhile(self):
         ticks, done = [0], threading.Event()

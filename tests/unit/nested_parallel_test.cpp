@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <chrono>
 #include <mutex>
+#include <stdexcept>
 #include <thread>
 
+#include "libcore/base/interrupt.h"
 #include "libcore/base/parallel.h"
 
 using namespace imgmesh;
@@ -32,4 +34,27 @@ TEST_CASE("parallel_blocks: a thread is in one outer block at a time") {
     });
     CHECK(done == 64);
     CHECK(deepest == 1);
+}
+
+// What the check throws comes out of the loop, and later loops run as always. Other threads ask nothing.
+TEST_CASE("InterruptCheck: ends parallel work of its own thread") {
+    int asked = 0;
+    {
+        const InterruptCheck check([&] {
+            if (++asked == 3) throw std::runtime_error("enough");
+        });
+        const auto loop = [] { parallel_blocks(0, 1000, 1, [](int, int) {}); };
+        std::thread(loop).join();
+        CHECK(asked == 0);
+        const auto work = [&] {
+            for (int i = 0; i < 1000; ++i) loop();
+        };
+        CHECK_THROWS_WITH_AS(work(), "enough", std::runtime_error);
+        CHECK(asked == 3);
+        const InterruptCheck inner([] {});
+        loop();
+        CHECK(asked == 3);
+    }
+    parallel_blocks(0, 10, 1, [](int, int) {});
+    CHECK(asked == 3);
 }
