@@ -96,6 +96,22 @@ Image shaped(const py::array& array, const ArrayMeaning& meaning, const std::str
     return image;
 }
 
+// Returns the array that numpy makes of an object. Throws where its numbers would not mean what an array's
+// do: those of a Pillow image with a palette or inks, and those under the mask of a masked array.
+py::array array_of_object(const py::object& object, const std::string& name) {
+    const py::object numpy = py::module_::import("numpy");
+    if (py::isinstance(object, numpy.attr("ma").attr("MaskedArray")))
+        refuse(name, "the array is masked; expected its data, and the pixels inside as mask=~array.mask");
+    if (py::hasattr(object, "mode") && py::hasattr(object, "getbands")) {
+        const std::string mode = py::str(object.attr("mode"));
+        if (mode != "L" && mode != "LA" && mode != "RGB" && mode != "RGBA" && mode != "F" &&
+            !mode.starts_with("I;16"))
+            refuse(name, cat("the Pillow image is of the mode ", mode,
+                             ", expected L, LA, RGB, RGBA, I;16 or F: image.convert('RGB') makes it one"));
+    }
+    return numpy.attr("asarray")(object);
+}
+
 }  // namespace
 
 ImagePointer image_from_array(const py::array& array, const ArrayMeaning& meaning, const std::string& name) {
@@ -129,8 +145,8 @@ ImagePointer image_from(const py::object& object, const ReadImageOptions& option
         return value;
     }
     if (!is_path(object))
-        return image_from_array(py::module_::import("numpy").attr("asarray")(object),
-                                {options.color_space, {}, options.values}, name);
+        return image_from_array(array_of_object(object, name), {options.color_space, {}, options.values},
+                                name);
     const std::string path = path_text(object);
     ReadImage read = without_gil({}, [&] { return read_image_file(path, options); });
     for (const std::string& warning : read.warnings) warnings.push_back(cat(path, ": ", warning));

@@ -7,7 +7,7 @@
 namespace imgmesh {
 
 /// Called from time to time on the thread that started the work. `fraction` in [0, 1] never falls; the word
-/// names the current stage ("collapse"). May be empty. Must not throw.
+/// names the current stage ("collapse"). May be empty. What it throws ends the work.
 using Progress = std::function<void(double fraction, std::string_view stage)>;
 
 }  // namespace imgmesh

@@ -5,6 +5,7 @@ import unittest
 import warnings
 
 import numpy as np
+from PIL import Image
 
 import imgmesh
 import picture_files
@@ -61,6 +62,10 @@ class Errors(unittest.TestCase):
                    mask=np.zeros((16, 24), bool))
         self.check(imgmesh.UnsupportedError, ("image: no pixel is inside", "alpha='ignore'"), imgmesh.build,
                    np.zeros((4, 4, 4), np.uint8), alpha="cut")
+        palette = Image.fromarray(IMAGE).quantize(8)
+        self.check(imgmesh.ArgumentError, ("mode P", "convert('RGB')"), imgmesh.build, palette)
+        self.assertEqual(imgmesh.build(palette.convert("RGB")).width, 24)
+        self.check(imgmesh.ArgumentError, ("masked", "mask=~array.mask"), imgmesh.build, np.ma.masked_less(IMAGE[..., 0], 9))
         self.check(imgmesh.ArgumentError, ("2 names",), imgmesh.Image, IMAGE, channel_names=["a", "b"])
         self.check(imgmesh.ArgumentError, ("values=True where it is read",), imgmesh.build, imgmesh.Image(IMAGE), values=True)
 
