@@ -67,4 +67,22 @@ void check_contradictions(const CLI::App& app, const BuildParams& p) {
     check_params(p);
 }
 
+void check_no_map(const CLI::App& app, const BuildParams& p) {
+    const char* const map = "--no-map";
+    if (p.stop.rms) refuse(typed(app, {"--rms"}), map, "that error is the one through the pixel map");
+    if (p.max_cluster)
+        refuse(typed(app, {"--max-cluster"}), map, "the pixels of a face are those of the pixel map");
+    for (const char* option :
+         {"--map", "--projection-color-weight", "--map-smoothness", "--bary", "--visits"})
+        if (given(app, option)) refuse(typed(app, {option}), map, "it is about the pixel map");
+}
+
+BuildParams without_map(BuildParams p) {
+    p.map_is_left_out = true;
+    if (map_kind(p) != MapKind::kRelaxed) return p;
+    p.map = MapKind::kTrivial;
+    p.projection_color_weight.reset();
+    return p;
+}
+
 }  // namespace imgmesh

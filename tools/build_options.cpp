@@ -137,7 +137,12 @@ void add_build_options(CLI::App& app, BuildOptions& o) {
 
     add_params(app, o);
 
-    in_group(add_choice(app, "--draco", o.draco, draco_choices(), "Compression of the meshes"), "Container");
+    in_group(add_flag(
+                 app, "--no-map", [&o] { o.no_map = true; },
+                 "Write the meshes alone, without pixel maps: a plain glTF asset for engines, that imgmesh "
+                 "cannot read. Colours are then fitted to what engines draw"),
+             "Container");
+    add_compression_options(app, o.compression, "edgebreaker; with --no-map none");
     add_texture_options(app, o.texture, "Put the image on the meshes, for engines and viewers", false);
     add_strict_option(app, o.strict);
     after_parsing(app, [&] {
@@ -152,6 +157,10 @@ void add_build_options(CLI::App& app, BuildOptions& o) {
                 ErrorKind::kBadArgument,
                 "--values and --alpha keep: alpha is a mask beside values, or with --channels one of them");
         check_contradictions(app, o.params);
+        check_compression(o.compression, !o.no_map);
+        if (!o.no_map) return;
+        check_no_map(app, o.params);
+        o.params = without_map(o.params);
     });
 }
 

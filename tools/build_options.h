@@ -8,6 +8,7 @@
 #include "formats/container/container.h"
 #include "formats/picture/image_io.h"
 #include "libcore/pipeline/build_source.h"
+#include "tools/common/compression_options.h"
 #include "tools/common/texture_options.h"
 
 namespace imgmesh {
@@ -18,7 +19,8 @@ struct BuildOptions {
     BuildParams params;  ///< what `preset` and then `given` make of it, when all options have been read
     BuildParams preset;
     std::vector<std::function<void(BuildParams&)>> given;  ///< the options that count more than the preset
-    DracoMode draco = DracoMode::kEdgebreaker;
+    CompressionOptions compression;
+    bool no_map = false;
     ReadImageOptions read;
     AlphaParams alpha;
     std::string mask;

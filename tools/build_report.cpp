@@ -12,6 +12,7 @@ namespace imgmesh {
 
 Report image_report(const Image& image, const std::string& alpha, bool values, const BuildReport& built,
                     const Container& written, const FileSeconds& seconds) {
+    const bool has_map = written.facts.layer_bytes > 0;
     Report levels = Report::array();
     const std::vector<std::string> auxiliary = split_names(written.mesh_image.source.channel_names).auxiliary;
     for (std::size_t k = 0; k < written.mesh_image.levels.size(); ++k) {
@@ -19,10 +20,12 @@ Report image_report(const Image& image, const std::string& alpha, bool values, c
         levels.push_back({{"vertices", level.mesh.vertex_count()},
                           {"faces", level.mesh.faces.size()},
                           {"error", level.error},
-                          {"map_rms", built.levels[k].map_rms},
                           {"gouraud_rms", built.levels[k].gouraud_rms},
-                          {"flipped_pixel_triangles", map_quality(level.mesh, level.map).flipped_triangles},
                           {"mean_edge_ratio", mesh_quality(level.mesh).mean_edge_ratio}});
+        if (has_map) {
+            levels.back()["map_rms"] = built.levels[k].map_rms;
+            levels.back()["flipped_pixel_triangles"] = map_quality(level.mesh, level.map).flipped_triangles;
+        }
         for (std::size_t c = 0; c < auxiliary.size(); ++c)
             levels.back()["channel_rms"][auxiliary[c]] = built.levels[k].auxiliary_rms[c];
     }
@@ -67,19 +70,26 @@ void print_build(const Report& image, std::ostream& out) {
     if (image["pixels"] != image["width"].get<std::int64_t>() * image["height"].get<std::int64_t>())
         table.add("masked image", cat(image["pixels"], " pixels"));
     table.add("mesh", cat(image["vertices"], " vertices, ", image["faces"], " faces"));
-    table.add("error", cat("map ", number("map_rms"), ", Gouraud ", number("gouraud_rms"),
-                           image["values"] ? " RMS in the values' unit" : " L*u*v* RMS"));
+    const bool has_map = image.contains("map_rms");
+    table.add("error",
+              cat(has_map ? cat("map ", number("map_rms"), ", ") : "", "Gouraud ", number("gouraud_rms"),
+                  image["values"] ? " RMS in the values' unit" : " L*u*v* RMS"));
     if (image.contains("channel_rms"))
         for (const auto& [name, rms] : image["channel_rms"].items())
-            table.add(printable_line(name), cat("map ", format_number(rms.get<double>()), " RMS"));
+            table.add(printable_line(name),
+                      cat(has_map ? "map " : "", format_number(rms.get<double>()), " RMS"));
     for (std::size_t k = 1; k < image["levels"].size(); ++k) {
         const Report& level = image["levels"][k];
-        table.add(cat("level ", k), cat(level["vertices"], " vertices, ", level["faces"], " faces, map ",
-                                        format_number(level["map_rms"].get<double>()), ", Gouraud ",
-                                        format_number(level["gouraud_rms"].get<double>())));
+        table.add(cat("level ", k),
+                  cat(level["vertices"], " vertices, ", level["faces"], " faces, ",
+                      has_map ? cat("map ", format_number(level["map_rms"].get<double>()), ", ") : "",
+                      "Gouraud ", format_number(level["gouraud_rms"].get<double>())));
     }
     table.add("edge ratio", number("mean_edge_ratio"));
-    table.add("folds", cat(image["flipped_pixel_triangles"], " pixel triangles"));
+    if (has_map)
+        table.add("folds", cat(image["flipped_pixel_triangles"], " pixel triangles"));
+    else
+        table.add("pixel map", "none");
     table.add("file", cat(format_bytes(image["bytes"].get<std::uint64_t>()), ", ", number("bytes_per_pixel"),
                           " bytes per pixel"));
     table.add("time", cat(number("seconds"), " s"));

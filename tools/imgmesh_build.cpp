@@ -74,7 +74,8 @@ Report build_one(const BuildOptions& given, Context& context) {
     if (missing) mask = in_file(o.input, [&] { return in_both(mask, read.data); });
     const double read_seconds = stage.lap();
     ContainerOptions container;
-    container.draco = o.draco;
+    compress(container, o.compression, o.no_map ? DracoMode::kOff : DracoMode::kEdgebreaker);
+    container.layers = !o.no_map;
     container.overwrite = context.overwrite;
     container.metadata = read.metadata;
     if (o.texture.wanted)
@@ -93,15 +94,24 @@ Report build_one(const BuildOptions& given, Context& context) {
     const std::string clipped = note_source(result, origin, plan.threshold, option_text);
     if (!clipped.empty()) add_warning(clipped);
     stage.lap();
-    if (o.texture.wanted) {
+    if (o.no_map)
+        cover_whole_pixels(result.mesh_image);
+    else if (o.texture.wanted)
         extend_to_outer_edge(result.mesh_image);
-        container.texture.coords = texture_coords(result.mesh_image);
-    }
-    write_container(o.output, result.mesh_image, container);
+    if (o.texture.wanted) container.texture.coords = texture_coords(result.mesh_image);
+    const WrittenContainer files = write_container(o.output, result.mesh_image, container);
     const double write_seconds = stage.lap();
 
     // The figures are those that a reader of the container gets.
-    const Container written = read_container(o.output);
+    Container written;
+    if (o.no_map) {
+        written.facts.total_bytes = size_of_files(files.files);
+        written.facts.mesh_bytes = files.mesh_bytes;
+        written.facts.texture_bytes = container.texture.picture.size();
+        written.mesh_image = std::move(result.mesh_image);
+    } else {
+        written = read_container(o.output);
+    }
     Report report = {{"input", o.input}, {"output", o.output}};
     for (const auto& [name, value] : written.mesh_image.parameters)
         std::visit([&member = report["parameters"][name]](const auto& v) { member = v; }, value);

@@ -188,7 +188,7 @@ void keep_levels(const Options& o, MeshImage& m, Texture& texture) {
 Texture chosen_texture(const Options& o, MeshImage& m, Texture kept, Context& context) {
     if (!o.texture.wanted && !kept.picture.empty()) return kept;
     if (!o.texture.wanted.value_or(false)) {
-        if (o.no_map) extend_to_outer_edge(m);
+        if (o.no_map) cover_whole_pixels(m);
         return {};
     }
     const SourceInfo& source = m.source;
@@ -211,7 +211,10 @@ Texture chosen_texture(const Options& o, MeshImage& m, Texture kept, Context& co
     }
     const auto& names = source.channel_names;
     const bool soft = std::find(names.begin(), names.end(), "A") != names.end();
-    extend_to_outer_edge(m);
+    if (o.no_map)
+        cover_whole_pixels(m);
+    else
+        extend_to_outer_edge(m);
     return in_file(o.image.empty() ? o.input : o.image, [&] {
         return Texture{
             encode_texture(image, mask, o.texture.type, soft ? TextureAlpha::kOwn : TextureAlpha::kMask),
@@ -252,7 +255,7 @@ Report convert_one(const Options& given, Context& context) {
             outline();
             options.texture.coords = texture_coords(m);
         }
-        files = write_container(o.output, m, options);
+        files = write_container(o.output, m, options).files;
     } else {
         const LevelOptions exported = level_options(o);
         const bool outline_mesh = o.outline_tolerance && export_kind(exported) != ExportKind::kOutline;

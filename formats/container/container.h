@@ -36,6 +36,12 @@ struct ContainerOptions {
     ExrMetadata metadata = {};  ///< of the source, if it is an EXR; without an exr_metadata_fault()
 };
 
+/// What write_container() has written.
+struct WrittenContainer {
+    std::vector<std::string> files;  ///< of the container, itself first
+    std::uint64_t mesh_bytes = 0;    ///< the meshes, as compressed
+};
+
 /// Writes `mesh_image`; the extension of `path` (.glb or .gltf) decides the file variant.
 ///
 /// Nothing is lost of what build_mesh_image() returns, nor of any MeshImage whose positions lie on
@@ -47,10 +53,8 @@ struct ContainerOptions {
 /// last: at any moment either the old container or the new one is there. The same mesh image and options give
 /// the same bytes. Takes O(pixels + faces) time. Throws Error: kBadArgument for another extension; kIo if a
 /// file cannot be written.
-///
-/// return  the files of the container, itself first
-std::vector<std::string> write_container(const std::string& path, const MeshImage& mesh_image,
-                                         const ContainerOptions& options = {});
+WrittenContainer write_container(const std::string& path, const MeshImage& mesh_image,
+                                 const ContainerOptions& options = {});
 
 /// The files that write_container() writes for `path`, itself first. A .gltf has a .bin and a .exr as sidecar
 /// files; if other files have these names already, they get names with a hash. Throws Error(kBadArgument) for

@@ -165,8 +165,8 @@ std::vector<std::string> container_files(const std::string& path) {
     return {path, stem + ".bin", stem + ".exr"};
 }
 
-std::vector<std::string> write_container(const std::string& path, const MeshImage& mesh_image,
-                                         const ContainerOptions& options) {
+WrittenContainer write_container(const std::string& path, const MeshImage& mesh_image,
+                                 const ContainerOptions& options) {
     const FileVariant variant = variant_of(path);
     if (options.meshopt && options.layers)
         throw Error(ErrorKind::kInternal, "a container with pixel maps cannot have meshopt compression");
@@ -199,6 +199,7 @@ std::vector<std::string> write_container(const std::string& path, const MeshImag
     }
     asset.meshopt = meshopt.views();
     asset.fallback_length = meshopt.fallback_length();
+    const std::uint64_t mesh_bytes = buffer.size();
     parts.front().visits = mesh_image.visits;
     if (!texture.picture.empty()) {
         asset.texture_type = picture_type(texture.picture);
@@ -207,9 +208,9 @@ std::vector<std::string> write_container(const std::string& path, const MeshImag
     asset.has_layers = options.layers;
     const std::vector<std::uint8_t> layers =
         options.layers ? encode_exr_layers(parts) : std::vector<std::uint8_t>();
-    if (variant == FileVariant::kGltf) return write_gltf(path, asset, buffer, layers, options);
+    if (variant == FileVariant::kGltf) return {write_gltf(path, asset, buffer, layers, options), mesh_bytes};
     write_glb(path, asset, buffer, layers, options.overwrite);
-    return {path};
+    return {{path}, mesh_bytes};
 }
 
 }  // namespace imgmesh

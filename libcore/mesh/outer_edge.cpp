@@ -276,6 +276,10 @@ std::vector<Vec2f> outer_positions(const BaseMesh& mesh, const PixelMap& map) {
     return position;
 }
 
+void cover_whole_pixels(MeshImage& mesh_image) {
+    for (Level& level : mesh_image.levels) level.mesh.position = outer_positions(level.mesh, level.map);
+}
+
 void extend_to_outer_edge(MeshImage& mesh_image) {
     for (Level& level : mesh_image.levels) {
         std::optional<std::vector<Vec2f>> position;

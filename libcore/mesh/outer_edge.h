@@ -27,4 +27,8 @@ std::vector<Vec2f> outer_positions(const BaseMesh& mesh, const PixelMap& map);
 /// that the reconstruction through them stays the same to the bit.
 void extend_to_outer_edge(MeshImage& mesh_image);
 
+/// Moves the vertices of all levels to outer_positions(), for meshes whose pixel maps are not kept: maps may
+/// fold by that, and do not decide anything.
+void cover_whole_pixels(MeshImage& mesh_image);
+
 }  // namespace imgmesh

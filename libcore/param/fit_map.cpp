@@ -108,6 +108,14 @@ PixelMap fit_map(BaseMesh& mesh, const FeatureImage& feature, const FitParams& p
     return map;
 }
 
+PixelMap fit_drawing(BaseMesh& mesh, const FeatureImage& feature, const FitParams& params, const Mask& mask) {
+    PixelMap trivial = trivial_map(mesh, feature.width, feature.height, mask);
+    const ColorFit colors(mesh, feature, params, trivial);
+    colors.fit(trivial);
+    colors.round();
+    return trivial;
+}
+
 PixelMap fit_given_map(BaseMesh& mesh, const FeatureImage& feature, PixelMap map, const FitParams& params,
                        const Mask& mask) {
     // Half weights place a pixel to within a step times the longest edge of its face; up to this distance

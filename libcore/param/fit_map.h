@@ -34,8 +34,14 @@ struct FitParams {
 PixelMap fit_map(BaseMesh& mesh, const FeatureImage& feature, const FitParams& params,
                  const Progress& progress = {}, const Mask& mask = {});
 
-/// The same for a map that is there already: its weights are rounded to the grid, and folds stay. Without a
-/// choice the grid is that of halves, unless a face is so large that a step would be an eighth of a pixel.
+/// Returns the trivial map with weights that are not rounded, for a mesh that is stored without one, and fits
+/// features to the drawing of the mesh, as fit_map() does.
+PixelMap fit_drawing(BaseMesh& mesh, const FeatureImage& feature, const FitParams& params,
+                     const Mask& mask = {});
+
+/// The same as fit_map() for a map that is there already: its weights are rounded to the grid, and folds
+/// stay. Without a choice the grid is that of halves, unless a face is so large that a step would be an
+/// eighth of a pixel.
 PixelMap fit_given_map(BaseMesh& mesh, const FeatureImage& feature, PixelMap map, const FitParams& params,
                        const Mask& mask = {});
 

@@ -144,11 +144,19 @@ struct Pipeline {
         fit.bary = params.bary;
         fit.space = space;
         fit.keep_colors = params.quadric_colors || params.objective == Objective::kRgb;
-        level.map = tracked ? fit_given_map(level.mesh, feature, *std::move(tracked), fit, mask)
-                            : fit_map(level.mesh, feature, fit, part_of(progress, middle, end), mask);
+        const bool tracked_map = tracked.has_value();
+        if (params.map_is_left_out && !tracked)
+            level.map = fit_drawing(level.mesh, feature, fit, mask);
+        else
+            level.map = tracked ? fit_given_map(level.mesh, feature, *std::move(tracked), fit, mask)
+                                : fit_map(level.mesh, feature, fit, part_of(progress, middle, end), mask);
         limit_alpha(level.mesh, feature, space, mask);
-        const PixelMap trivial = trivial_map(level.mesh, feature.width, feature.height, mask);
-        figures = {map_rms(level.mesh, level.map, feature), map_rms(level.mesh, trivial, feature), {}};
+        if (params.map_is_left_out && !tracked_map) {
+            figures.map_rms = figures.gouraud_rms = map_rms(level.mesh, level.map, feature);
+        } else {
+            const PixelMap trivial = trivial_map(level.mesh, feature.width, feature.height, mask);
+            figures = {map_rms(level.mesh, level.map, feature), map_rms(level.mesh, trivial, feature), {}};
+        }
         for (int c = space.color ? 3 : 0; c < space.features(); ++c)
             figures.auxiliary_rms.push_back(feature_rms(level.mesh, level.map, feature, c) / space.weight(c));
         figures.map_rms /= unit;

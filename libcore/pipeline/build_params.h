@@ -88,6 +88,10 @@ struct BuildParams {
     double exchange = RefineParams().exchange;
     Objective objective = Objective::kLuv;
     double min_quality = RefineParams().min_quality;  ///< of every triangle, collapsed or refined; 0 to 0.8
+    /// The levels' maps are only to say which pixels are inside, for meshes that are written without: `map`
+    /// is kTrivial, maps keep weights that are not rounded, and colours are fitted to the drawing without a
+    /// map.
+    bool map_is_left_out = false;
 };
 
 /// Return the map and the colour weight that a build uses for `params`, defaults filled in.

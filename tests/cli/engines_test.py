@@ -170,6 +170,55 @@ class Engines(CliCase):
         self.assertEqual(areas[0], self.inside.sum())
         self.assertGreater(areas[1], areas[0])
 
+    def faces_of(self, name):
+        """The corners of each level's faces, as sets of places."""
+        document = json.loads((self.folder / f"{name}.gltf").read_text())
+        data = (self.folder / f"{name}.bin").read_bytes()
+        levels = []
+        for mesh in document["meshes"]:
+            (primitive,) = mesh["primitives"]
+
+            def values(index, kind, width):
+                accessor = document["accessors"][index]
+                start = document["bufferViews"][accessor["bufferView"]].get("byteOffset", 0)
+                return np.frombuffer(data, kind, accessor["count"] * width, start).reshape(-1, width)
+
+            place = values(primitive["attributes"]["POSITION"], "<f4", 3)
+            corners = place[values(primitive["indices"], "<u4", 1).reshape(-1, 3)]
+            levels.append(sorted(sorted(map(tuple, face)) for face in corners.tolist()))
+        return levels
+
+    def test_build_without_a_map(self):
+        """The mesh is that of the same build with a map. (Draco would change the order in which vertices find their
+        places at the pixels' edges.)"""
+        picture_files.png(self.folder / "photo.png", picture_files.ramp(48, 32))
+        for picture, options, name in ((f"{self.name}.png", [], "plain"), ("photo.png", ["--level-faces", "150,60"], "two")):
+            report = self.build(picture, "--no-map", *options, output=f"{name}.gltf")
+            self.assertNotIn("map_rms", report)
+            self.assertEqual(report["layer_bytes"], 0)
+            self.assertEqual(report["mesh_bytes"], (self.folder / f"{name}.bin").stat().st_size)
+            self.assertEqual(report["bytes"], sum((self.folder / f"{name}.{end}").stat().st_size for end in ("gltf", "bin")))
+            self.assertFalse((self.folder / f"{name}.exr").exists())
+            whole = self.build(picture, "--draco", "none", *options, output="whole.glb")
+            self.assertEqual([level["faces"] for level in report["levels"]], [level["faces"] for level in whole["levels"]])
+            self.run_ok("imgmesh-convert", "whole.glb", "-o", f"converted {name}.gltf", "--no-map", "-q")
+            self.assertEqual(self.faces_of(name), self.faces_of(f"converted {name}"))
+            # Its colours are the best for what engines draw.
+            self.assertLessEqual(report["gouraud_rms"], whole["gouraud_rms"] * 1.001)
+        for tool in ("imgmesh-info", "imgmesh-compare"):
+            self.assert_error(tool, ["plain.gltf"] + ["photo.png"] * (tool == "imgmesh-compare"), 4, "no pixel map")
+
+    def test_build_without_a_map_and_what_needs_one(self):
+        picture_files.png(self.folder / "photo.png", picture_files.ramp(48, 32))
+        for options in (["--rms", "3"], ["--max-cluster", "100"], ["--map", "relaxed"], ["--bary", "half"], ["--visits"],
+                        ["--projection-color-weight", "0.1"]):
+            self.assert_error("imgmesh-build", ["photo.png", "-o", "x.glb", "--no-map", *options], 2, "--no-map", options[0])
+        self.assert_error("imgmesh-build", ["photo.png", "-o", "x.glb", "--compression", "meshopt"], 2, "--no-map")
+        sizes = {method: self.build("photo.png", "--no-map", "--compression", method, output=f"{method}.glb")["mesh_bytes"]
+                 for method in ("none", "draco", "meshopt")}
+        self.assertLess(sizes["draco"], sizes["none"])
+        self.assertLess(sizes["meshopt"], sizes["none"])
+
     def test_wrong_use(self):
         for args, word in ((["-o", "x.glb", "--as", "spine"], "--as"), (["-o", "x.json", "--as", "polygon2d"], ".tscn"),
                            (["-o", "x.tscn", "--as", "spine"], ".json"), (["-o", "x.svg", "--as", "texturepacker"], ".json"),
