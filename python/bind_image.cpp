@@ -46,11 +46,11 @@ py::object mask(const py::object& self) {
     return view(self, {data.height, data.width}, data.values.data()).attr("view")("bool");
 }
 
-ImagePointer make(const py::array& array, const std::optional<std::string>& color_space,
+ImagePointer make(const py::object& array, const std::optional<std::string>& color_space,
                   const std::vector<std::string>& channel_names, bool values) {
     return image_from_array(
-        array, {word_value("color_space", color_space, color_space_choices()), channel_names, values},
-        "array");
+        array_of_object(array, "array"),
+        {word_value("color_space", color_space, color_space_choices()), channel_names, values}, "array");
 }
 
 std::shared_ptr<ImageValue> shared(const ImagePointer& image) {
@@ -133,7 +133,7 @@ file cannot be written, or exists and overwrite is False.)";
 
 void bind_image(py::module_& module) {
     py::class_<ImageValue, std::shared_ptr<ImageValue>>(module, "Image", py::dynamic_attr(), kImage)
-        .def(py::init([](const py::array& array, const std::optional<std::string>& color_space,
+        .def(py::init([](const py::object& array, const std::optional<std::string>& color_space,
                          const std::vector<std::string>& channel_names,
                          bool values) { return shared(make(array, color_space, channel_names, values)); }),
              py::arg("array"), py::kw_only(), py::arg("color_space") = py::none(),

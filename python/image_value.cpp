@@ -96,8 +96,8 @@ Image shaped(const py::array& array, const ArrayMeaning& meaning, const std::str
     return image;
 }
 
-// Returns the array that numpy makes of an object. Throws where its numbers would not mean what an array's
-// do: those of a Pillow image with a palette or inks, and those under the mask of a masked array.
+}  // namespace
+
 py::array array_of_object(const py::object& object, const std::string& name) {
     const py::object numpy = py::module_::import("numpy");
     if (py::isinstance(object, numpy.attr("ma").attr("MaskedArray")))
@@ -111,8 +111,6 @@ py::array array_of_object(const py::object& object, const std::string& name) {
     }
     return numpy.attr("asarray")(object);
 }
-
-}  // namespace
 
 ImagePointer image_from_array(const py::array& array, const ArrayMeaning& meaning, const std::string& name) {
     const auto value = std::make_shared<ImageValue>();

@@ -29,6 +29,10 @@ struct ArrayMeaning {
     bool values = false;                          ///< as ReadImageOptions::values
 };
 
+/// Returns the array that numpy makes of an object. Throws Error(kBadArgument) where its numbers would not
+/// mean what an array's do: of a Pillow image with a palette or inks, and of a masked array.
+pybind11::array array_of_object(const pybind11::object& object, const std::string& name);
+
 /// Converts an array to an image as reading a PNG (uint8, uint16) or an EXR (float16, float32, float64, alpha
 /// not multiplied in) with these samples would. Copies once.
 ///

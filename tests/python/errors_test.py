@@ -66,6 +66,7 @@ class Errors(unittest.TestCase):
         self.check(imgmesh.ArgumentError, ("mode P", "convert('RGB')"), imgmesh.build, palette)
         self.assertEqual(imgmesh.build(palette.convert("RGB")).width, 24)
         self.check(imgmesh.ArgumentError, ("masked", "mask=~array.mask"), imgmesh.build, np.ma.masked_less(IMAGE[..., 0], 9))
+        self.check(imgmesh.ArgumentError, ("masked",), imgmesh.Image, np.ma.masked_less(IMAGE[..., 0], 9))
         self.check(imgmesh.ArgumentError, ("2 names",), imgmesh.Image, IMAGE, channel_names=["a", "b"])
         self.check(imgmesh.ArgumentError, ("values=True where it is read",), imgmesh.build, imgmesh.Image(IMAGE), values=True)
 
