@@ -267,8 +267,10 @@ Report convert_one(const Options& given, Context& context) {
         const Texture* texture = options.texture.picture.empty() ? nullptr : &options.texture;
         files = level_files(exported, texture);
         if (files.size() > 1 && stream_descriptor(o.output) >= 0)
-            throw Error(ErrorKind::kBadArgument,
-                        "-o -: an .obj with a texture needs files beside it; --no-texture leaves that out");
+            throw Error(
+                ErrorKind::kBadArgument,
+                texture ? "-o -: an .obj with a texture needs files beside it; --no-texture leaves that out"
+                        : "-o -: a Spine skeleton needs its atlas beside it, so its output must be a file");
         for (const std::string& file : files) check_output(file, context.overwrite);
         check_distinct(container.facts.files, files);
         if (!o.image.empty()) check_distinct({o.image}, files);
