@@ -250,8 +250,8 @@ class Pictures(CliCase):
             np.testing.assert_array_equal(picture_files.read(self.folder / "map.png")[..., 3] > 0, ring)
             for mode in ("gouraud", "wire", "flat"):  # the mesh covers the mask, and little else
                 self.run_ok("imgmesh-reconstruct", "out.glb", "-o", "d.png", "--mode", mode, "--level", level)
-                drawn = picture_files.read(self.folder / "d.png")[..., 3] > 0
-                self.assertTrue(np.all(drawn[ring]))
+                drawn = picture_files.read(self.folder / "d.png")[..., 3]  # pixels at an edge are covered in part
+                self.assertTrue(np.all(drawn[ring] > 0))
                 self.assertLess(drawn.sum() - ring.sum(), 0.1 * ring.sum())
         self.run_ok("imgmesh-reconstruct", "out.glb", "-o", "wire.svg", "--mode", "wire")
         self.assert_error("imgmesh-reconstruct", ("out.glb", "-o", "map.jpg"), 2, "map.jpg")
