@@ -234,7 +234,8 @@ Report convert_one(const Options& given, Context& context) {
     if (is_container(o.output) && o.texture.wanted.value_or(false) && !o.image.empty())
         check_distinct({o.image}, container_files(o.output));
     int level = o.level.value_or(0);
-    std::vector<std::string> files;
+    WrittenContainer written;
+    std::vector<std::string>& files = written.files;
     check_level("--level", level, o.input, m);
     context.memory.take_for(o.input, m, bytes_of_pixel(o));
     context.progress(0.5, "write");
@@ -255,7 +256,7 @@ Report convert_one(const Options& given, Context& context) {
             outline();
             options.texture.coords = texture_coords(m);
         }
-        files = write_container(o.output, m, options).files;
+        written = write_container(o.output, m, options);
     } else {
         const LevelOptions exported = level_options(o);
         const bool outline_mesh = o.outline_tolerance && export_kind(exported) != ExportKind::kOutline;
@@ -287,6 +288,10 @@ Report convert_one(const Options& given, Context& context) {
                      {"layers", is_container(o.output) && options.layers},
                      {"texture", !options.texture.picture.empty()},
                      {"bytes", size_of_files(files)}};
+    if (is_container(o.output)) {
+        report["mesh_bytes"] = written.mesh_bytes;
+        report["layer_bytes"] = written.layer_bytes;
+    }
     if (files.size() > 1) report["outputs"] = files;
     return report;
 }

@@ -216,7 +216,10 @@ Report warp_one(const Options& o, Context& context) {
         options.overwrite = context.overwrite;
         options.metadata = container.metadata;
         options.texture = container.texture;  // moves along: vertices keep their texture coordinates
-        written = write_container(o.output, warped, options).files;
+        const WrittenContainer result = write_container(o.output, warped, options);
+        written = result.files;
+        report["mesh_bytes"] = result.mesh_bytes;
+        report["layer_bytes"] = result.layer_bytes;
     } else if (!o.output.empty()) {
         const Image out = warp_image(*image, field, o.size);
         context.progress(0.8, "write");

@@ -40,6 +40,7 @@ struct ContainerOptions {
 struct WrittenContainer {
     std::vector<std::string> files;  ///< of the container, itself first
     std::uint64_t mesh_bytes = 0;    ///< the meshes, as compressed
+    std::uint64_t layer_bytes = 0;   ///< the EXR; 0 without layers
 };
 
 /// Writes `mesh_image`; the extension of `path` (.glb or .gltf) decides the file variant.

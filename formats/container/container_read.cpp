@@ -96,12 +96,7 @@ std::vector<LayerPart> load_layers(const Asset& asset, View bytes, Findings& fin
 }
 
 void add_level_facts(const Asset& asset, View buffer, ContainerFacts& facts) {
-    for (const AssetLevel& level : asset.levels) {
-        for (const ByteRange& bytes :
-             {level.draco, level.indices, level.positions, level.colors, level.hdr, level.texcoords})
-            facts.mesh_bytes += bytes.length;
-        for (const ByteRange& bytes : level.channels) facts.mesh_bytes += bytes.length;
-    }
+    for (const AssetLevel& level : asset.levels) facts.mesh_bytes += stored_bytes(level);
     if (asset.levels[0].is_draco) facts.draco = draco_mode(cut(buffer, asset.levels[0].draco));
 }
 

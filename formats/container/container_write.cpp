@@ -199,7 +199,9 @@ WrittenContainer write_container(const std::string& path, const MeshImage& mesh_
     }
     asset.meshopt = meshopt.views();
     asset.fallback_length = meshopt.fallback_length();
-    const std::uint64_t mesh_bytes = buffer.size();
+    std::uint64_t mesh_bytes = 0;
+    for (const AssetLevel& level : asset.levels) mesh_bytes += stored_bytes(level);
+    if (options.meshopt) mesh_bytes = buffer.size();  // and not those of the fallback
     parts.front().visits = mesh_image.visits;
     if (!texture.picture.empty()) {
         asset.texture_type = picture_type(texture.picture);
@@ -208,9 +210,10 @@ WrittenContainer write_container(const std::string& path, const MeshImage& mesh_
     asset.has_layers = options.layers;
     const std::vector<std::uint8_t> layers =
         options.layers ? encode_exr_layers(parts) : std::vector<std::uint8_t>();
-    if (variant == FileVariant::kGltf) return {write_gltf(path, asset, buffer, layers, options), mesh_bytes};
+    if (variant == FileVariant::kGltf)
+        return {write_gltf(path, asset, buffer, layers, options), mesh_bytes, layers.size()};
     write_glb(path, asset, buffer, layers, options.overwrite);
-    return {{path}, mesh_bytes};
+    return {{path}, mesh_bytes, layers.size()};
 }
 
 }  // namespace imgmesh

@@ -37,6 +37,9 @@ struct AssetLevel {
     bool operator==(const AssetLevel&) const = default;
 };
 
+/// Returns how many bytes of the buffer hold the level's mesh, as compressed by Draco if it is.
+std::uint64_t stored_bytes(const AssetLevel& level);
+
 /// The place of a level in the document.
 struct LevelPlace {
     std::uint64_t node = 0, mesh = 0;

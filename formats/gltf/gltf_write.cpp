@@ -209,6 +209,15 @@ json root_extension(const Asset& asset, int layers_view) {
 
 }  // namespace
 
+std::uint64_t stored_bytes(const AssetLevel& level) {
+    std::uint64_t bytes = 0;
+    for (const ByteRange& range :
+         {level.draco, level.indices, level.positions, level.colors, level.hdr, level.texcoords})
+        bytes += range.length;
+    for (const ByteRange& range : level.channels) bytes += range.length;
+    return bytes;
+}
+
 std::string level_name(std::size_t k) {
     return cat("lod", k);
 }

@@ -41,6 +41,10 @@ class Convert(CliCase):
             written = {path: len(data) for path, data in self.files().items() if path not in before}
             self.assertEqual(report["bytes"], sum(written.values()), name)
             self.assertEqual(sorted(report.get("outputs", [name])), sorted(written))
+            if name.endswith("gltf"):  # whose parts are files of their own
+                self.assertEqual(report["layer_bytes"], written.get(name.replace("gltf", "exr"), 0))
+                padding = written[name.replace("gltf", "bin")] - report["mesh_bytes"]
+                self.assertIn(padding, range(4 * report["levels"]))
 
     def test_round_trips_keep_the_map_exactly(self):
         before = self.map_as_set("c.glb")

@@ -182,6 +182,8 @@ class Warp(CliCase):
             self.assertEqual(report["bytes"], sum((self.folder / file).stat().st_size for file in files))
             info = self.report("imgmesh-info", name, "--validate")
             self.assertTrue(info["valid"])
+            sizes = self.report("imgmesh-info", name)["bytes"]
+            self.assertEqual((report["mesh_bytes"], report["layer_bytes"]), (sizes["meshes"], sizes["layers"]))
             # The map is the unwarped image's; the mesh is another.
             for container in (name, "c.glb"):
                 self.run_ok("imgmesh-reconstruct", container, "-o", container + ".png", "-q")
