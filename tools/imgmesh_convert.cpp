@@ -222,6 +222,18 @@ Texture chosen_texture(const Options& o, MeshImage& m, Texture kept, Context& co
     });
 }
 
+// An image is put on a mesh by where its vertices lie, which is where they were before imgmesh-warp.
+void check_places(const Options& o, const MeshImage& m) {
+    const std::optional<ExportKind> kind = export_kind(level_options(o));
+    const bool sprite = kind && kind != ExportKind::kOutline && !o.outline_tolerance;
+    if (!m.generator.starts_with("imgmesh-warp") || (!sprite && !o.texture.wanted.value_or(false))) return;
+    throw Error(ErrorKind::kUnsupported,
+                cat(o.input,
+                    ": imgmesh-warp has moved its vertices, so they no longer tell where in the image "
+                    "they belong; a texture that is there before, by imgmesh-build --texture, moves "
+                    "along into containers and .obj"));
+}
+
 Report convert_one(const Options& given, Context& context) {
     Options o = given;
     const bool obj = lower_extension(o.output) == ".obj";
@@ -230,6 +242,7 @@ Report convert_one(const Options& given, Context& context) {
     context.progress(0, "read");
     Container container = read_container(o.input, container_limits(o.limits, context.max_memory));
     MeshImage& m = container.mesh_image;
+    check_places(o, m);
     check_distinct(container.facts.files, {o.output});
     if (is_container(o.output) && o.texture.wanted.value_or(false) && !o.image.empty())
         check_distinct({o.image}, container_files(o.output));

@@ -219,6 +219,14 @@ class Engines(CliCase):
         self.assertLess(sizes["draco"], sizes["none"])
         self.assertLess(sizes["meshopt"], sizes["none"])
 
+    def test_a_warped_mesh_is_not_taken_for_the_image(self):
+        """Its vertices have left the places where the image belongs."""
+        self.run_ok("imgmesh-warp", "c.glb", "-o", "warped.glb", "--handle", "16,3:0.5,0.5")
+        for output, *args in (("x.tscn",), ("x.json",), ("x.json", "--as", "spine"), ("x.obj", "--image", "c.png"),
+                              ("x.glb", "--texture", "--image", "c.png")):
+            self.assert_error("imgmesh-convert", ("warped.glb", "-o", output, *args), 5, "warped.glb", "imgmesh-warp")
+        self.run_ok("imgmesh-convert", "warped.glb", "-o", "x.json", "--as", "outline")
+
     def test_wrong_use(self):
         for args, word in ((["-o", "x.glb", "--as", "spine"], "--as"), (["-o", "x.json", "--as", "polygon2d"], ".tscn"),
                            (["-o", "x.tscn", "--as", "spine"], ".json"), (["-o", "x.svg", "--as", "texturepacker"], ".json"),
