@@ -89,7 +89,6 @@ std::vector<Param> make_table() {
          .listed = kWhereItStops},
         {.name = "error",
          .group = size,
-         .everyday = true,
          .kind = number(any_error, stop, &StopParams::error),
          .help = "Largest quadric error that a collapse may reach",
          .listed = kWhereItStops},

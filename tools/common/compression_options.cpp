@@ -7,16 +7,16 @@ namespace imgmesh {
 
 void add_compression_options(CLI::App& app, CompressionOptions& options, const std::string& otherwise) {
     const std::string group = "Container";
-    in_group(add_choice(app, "--draco", options.draco, draco_choices(),
-                        {"Compression of the meshes by Draco", otherwise}),
-             group);
+    advanced(app, in_group(add_choice(app, "--draco", options.draco, draco_choices(),
+                                      {"Compression of the meshes by Draco", otherwise}),
+                           group));
     CLI::Option* const method = add_choice(
         app, "--compression", options.method,
         Choices<Compression>{
             {"draco", Compression::kDraco}, {"meshopt", Compression::kMeshopt}, {"none", Compression::kOff}},
         {"Compression of the meshes: draco, meshopt for engines without Draco and only with --no-map, or "
          "none",
-         otherwise});
+         "as --draco says"});
     exclude(app, in_group(method, group), {"--draco"});
 }
 
