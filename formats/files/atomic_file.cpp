@@ -350,7 +350,9 @@ std::vector<std::uint8_t> read_file(const std::string& path, std::uint64_t max_b
     const Descriptor file(::open(system_path(path).c_str(), O_RDONLY | O_CLOEXEC | O_NOCTTY | wait));
     struct stat info = {};
     if (file.fd < 0 || ::fstat(file.fd, &info) != 0) fail(path, "cannot read", errno);
-    if (S_ISDIR(info.st_mode)) throw Error(ErrorKind::kIo, cat(path, ": cannot read: it is a folder"));
+    if (S_ISDIR(info.st_mode))
+        throw Error(ErrorKind::kIo,
+                    cat(path, ": cannot read: it is a folder, expected a file; name those in it"));
     const bool is_pipe = S_ISFIFO(info.st_mode) && kind == FileKind::kStream;
     if (!S_ISREG(info.st_mode) && !is_pipe)
         throw Error(ErrorKind::kIo, cat(path, ": cannot read: it is not a regular file",

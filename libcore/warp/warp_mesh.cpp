@@ -62,8 +62,10 @@ void check_faces(const BaseMesh& mesh, std::size_t level) {
                             cat("level ", level, ": a vertex would lie at (", p.x(), ",", p.y(),
                                 "), a container holds coordinates below ", kFarthest));
         if (!(signed_area2(a, b, c) > 0))
-            throw Error(ErrorKind::kUnsupported, cat("level ", level, ": face ", f, " would turn over near (",
-                                                     a.x(), ",", a.y(), "), a container holds no such mesh"));
+            throw Error(ErrorKind::kUnsupported,
+                        cat("level ", level, ": face ", f, " would turn over near (", a.x(), ",", a.y(),
+                            "), and a container holds no such mesh; smaller moves, fewer pins or a finer "
+                            "mesh may do"));
     }
 }
 
