@@ -1,4 +1,5 @@
 """Batches that are killed, interrupted and continued; and the journal that makes that possible."""
+import hashlib
 import json
 import os
 import signal
@@ -11,6 +12,12 @@ from support import BIN, CliCase, main
 JOURNAL = ".imgmesh-done.jsonl"
 # What two runs of the same work do not share.
 OWN = ("$schema", "generator", "seconds", "stage_seconds", "status")
+
+
+def sealed(entry):
+    """The line of an entry, with the checksum that makes it one."""
+    text = json.dumps(entry, separators=(",", ":")).encode()[:-1]
+    return text + b',"sha256":"' + hashlib.sha256(text).hexdigest().encode() + b'"}'
 
 
 def facts(file):
@@ -140,12 +147,21 @@ class Journal(CliCase):
         lines = self.journal.read_bytes().splitlines(keepends=True)
         self.assertEqual(len(lines), 3)
         entry = json.loads(lines[0])
+        entry.pop("sha256")
+        self.assertEqual(json.loads(sealed(entry)), json.loads(lines[0]))
+        report = entry["report"]
         deep = "[" * 100000 + "]" * 100000
         bad = [dict(entry, files=files) for files in (None, [], 3, [3], [{"bytes": "x"}], [{"bytes": -1, "sha256": None}])]
-        bad += [dict(entry, report=report) for report in (None, [], "x")] + [dict(entry, journal=2), dict(entry, key=[]), []]
+        bad += [dict(entry, report=report) for report in (None, [], "x")] + [dict(entry, journal=1), dict(entry, key=[]), []]
         bad += [dict(entry, report={"outputs": outputs}) for outputs in (3, [3], ["../x"], {"a": "/etc/passwd"})]
         garbage = [b"\xff\x00{", deep.encode(), b'{"report": ' + deep.encode() + b"}", b"x" * (3 << 20), b"{}", b"null"]
-        garbage += [json.dumps(value).encode() for value in bad]
+        for name, values in {"parameters": (None, "x", []), "input": (None, 3), "output": (None, 3, {}), "warnings": (None, "x", [3]),
+                             "inputs": ([3], [{"input": "p0.png"}]), "target_reached": (None, "x"), "outputs": (None, "x", [None])}.items():
+            bad += [dict(entry, report=dict(report, **{name: value})) for value in values]
+        bad += [dict(entry, report={k: v for k, v in report.items() if k != name}) for name in ("parameters", "input")]
+        garbage += [sealed(value) for value in bad if value]
+        garbage += [line.replace(b'"vertices":', b'"vertices":1') for line in lines]  # edited
+        garbage += [line.replace(b'"key":', b'"key" :') for line in lines]
         for content, expected in ((b"\n".join([*garbage, b"".join(lines)]), "skipped"),
                                   (b"".join(lines)[:-1], "skipped"), (b"\n".join(garbage), "done"), (b"", "done")):
             self.journal.write_bytes(content)
@@ -155,6 +171,53 @@ class Journal(CliCase):
         report = self.report("imgmesh-build", *names, "-o", "out/", "--skip-existing")
         self.assertEqual(report["summary"]["skipped"], 1)
         self.assertEqual(self.statuses(), 3 * ["skipped"])
+
+    def test_every_member_of_a_wrong_type(self):
+        """Whatever stands in a sealed line, the run ends well, with the report that its schema wants."""
+        lines = self.journal.read_bytes().splitlines(keepends=True)
+        line = next(line for line in lines if b'"output":"p0.glb"' in line)
+        entry = json.loads(line)
+        entry.pop("sha256")
+        self.journal.write_bytes(line)
+        self.assertEqual(self.statuses(files=["p0.png"]), ["skipped"])
+        for value in (None, [[]]):
+            self.journal.write_bytes(sealed(dict(entry, report={name: value for name in entry["report"]})) + b"\n")
+            self.assertEqual(self.statuses(files=["p0.png"]), ["done"])
+
+    def test_strict_and_warnings(self):
+        """With --strict, what an earlier run could not reach fails; without, its warnings are told again."""
+        self.run_tool("imgmesh-build", "p0.png", "p1.png", "-o", "out/", "--faces", "9999", "-q")
+        args = ("imgmesh-build", "p0.png", "p1.png", "-o", "out/", "--faces", "9999", "--skip-existing")
+        text = self.run_tool(*args)
+        self.assertEqual((text.returncode, text.stderr.count("imgmesh-build: warning: p")), (0, 2), text.stderr)
+        report = self.report(*args)
+        self.assertEqual((report["summary"]["skipped"], len(report["warnings"])), (2, 2))
+        os.rename(self.folder / "p1.png", self.folder / "q.png")
+        os.rename(self.folder / "out/p1.glb", self.folder / "out/q.glb")
+        entry = [e for e in map(json.loads, self.journal.read_bytes().splitlines()) if e["output"] == "p1.glb"][-1]
+        entry.pop("sha256")
+        with self.journal.open("ab") as file:
+            file.write(sealed(dict(entry, output="q.glb")) + b"\n")
+        renamed = self.report("imgmesh-build", "q.png", "-o", "out/", "--faces", "9999", "--skip-existing")["images"][0]
+        self.assertEqual((renamed["status"], renamed["warnings"][0][:7]), ("skipped", "q.png: "))
+        os.rename(self.folder / "q.png", self.folder / "p1.png")
+        os.rename(self.folder / "out/q.glb", self.folder / "out/p1.glb")
+        report = self.report(*args, "--strict", code=5)
+        self.assertEqual(report["summary"]["failed"], 2)
+        for file in report["images"]:
+            self.assertIs(file["target_reached"], False)
+            self.assertIn(file["reason"], file["failure"]["message"])
+        args = ("imgmesh-segment", "out/p0.glb", "-o", "s/", "--superpixels", "9999", "--skip-existing")
+        self.run_tool(*args)
+        self.assertEqual(self.report(*args)["status"], "skipped")
+        self.assertIs(self.report(*args, "--strict", code=5)["target_reached"], False)
+
+    def test_a_journal_that_is_too_large(self):
+        """Is told once, and not read."""
+        os.truncate(self.journal, 1 << 30)
+        report = self.report("imgmesh-build", "p0.png", "p1.png", "-o", "out/", "--skip-existing")
+        self.assertEqual(report["summary"]["done"], 2)
+        self.assertEqual([JOURNAL in warning for warning in report["warnings"]], [True])
 
     def test_no_journal_can_be_kept(self):
         """A link is not followed; the work is done, and a warning says that it will be done again."""

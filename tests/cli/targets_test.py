@@ -93,7 +93,7 @@ class Targets(CliCase):
         self.assertEqual([image["target_reached"] for image in report["images"]], [False, True])
         report = self.report("imgmesh-build", "in.png", "big.png", "-o", "strict/", "--faces", "500", "--strict", code=5)
         self.assertEqual(report["images"][0]["failure"]["code"], 5)
-        self.assertEqual([path.name for path in (self.folder / "strict").iterdir()], ["big.glb"])
+        self.assertEqual([path.name for path in (self.folder / "strict").glob("*.glb")], ["big.glb"])
 
     def test_numbers_of_regions(self):
         self.build("in.png", "--faces", "40", output="c.glb")

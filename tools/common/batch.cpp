@@ -18,6 +18,7 @@
 #include "tools/common/jobs.h"
 #include "tools/common/joint_progress.h"
 #include "tools/common/progress_bar.h"
+#include "tools/common/targets.h"
 #include "tools/common/text.h"
 
 namespace imgmesh {
@@ -96,7 +97,18 @@ FileResult Batch::made_before(const Job& job) {
     if (!options_.skip_existing || file.key.empty()) return file;
     file.report = options_.journal->find(journal_name(job), file.key, written_files(job));
     if (file.report.is_null()) return file;
+    // What missed its numbers fails now, in its own words.
+    if (options_.strict && file.report.value("target_reached", Report()) == false) {
+        file.report = nullptr;
+        return file;
+    }
     file.status = FileStatus::kSkipped;
+    const std::string earlier = file.report["input"].get<std::string>() + ": ";
+    for (std::string warning : file.report.value("warnings", std::vector<std::string>())) {
+        // The same content may have had another name.
+        if (warning.starts_with(earlier)) warning = cat(job.input, ": ", warning.substr(earlier.size()));
+        file.warnings.push_back(std::move(warning));
+    }
     for (const char* member : {"input", "output", "status"}) file.report.erase(member);
     return file;
 }
@@ -107,6 +119,9 @@ void Batch::do_work(std::size_t index, FileResult& file) {
                     JobMemory(gate_, options_.max_memory), progress_of(index)};
     try {
         file.report = tool_.run(job, context);
+    } catch (const MissedTargets& error) {
+        context.failures.push_back(current_failure());
+        file.missed = error.missed();
     } catch (...) {
         // A bad file does not stop the others.
         context.failures.push_back(current_failure());
@@ -136,6 +151,8 @@ void Batch::work(std::size_t index) {
     }
     FileResult file = made_before(job);
     if (file.status != FileStatus::kSkipped) do_work(index, file);
+    if (index == 0 && options_.journal && !options_.journal->trouble().empty())
+        file.warnings.push_back(options_.journal->trouble());
     {
         const std::lock_guard lock(mutex_);
         if (concluded_) return;  // and the process is about to end

@@ -20,6 +20,7 @@ struct BatchOptions {
     bool quiet = false;
     int stream = 1;  ///< where reports go: standard output, or standard error if that has an output
     bool overwrite = true;
+    bool strict = false;  ///< of --strict
     std::uint64_t max_memory = 0;
     Report parameters;                      ///< what the command line says of the results, for the reports
     std::unique_ptr<Journal> journal = {};  ///< of the outputs' folder; null: none is kept

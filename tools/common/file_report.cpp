@@ -8,6 +8,7 @@
 #include "formats/files/stream_file.h"
 #include "tools/common/jobs.h"
 #include "tools/common/pipes.h"
+#include "tools/common/targets.h"
 
 namespace imgmesh {
 namespace {
@@ -67,6 +68,7 @@ Report file_report(const Job& job, const FileResult& file, const Report& paramet
     if (report.contains("parameters")) all.update(report["parameters"]);
     report["parameters"] = std::move(all);
     if (!file.warnings.empty()) report["warnings"] = file.warnings;
+    if (!file.missed.empty()) report.update(target_report(file.missed));
     if (!file.failures.empty())
         report["failure"] = {{"code", file.failures[0].code}, {"message", file.failures[0].message}};
     return report;

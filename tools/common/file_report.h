@@ -36,6 +36,7 @@ struct FileResult {
     FileStatus status = FileStatus::kInterrupted;
     Report report = {};  ///< the tool's; null if it has made none
     std::vector<std::string> warnings = {};
+    std::vector<std::string> missed = {};  ///< what --strict refused
     std::vector<Failure> failures = {};
     std::map<std::string, std::string> hashes = {};  ///< SHA-256 of what was read, by its name
     FileState input = {};                            ///< before it was read

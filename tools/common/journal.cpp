@@ -5,11 +5,14 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <span>
+#include <string_view>
 
 #include "formats/container/sidecar_file.h"
 #include "formats/files/extension.h"
@@ -21,14 +24,50 @@ namespace fs = std::filesystem;
 namespace imgmesh {
 namespace {
 
-constexpr int kVersion = 1;
+constexpr int kVersion = 2;
 // What no journal of ours reaches: a line takes 2 to 5 kB.
 constexpr std::uint64_t kMostBytes = std::uint64_t{1} << 30;
 constexpr std::size_t kMostLine = std::size_t{1} << 20;
 constexpr int kMostDepth = 16;
 
+// Ends a line, with the SHA-256 of all before it: what was edited or damaged is not believed.
+constexpr std::string_view kSeal = ",\"sha256\":\"", kEnd = "\"}";
+constexpr std::size_t kHash = 64;
+
+std::span<const std::uint8_t> bytes_of(std::string_view text) {
+    return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
+}
+
+std::string sealed(std::string_view content) {
+    return cat(content, kSeal, sha256_hex(bytes_of(content)), kEnd);
+}
+
+bool is_sealed(std::string_view line) {
+    constexpr std::size_t kTail = kSeal.size() + kHash + kEnd.size();
+    return line.size() > kTail && sealed(line.substr(0, line.size() - kTail)) == line;
+}
+
+// Returns whether a report has what the code relies on. Whoever seals a line can still write any.
+bool is_report(const Report& report) {
+    if (!report.is_object() || report.contains("inputs")) return false;
+    const auto fits = [&](const char* member, auto is) {
+        return report.contains(member) && std::invoke(is, report[member]);
+    };
+    if (!fits("parameters", &Report::is_object) || !fits("input", &Report::is_string)) return false;
+    if (report.contains("output") && !report["output"].is_string()) return false;
+    if (report.contains("target_reached") && !report["target_reached"].is_boolean()) return false;
+    const auto is_texts = [&](const char* member) {
+        const Report& list = report[member];
+        return list.is_array() && std::ranges::all_of(list, &Report::is_string);
+    };
+    for (const char* member : {"warnings", "outputs"})
+        if (report.contains(member) && !is_texts(member)) return false;
+    return true;
+}
+
 // Returns the line's object, or null.
 Report parse_entry(const std::string& line) {
+    if (!is_sealed(line)) return nullptr;
     bool too_deep = false;
     const auto watch = [&](int depth, Report::parse_event_t, Report&) {
         too_deep = too_deep || depth > kMostDepth;
@@ -38,7 +77,7 @@ Report parse_entry(const std::string& line) {
     if (too_deep || !entry.is_object()) return nullptr;
     const auto is_text = [&](const char* key) { return entry.contains(key) && entry[key].is_string(); };
     if (entry.value("journal", Report()) != kVersion || !is_text("key") || !is_text("output")) return nullptr;
-    if (!entry.contains("report") || !entry["report"].is_object()) return nullptr;
+    if (!entry.contains("report") || !is_report(entry["report"])) return nullptr;
     return entry;
 }
 
@@ -53,20 +92,14 @@ Report facts_of(const std::vector<std::string>& files) {
 }
 
 // Adds the files that a report lists beside the output `first` and that stand in the same folder: whoever
-// wrote the report may not point elsewhere. Returns false if that is not what it has.
-bool add_beside(const Report& report, const std::string& first, std::vector<std::string>& files) {
-    if (!report.contains("outputs")) return true;
+// wrote the report may not point elsewhere.
+void add_beside(const Report& report, const std::string& first, std::vector<std::string>& files) {
+    if (!report.contains("outputs")) return;
     for (const Report& path : report["outputs"]) {
-        if (!path.is_string()) return false;
         const fs::path name = fs::path(path.get<std::string>()).filename();
         const fs::path file = fs::path(first).parent_path() / name;
         if (name != fs::path(first).filename()) files.push_back(file.string());
     }
-    return true;
-}
-
-std::span<const std::uint8_t> bytes_of(const std::string& text) {
-    return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
 }
 
 // The first file that a job writes.
@@ -100,9 +133,11 @@ Journal::Journal(const std::string& folder) : path_((fs::path(folder) / kName).s
 
 void Journal::read(const std::set<std::string>& outputs) {
     struct stat info = {};
-    if (::lstat(path_.c_str(), &info) != 0 || !S_ISREG(info.st_mode) ||
-        static_cast<std::uint64_t>(info.st_size) > kMostBytes)
+    if (::lstat(path_.c_str(), &info) != 0 || !S_ISREG(info.st_mode)) return;
+    if (static_cast<std::uint64_t>(info.st_size) >= kMostBytes) {
+        trouble_ = cat(path_, ": has 1 GiB or more and is not used, so nothing is skipped; remove it");
         return;
+    }
     std::ifstream in(path_, std::ios::binary);
     std::string line;
     for (bool whole = true; in && next_line(in, line, whole);) {
@@ -120,7 +155,7 @@ Report Journal::find(const std::string& output, const std::string& key,
     Report entry = parse_entry(line->second);
     if (entry["key"] != key) return nullptr;
     std::vector<std::string> all = files;
-    if (!add_beside(entry["report"], files.front(), all)) return nullptr;
+    add_beside(entry["report"], files.front(), all);
     // Sizes first: files that were cut short need not be read.
     const Report known = entry.contains("files") ? entry["files"] : Report();
     if (!known.is_array() || known.size() != all.size()) return nullptr;
@@ -143,7 +178,9 @@ void Journal::add(const std::string& output, const std::string& key, const std::
                           {"output", output},
                           {"files", facts_of(all)},
                           {"report", report}};
-    std::string line = entry.dump(-1, ' ', false, Report::error_handler_t::replace) + '\n';
+    std::string content = entry.dump(-1, ' ', false, Report::error_handler_t::replace);
+    content.pop_back();  // the brace
+    std::string line = sealed(content) + '\n';
     const std::lock_guard lock(mutex_);
     const int fd =
         ::open(path_.c_str(), O_RDWR | O_APPEND | O_CREAT | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK, 0666);

@@ -25,8 +25,11 @@ class Journal {
     explicit Journal(const std::string& folder);
 
     /// Reads the entries of these outputs, names without a folder. Lines that are torn, too long or no
-    /// entries are left out; a journal that is no regular file, or of more than 1 GiB, has none.
+    /// entries are left out; a journal that is no regular file, or of 1 GiB or more, has none.
     void read(const std::set<std::string>& outputs);
+
+    /// Returns why read() did not use the journal, in a line for its user; "" if it did or there is none.
+    const std::string& trouble() const { return trouble_; }
 
     /// Returns the report of `output` if it was made by `key` and the files, its own first, are still what
     /// they were; null if not. Reads the files. Any thread may call it.
@@ -38,7 +41,7 @@ class Journal {
              const Report& report);
 
   private:
-    std::string path_;
+    std::string path_, trouble_;
     std::map<std::string, std::string> line_of_;
     std::mutex mutex_;
 };

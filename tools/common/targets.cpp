@@ -2,7 +2,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include "libcore/base/error.h"
 #include "tools/common/options.h"
 
 namespace imgmesh {
@@ -24,9 +23,12 @@ void add_strict_option(CLI::App& app, bool& strict) {
              "General");
 }
 
+MissedTargets::MissedTargets(const std::string& input, std::vector<std::string> missed)
+    : Error(ErrorKind::kUnsupported, cat(input, ": ", joined(missed))), missed_(std::move(missed)) {}
+
 void tell_missed(const std::string& input, const std::vector<std::string>& missed, bool strict,
                  std::vector<std::string>& warnings) {
-    if (strict && !missed.empty()) throw Error(ErrorKind::kUnsupported, cat(input, ": ", joined(missed)));
+    if (strict && !missed.empty()) throw MissedTargets(input, missed);
     for (const std::string& line : missed) warnings.push_back(cat(input, ": ", line));
 }
 

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "libcore/base/error.h"
 #include "tools/common/tool_main.h"
 
 namespace imgmesh {
@@ -11,8 +12,19 @@ namespace imgmesh {
 /// Adds --strict.
 void add_strict_option(CLI::App& app, bool& strict);
 
-/// Appends a warning about `input` for each line of `missed`. Throws Error(kUnsupported) instead if `strict`,
-/// so that nothing is written.
+/// An Error(kUnsupported) about `input` that tells reports what was not reached.
+class MissedTargets : public Error {
+  public:
+    MissedTargets(const std::string& input, std::vector<std::string> missed);
+
+    const std::vector<std::string>& missed() const { return missed_; }
+
+  private:
+    std::vector<std::string> missed_;
+};
+
+/// Appends a warning about `input` for each line of `missed`. Throws MissedTargets instead if `strict`, so
+/// that nothing is written.
 void tell_missed(const std::string& input, const std::vector<std::string>& missed, bool strict,
                  std::vector<std::string>& warnings);
 

@@ -153,6 +153,8 @@ ExitCode run_parsed(const Tool& given, const CLI::App& app, FileOptions files, c
     options.json_lines = common.json_lines;
     options.quiet = common.quiet;
     options.overwrite = common.overwrite;
+    const CLI::Option* const strict = app.get_option_no_throw("--strict");
+    options.strict = strict != nullptr && strict->count() > 0;
     options.max_memory = common.max_memory.value_or(usual_max_memory());
     options.parameters = parameters_report(given, app);
     const Pipes pipes(given, files, most_input(options));
