@@ -44,7 +44,8 @@ class Night(CliCase):
     def cut_short(self, name, *args):
         """Sends a signal when some files are done, and gives the standard output."""
         process = subprocess.Popen([str(BIN / "imgmesh-build"), *self.names, "-o", "out/", *args], cwd=self.folder,
-                                   stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+                                   stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                                   bufsize=0)  # with a buffer communicate() would lose lines
         lines = [process.stdout.readline() for _ in range(12)]
         process.send_signal(name)
         out = process.communicate(timeout=60)[0]
@@ -54,6 +55,8 @@ class Night(CliCase):
     def test_killed_twice_and_continued(self):
         whole = self.report("imgmesh-build", *self.names, "-o", "whole/", code=4)
         self.cut_short(signal.SIGKILL)  # without the option
+        for leftover in (self.folder / "out").glob(".imgmesh-[0-9]*"):
+            leftover.unlink()  # of a kill between a file's writing and its name
         done = len(self.outputs("out"))
         self.assertTrue(10 <= done < 90, done)
         lines = [json.loads(line) for line in self.cut_short(signal.SIGINT, "--skip-existing", "--jsonl").splitlines()]
@@ -148,7 +151,8 @@ class Journal(CliCase):
         self.assertEqual(len(lines), 3)
         entry = json.loads(lines[0])
         entry.pop("sha256")
-        self.assertEqual(json.loads(sealed(entry)), json.loads(lines[0]))
+        content, seal = lines[0].rsplit(b',"sha256":"', 1)
+        self.assertEqual(seal, hashlib.sha256(content).hexdigest().encode() + b'"}\n')
         report = entry["report"]
         deep = "[" * 100000 + "]" * 100000
         bad = [dict(entry, files=files) for files in (None, [], 3, [3], [{"bytes": "x"}], [{"bytes": -1, "sha256": None}])]
