@@ -79,8 +79,10 @@ py::dict channels(const ComparisonValue& value) {
 
 void bind_compare(py::module_& module) {
     using D = ImageDifference;
-    py::class_<ComparisonValue, ComparisonPointer>(
-        module, "Comparison", "The differences of two images. Arrays are read-only views.")
+    py::class_<ComparisonValue, ComparisonPointer> comparison(
+        module, "Comparison", py::is_final(), "The differences of two images. Arrays are read-only views.");
+    refuse_new(comparison);
+    comparison
         .def_property_readonly("pixels", figure(&D::pixels),
                                "Pixels compared: not transparent in either image.")
         .def_property_readonly("in_one_only", figure(&D::in_one_only),

@@ -211,7 +211,8 @@ void bind_arrays(Class& bound, const auto& of) {
 
 void bind_container(py::module_& module) {
     module.attr("NO_FACE") = kNone;
-    py::class_<LevelValue, std::shared_ptr<LevelValue>> level(module, "Level", kLevel);
+    py::class_<LevelValue, std::shared_ptr<LevelValue>> level(module, "Level", py::is_final(), kLevel);
+    refuse_new(level);
     bind_arrays(level, [](auto property) { return property; });
     level
         .def_property_readonly(
@@ -224,7 +225,8 @@ void bind_container(py::module_& module) {
                        l.level().mesh.faces.size(), " faces>");
         });
 
-    py::class_<MeshValue, MeshPointer> mesh(module, "Mesh", kMesh);
+    py::class_<MeshValue, MeshPointer> mesh(module, "Mesh", py::is_final(), kMesh);
+    refuse_new(mesh);
     bind_arrays(mesh, [](auto property) { return of_finest(property); });
     const auto source = [](const auto& get) {
         return [get](const MeshValue& m) { return get(m.mesh_image().source); };

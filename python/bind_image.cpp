@@ -132,7 +132,9 @@ file cannot be written, or exists and overwrite is False.)";
 }  // namespace
 
 void bind_image(py::module_& module) {
-    py::class_<ImageValue, std::shared_ptr<ImageValue>>(module, "Image", py::dynamic_attr(), kImage)
+    py::class_<ImageValue, std::shared_ptr<ImageValue>> bound(module, "Image", py::dynamic_attr(),
+                                                              py::is_final(), kImage);
+    bound
         .def(py::init([](const py::object& array, const std::optional<std::string>& color_space,
                          const std::vector<std::string>& channel_names,
                          bool values) { return shared(make(array, color_space, channel_names, values)); }),
@@ -177,6 +179,7 @@ void bind_image(py::module_& module) {
                        name_of(dtype_names(), v.image.sample_type), " ",
                        color_space_name(v.image.color_space), ">");
         });
+    construct_in_new(bound);
     module.def(
         "read_image",
         [](const py::object& path, const py::kwargs& arguments) { return shared(read(path, arguments)); },

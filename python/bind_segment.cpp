@@ -153,8 +153,10 @@ Raises ArgumentError for a parameter out of range.)";
 }  // namespace
 
 void bind_segment(py::module_& module) {
-    py::class_<SegmentationValue, SegmentationPointer>(module, "Segmentation",
-                                                       "An image cut into regions. It never changes.")
+    py::class_<SegmentationValue, SegmentationPointer> segmentation(
+        module, "Segmentation", py::is_final(), "An image cut into regions. It never changes.");
+    refuse_new(segmentation);
+    segmentation
         .def_property_readonly(
             "labels", labels,
             "The region of every pixel, from 0, height x width of uint32; NO_FACE outside the "

@@ -1,6 +1,6 @@
 import os
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from typing import Any, Final, Literal, TypeAlias, TypedDict
+from typing import Any, Final, Literal, TypeAlias, TypedDict, final
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -34,6 +34,7 @@ class OutOfMemoryError(Error, MemoryError): ...
 class InternalError(Error, RuntimeError): ...
 class Warning(UserWarning): ...
 
+@final
 class Image:
     def __init__(
         self,
@@ -81,6 +82,7 @@ class _Arrays:
     @property
     def mask(self) -> NDArray[np.bool_]: ...
 
+@final
 class Level(_Arrays):
     @property
     def index(self) -> int: ...
@@ -109,6 +111,7 @@ class _Facts(TypedDict):
     layer_bytes: int
     texture_bytes: int
 
+@final
 class Mesh(_Arrays):
     @property
     def levels(self) -> tuple[Level, ...]: ...
@@ -193,6 +196,7 @@ class _Region(TypedDict):
     box: tuple[int, int, int, int]
     neighbors: dict[int, int]
 
+@final
 class Segmentation:
     @property
     def labels(self) -> NDArray[np.uint32]: ...
@@ -207,6 +211,7 @@ class Segmentation:
     def contours(self) -> NDArray[np.float32]: ...
     def write(self, path: _Path, *, overwrite: bool = True) -> None: ...
 
+@final
 class Comparison:
     @property
     def pixels(self) -> int: ...

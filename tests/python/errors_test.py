@@ -121,6 +121,13 @@ class Errors(unittest.TestCase):
             self.assertIn("9999 regions", mesh.segment(segments=9999).missed)
         self.assertEqual(mesh.segment().missed, "")
 
+    def test_no_object_is_without_its_value(self):
+        for kind in (imgmesh.Comparison, imgmesh.Image, imgmesh.Level, imgmesh.Mesh, imgmesh.Segmentation):
+            for make in (kind, lambda: kind.__new__(kind), lambda: kind.__base__.__new__(kind), lambda: object.__new__(kind),
+                         lambda: type("Other", (kind,), {})):
+                with self.subTest(kind), self.assertRaises(TypeError):
+                    make()
+
     def test_the_kinds(self):
         for kind, base in ((imgmesh.ArgumentError, ValueError), (imgmesh.FileError, OSError),
                            (imgmesh.BadFileError, ValueError), (imgmesh.UnsupportedError, ValueError),
