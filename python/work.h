@@ -3,6 +3,7 @@
 
 #include <pybind11/pybind11.h>
 
+#include <functional>
 #include <optional>
 #include <utility>
 
@@ -24,11 +25,31 @@ void check_signals();
 /// from 1 to 1024.
 int thread_count(const std::optional<int>& threads);
 
+/// While it lives, this thread is without the GIL. A thread that Python will not let back in, as it is at its
+/// end, stops here for ever instead: it ends with the process.
+class WithoutGil {
+  public:
+    WithoutGil();
+    ~WithoutGil();
+    WithoutGil(const WithoutGil&) = delete;
+    WithoutGil& operator=(const WithoutGil&) = delete;
+
+  private:
+    PyThreadState* state_;
+};
+
+/// Calls `use` with the GIL, from a thread that may or may not have it, and throws what that throws. Stops
+/// for ever as WithoutGil does.
+void with_gil(const std::function<void()>& use);
+
+/// Makes Python stop the work of daemon threads before it ends.
+void stop_work_at_exit();
+
 /// Returns the result of `work`, done without the GIL by at most `threads` threads. Ctrl-C ends it.
 template <typename Work>
 auto without_gil(const std::optional<int>& threads, Work&& work) {
     const ThreadLimit limit(thread_count(threads));
-    const pybind11::gil_scoped_release release;
+    const WithoutGil released;
     const InterruptCheck check(check_signals);
     return std::forward<Work>(work)();
 }

@@ -1,5 +1,7 @@
 """Long work: progress, Ctrl-C, other threads."""
 import signal
+import subprocess
+import sys
 import threading
 import time
 import unittest
@@ -10,6 +12,17 @@ import imgmesh
 import picture_files
 
 IMAGE = np.round(picture_files.ramp(48, 32) * 255).astype(np.uint8)
+# Ends while daemon threads build.
+ENDS = """
+import threading, time, numpy, imgmesh
+image = numpy.random.default_rng(1).integers(0, 256, (400, 400, 3), numpy.uint8)
+def work(progress):
+    while True:
+        imgmesh.build(image, progress=progress)
+for progress in (None, lambda fraction, stage: None):
+    threading.Thread(target=work, args=(progress,), daemon=True).start()
+time.sleep({})
+"""
 LARGE = np.random.default_rng(1).integers(0, 256, (800, 1000, 3), np.uint8)
 
 
@@ -49,6 +62,11 @@ class Work(unittest.TestCase):
                 imgmesh.build(LARGE, preset="best", refine=300)
         presser.join()
         self.assertLess(time.monotonic() - start, 10)  # the build would take minutes
+
+    def test_daemon_threads_at_the_end(self):
+        for seconds in (0.05, 0.3, 0.6):
+            run = subprocess.run([sys.executable, "-c", ENDS.format(seconds)], capture_output=True, text=True, timeout=60)
+            self.assertEqual((run.returncode, run.stdout, run.stderr), (0, "", ""))
 
     def test_other_threads_run_meanwhile(self):
         ticks, done = [0], threading.Event()
