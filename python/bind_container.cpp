@@ -123,14 +123,18 @@ py::object report(const MeshValue& mesh) {
                                       py::arg("refine") = r.seconds.refine, py::arg("map") = r.seconds.map));
 }
 
+py::list file_names(const std::vector<std::string>& files) {
+    py::list names;
+    for (const std::string& file : files)
+        names.append(py::module_::import("os").attr("fsdecode")(py::bytes(file)));
+    return names;
+}
+
 py::object facts(const MeshValue& mesh) {
     const ContainerFacts& f = mesh.container.facts;
     if (f.files.empty()) return py::none();
-    py::list files;
-    for (const std::string& file : f.files)
-        files.append(py::module_::import("os").attr("fsdecode")(py::bytes(file)));
     return py::dict(py::arg("version") = f.version, py::arg("draco") = name_of(draco_choices(), f.draco),
-                    py::arg("files") = files, py::arg("total_bytes") = f.total_bytes,
+                    py::arg("files") = file_names(f.files), py::arg("total_bytes") = f.total_bytes,
                     py::arg("mesh_bytes") = f.mesh_bytes, py::arg("layer_bytes") = f.layer_bytes,
                     py::arg("texture_bytes") = f.texture_bytes);
 }
@@ -140,18 +144,18 @@ MeshPointer read(const py::object& path, const std::optional<int>& threads) {
     return without_gil(threads, [&] { return std::make_shared<MeshValue>(MeshValue{read_container(name)}); });
 }
 
-void write(const MeshValue& mesh, const py::object& path, const std::optional<std::string>& draco,
-           bool overwrite, const std::optional<int>& threads) {
+py::dict write(const MeshValue& mesh, const py::object& path, const std::optional<std::string>& draco,
+               bool overwrite, const std::optional<int>& threads) {
     ContainerOptions options;
     options.draco = word_value("draco", draco, draco_choices()).value_or(mesh.container.facts.draco);
     options.overwrite = overwrite;
     options.metadata = mesh.container.metadata;
     options.texture = mesh.container.texture;
     const std::string name = path_text(path);
-    without_gil(threads, [&] {
-        write_container(name, mesh.mesh_image(), options);
-        return true;
-    });
+    const WrittenContainer written =
+        without_gil(threads, [&] { return write_container(name, mesh.mesh_image(), options); });
+    return py::dict(py::arg("files") = file_names(written.files), py::arg("mesh_bytes") = written.mesh_bytes,
+                    py::arg("layer_bytes") = written.layer_bytes);
 }
 
 constexpr char kMesh[] = R"(An image as small triangle meshes, each with a pixel map: what a container holds.
@@ -170,9 +174,9 @@ Reads a container (.glb, .gltf) and checks all of it.
 Raises FileError if a file cannot be read, BadFileError for a file that is no sound container, UnsupportedError
 for one of a newer version.)";
 
-constexpr char kWrite[] = R"(write(path, *, draco=None, overwrite=True, threads=None)
+constexpr char kWrite[] = R"(write(path, *, draco=None, overwrite=True, threads=None) -> dict
 
-Writes the container; the name's extension (.glb, .gltf) decides the kind. The bytes are those that imgmesh-build
+Writes the container and returns its files, mesh_bytes and layer_bytes, as facts of a mesh that is read has them; the name's extension (.glb, .gltf) decides the kind. The bytes are those that imgmesh-build
 writes with the same parameters. Draco chooses an order of vertices and faces of its own, so that numbers of
 vertices and faces change unless draco is 'none'.
 

@@ -102,6 +102,11 @@ class _Report(TypedDict):
     missed: list[str]
     seconds: dict[str, float]
 
+class _Written(TypedDict):
+    files: list[str]
+    mesh_bytes: int
+    layer_bytes: int
+
 class _Facts(TypedDict):
     version: str
     draco: str
@@ -143,7 +148,7 @@ class Mesh(_Arrays):
     def facts(self) -> _Facts | None: ...
     def write(
         self, path: _Path, *, draco: _Draco | None = None, overwrite: bool = True, threads: int | None = None
-    ) -> None: ...
+    ) -> _Written: ...
     def reconstruct(
         self,
         mode: _Mode = "map",
