@@ -21,14 +21,33 @@ namespace {
 // As imgmesh-build's (docs/decisions/0031-python.md).
 constexpr char kGenerator[] = "imgmesh-warp " IMGMESH_VERSION;
 
+// What JSON makes of a value that it has none for: numpy's numbers and arrays as Python's.
+py::object plain_value(const py::object& value) {
+    if (py::hasattr(value, "tolist")) return value.attr("tolist")();
+    throw py::type_error(
+        cat("edits: expected numbers, words, lists and dicts, found ", std::string(py::repr(value))));
+}
+
+std::string json_text(const py::object& document) {
+    try {
+        return py::str(py::module_::import("json").attr("dumps")(
+            document, py::arg("default") = py::cpp_function(plain_value)));
+    } catch (const py::error_already_set& e) {
+        if (e.matches(PyExc_RecursionError))
+            throw Error(ErrorKind::kBadArgument, "edits: lists and dicts within each other are too deep");
+        if (e.matches(PyExc_ValueError))
+            throw Error(ErrorKind::kBadArgument, "edits: a list or dict holds itself");
+        throw;
+    }
+}
+
 // A path of a file of edits, or what such a file holds: a list of edits or the whole object.
 WarpEdits edits_from(const py::object& edits) {
     if (edits.is_none()) return {};
     if (is_path(edits)) return read_edits(path_text(edits));
     py::object document = edits;
     if (!py::isinstance<py::dict>(edits)) document = py::dict(py::arg("edits") = py::list(edits));
-    const std::string text = py::str(py::module_::import("json").attr("dumps")(document));
-    return edits_from_json(text, "edits");
+    return edits_from_json(json_text(document), "edits");
 }
 
 OutputSize size_of(const std::optional<std::pair<int, int>>& size) {
