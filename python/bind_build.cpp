@@ -3,6 +3,7 @@
 
 #include "formats/picture/texture_file.h"
 #include "libcore/base/range.h"
+#include "libcore/image/feature_space.h"
 #include "libcore/mesh/outer_edge.h"
 #include "libcore/pipeline/build_source.h"
 #include "libcore/pipeline/targets.h"
@@ -85,6 +86,16 @@ Request request_of(const py::object& source, py::dict arguments) {
     return r;
 }
 
+// Refuses what reading a file with such channels does. With alpha alone a mesh of alpha would come of it.
+void check_color(const Image& image, const std::string& name) {
+    if (!split_names(image.channel_names).color.empty()) return;
+    std::string names;
+    for (const std::string& channel : image.channel_names) names += (names.empty() ? "" : ", ") + channel;
+    throw Error(ErrorKind::kUnsupported,
+                cat(name, ": the image has no colour, neither channels R, G, B nor Y, but ", names,
+                    "; channels can be chosen"));
+}
+
 // A mask of bool is an image of 0 and 1.
 ImagePointer mask_picture(const py::object& mask, const ImageLimits& limits,
                           std::vector<std::string>& warnings) {
@@ -100,6 +111,7 @@ MeshPointer build(const py::object& source, const py::kwargs& given) {
     std::vector<std::string> warnings;
     r.read.channels = channels_to_read(r.params, r.texture.has_value());
     const ImagePointer read = image_from(source, r.read, r.name, warnings);
+    if (!r.read.values && r.params.channels.empty()) check_color(read->image, r.name);
     const bool has_mask = !r.mask.is_none();
     const ImagePointer picture =
         has_mask ? mask_picture(r.mask, r.read.limits, warnings) : std::make_shared<ImageValue>();

@@ -90,6 +90,15 @@ std::vector<ChannelChoice> parse(const std::string& name, const py::handle& obje
     return channels;
 }
 
+const BuildParams& params_of(const std::string& preset) {
+    std::string names;
+    for (const Preset& known : presets()) {
+        if (known.name == preset) return known.params;
+        names += (names.empty() ? "" : ", ") + std::string(known.name);
+    }
+    throw Error(ErrorKind::kBadArgument, cat("preset '", preset, "': expected one of ", names));
+}
+
 }  // namespace
 
 std::string argument_name(std::string_view name) {
@@ -107,7 +116,7 @@ std::string argument_text(std::string_view name, std::string_view value) {
 BuildParams take_build_params(py::dict& arguments) {
     const py::object preset = take(arguments, "preset");
     BuildParams params =
-        preset.is_none() ? BuildParams() : preset_params(value_as<std::string>("preset", preset, "a word"));
+        preset.is_none() ? BuildParams() : params_of(value_as<std::string>("preset", preset, "a word"));
     std::vector<std::string> given;
     for (const Param& param : param_table()) {
         const std::string name = argument_name(param.name);

@@ -70,6 +70,28 @@ void check_finite(const Image& image, const std::string& name) {
                     image.x_of(at / channels), ", ", image.y_of(at / channels), ") is not a finite number"));
 }
 
+// Refuses names that no file can hold, as reading a container does, and those that mean two channels.
+void check_names(const std::vector<std::string>& names, const std::string& name) {
+    constexpr std::size_t kMaxName = 255;  // of a channel of an EXR
+    for (const std::string& channel : names) {
+        if (channel.empty() || channel.size() > kMaxName)
+            refuse(name,
+                   cat("a name in channel_names has ", channel.size(), " bytes, expected 1 to ", kMaxName));
+        if (channel.find('\0') != std::string::npos)
+            refuse(name, "a name in channel_names holds a byte of value 0");
+        if (std::ranges::count(names, channel) > 1) refuse(name, cat("two channels have the name ", channel));
+    }
+}
+
+// What is in memory already is only held to a limit that was asked for, which take_read_options() tells by
+// this 0.
+void check_pixels(std::int64_t width, std::int64_t height, const ImageLimits& limits,
+                  const std::string& name) {
+    if (limits.max_pixels_per_byte == 0 && width * height > limits.max_pixels)
+        refuse(name, cat("the image has ", width, "x", height,
+                         " pixels, more than max_pixels=", limits.max_pixels));
+}
+
 // Returns an image without samples that has the array's shape.
 Image shaped(const py::array& array, const ArrayMeaning& meaning, const std::string& name) {
     if (array.ndim() != 2 && array.ndim() != 3)
@@ -92,6 +114,7 @@ Image shaped(const py::array& array, const ArrayMeaning& meaning, const std::str
     Image image = make_image(0, 0, static_cast<int>(channels));
     image.width = static_cast<int>(width);
     image.height = static_cast<int>(height);
+    check_names(meaning.channel_names, name);
     if (named > 0) image.channel_names = meaning.channel_names;
     return image;
 }
@@ -140,11 +163,14 @@ ImagePointer image_from(const py::object& object, const ReadImageOptions& option
         const auto value = object.cast<std::shared_ptr<ImageValue>>();
         if (options.values && !value->values)
             refuse(name, "the Image holds colours; values=True where it is read or made makes them data");
+        check_pixels(value->image.width, value->image.height, options.limits, name);
         return value;
     }
-    if (!is_path(object))
-        return image_from_array(array_of_object(object, name), {options.color_space, {}, options.values},
-                                name);
+    if (!is_path(object)) {
+        const py::array array = array_of_object(object, name);
+        if (array.ndim() >= 2) check_pixels(array.shape(1), array.shape(0), options.limits, name);
+        return image_from_array(array, {options.color_space, {}, options.values}, name);
+    }
     const std::string path = path_text(object);
     ReadImage read = without_gil({}, [&] { return read_image_file(path, options); });
     for (const std::string& warning : read.warnings) warnings.push_back(cat(path, ": ", warning));
@@ -169,7 +195,11 @@ bool is_path(const py::object& object) {
 }
 
 std::string path_text(const py::object& path) {
-    return py::bytes(py::module_::import("os").attr("fsencode")(path));
+    const std::string text = py::bytes(py::module_::import("os").attr("fsencode")(path));
+    if (text.find('\0') != std::string::npos)
+        throw Error(ErrorKind::kBadArgument,
+                    cat("the path ", std::string(py::repr(path)), " holds a byte of value 0"));
+    return text;
 }
 
 }  // namespace imgmesh::python

@@ -11,16 +11,22 @@ namespace py = pybind11;
 
 namespace {
 
-// Returns the value as T, or none. Throws a TypeError that names the argument.
+// Returns the value as T. Throws a TypeError that names the argument.
 template <typename T>
-std::optional<T> take_as(py::dict& arguments, const char* name, const char* expected) {
-    const py::object value = take(arguments, name);
-    if (value.is_none()) return std::nullopt;
+T value_as(const char* name, const py::object& value, const char* expected) {
     try {
         return value.cast<T>();
     } catch (const py::cast_error&) {
         throw py::type_error(cat(name, ": expected ", expected, ", found ", std::string(py::repr(value))));
     }
+}
+
+// Takes the argument out and returns its value as T, or none.
+template <typename T>
+std::optional<T> take_as(py::dict& arguments, const char* name, const char* expected) {
+    const py::object value = take(arguments, name);
+    if (value.is_none()) return std::nullopt;
+    return value_as<T>(name, value, expected);
 }
 
 }  // namespace
@@ -46,9 +52,11 @@ ReadImageOptions take_read_options(py::dict& arguments) {
         options.file_nodata = false;
     } else if (!nodata.is_none()) {
         options.file_nodata = false;
-        options.nodata = nodata.cast<double>();
+        options.nodata = value_as<double>("nodata", nodata, "a number, or 'none'");
     }
     if (const auto pixels = take_as<std::int64_t>(arguments, "max_pixels", "a whole number")) {
+        if (*pixels < 1)
+            throw Error(ErrorKind::kBadArgument, cat("max_pixels is ", *pixels, ", expected at least 1"));
         options.limits.max_pixels = *pixels;
         options.limits.max_pixels_per_byte = 0;  // images up to there are wanted, however few bytes hold them
     }

@@ -36,7 +36,7 @@ FILE_LIBRARIES = re.compile(r"OpenEXR/|Imath/|Imf\w*\.h|OpenImageIO/|png\.h$|lib
 COMMAND_LINE = re.compile(r"CLI/|CLI11|toml\+\+")
 PYTHON = re.compile(r"pybind11/|Python\.h$")
 # What of the tools the Python module shares: words and messages, which know no command line.
-SHARED_BY_TOOLS = {"tools/common/choices.h", "tools/common/in_file.h", "tools/common/names.h"}
+SHARED_BY_TOOLS = {"tools/common/choices.h", "tools/common/in_file.h", "tools/common/names.h", "tools/common/text.h"}
 STREAMS = re.compile(r"(fstream|filesystem|cstdio|stdio\.h)$")
 # A header that a comment names.
 MENTION = re.compile(r"[\w/]*\w\.h\b")

@@ -32,6 +32,10 @@ class Errors(unittest.TestCase):
         self.check(TypeError, ("faces: expected a whole number, found '9'",), build, IMAGE, faces="9")
         self.check(TypeError, ("channels: expected a list",), build, IMAGE, channels="RGB")
         self.check(TypeError, ("progress: expected a callable",), build, IMAGE, progress=3)
+        for name in "nodata", "max_pixels", "threads", "alpha", "texture", "color_space", "strict", "part", "preset":
+            self.check(TypeError, (f"{name}: ", "found []"), build, IMAGE, **{name: []})
+        self.assertEqual(build(IMAGE, max_pixels=384).width, 24)
+        self.check(imgmesh.ArgumentError, ("max_pixels=383",), build, imgmesh.Image(IMAGE), max_pixels=383)
         for words, parameters in ((("faces is 1", "at least 2"), {"faces": 1}),
                                   (("metric 'x'", "flattened, hoppe, garland"), {"metric": "x"}),
                                   (("density is nan",), {"density": float("nan")}),
@@ -39,7 +43,9 @@ class Errors(unittest.TestCase):
                                   (("threads is 0", "1 to 1024"), {"threads": 0}),
                                   (("alpha 'x'", "auto, keep, cut, ignore"), {"alpha": "x"}),
                                   (("alpha_threshold is 2",), {"alpha_threshold": 2}),
-                                  (("preset", "nope"), {"preset": "nope"}),
+                                  (("preset 'nope': expected one of fast, default, best, fem",), {"preset": "nope"}),
+                                  (("max_pixels is 0",), {"max_pixels": 0}), (("max_pixels is -1",), {"max_pixels": -1}),
+                                  (("24x16", "max_pixels=383"), {"max_pixels": 383}),
                                   (("level_faces is 1",), {"level_faces": [9, 1]}),
                                   (("color_space 'x'", "sRGB"), {"color_space": "x"}),
                                   (("values=True and texture",), {"values": True, "texture": "png"})):
@@ -69,6 +75,47 @@ class Errors(unittest.TestCase):
         self.check(imgmesh.ArgumentError, ("masked",), imgmesh.Image, np.ma.masked_less(IMAGE[..., 0], 9))
         self.check(imgmesh.ArgumentError, ("2 names",), imgmesh.Image, IMAGE, channel_names=["a", "b"])
         self.check(imgmesh.ArgumentError, ("values=True where it is read",), imgmesh.build, imgmesh.Image(IMAGE), values=True)
+
+    def test_channel_names(self):
+        for words, names in ((("0 bytes",), ["", "a", "b"]), (("byte of value 0",), ["a\0b", "b", "c"]),
+                             (("256 bytes",), ["x" * 256, "a", "b"]), (("two channels", "G"), ["R", "G", "G"])):
+            for values in False, True:
+                self.check(imgmesh.ArgumentError, words, imgmesh.Image, IMAGE, channel_names=names, values=values)
+        for names in ["R", "G", "A"], ["a", "b", "c"]:
+            image = imgmesh.Image(IMAGE, channel_names=names)
+            self.check(imgmesh.UnsupportedError, ("no colour", ", ".join(names)), imgmesh.build, image)
+            self.assertEqual(imgmesh.build(image, channels=names[:2]).channel_names, tuple(names[:2]))
+
+    def test_edits(self):
+        mesh, own, deep = imgmesh.build(IMAGE), [], []
+        own.append(own)
+        for _ in range(100000):
+            deep = [deep]
+        for edits in own, deep, [{"handles": own}], {"edits": deep}:
+            self.check(imgmesh.ArgumentError, ("edits: ",), mesh.warp, IMAGE, edits)
+        self.check(TypeError, ("edits: ", "found {3}"), mesh.warp, IMAGE, [{"handles": {3}}])
+        edit = {"level": 0, "handles": [{"near": [12, 8], "move": [3, 1]}], "pins": [{"border": True}]}
+        numbers = {"level": np.int64(0), "handles": [{"near": np.array([12, 8]), "move": (np.float32(3), np.uint8(1))}],
+                   "pins": [{"border": np.bool_(True)}]}
+        np.testing.assert_array_equal(mesh.warp(IMAGE, [numbers]).array, mesh.warp(IMAGE, [edit]).array)
+
+    def test_odd_paths(self):
+        mesh = imgmesh.build(IMAGE)
+        for path in "a.glb\0x", b"a.glb\0x", pathlib.Path("a.glb\0x"):
+            for function in (imgmesh.build, imgmesh.read_image, imgmesh.read, mesh.write, mesh.segment().write,
+                             lambda path: imgmesh.write_image(path, IMAGE), lambda path: mesh.warp(IMAGE, path)):
+                self.check(ValueError, ("a.glb\\x00x", "byte of value 0"), function, path)
+        for path, shown in (b"/nowhere/\xff.glb", "/nowhere/\\xff.glb"), ("/nowhere/a\nb.glb", "/nowhere/a\\x0ab.glb"):
+            for function in imgmesh.read, imgmesh.read_image, mesh.write:
+                self.check(imgmesh.FileError, (shown,), function, path)
+
+    def test_what_is_written(self):
+        mesh = imgmesh.build(IMAGE)
+        with tempfile.TemporaryDirectory() as name:
+            for file in "mesh.glb", "mesh.gltf":
+                written, facts = mesh.write(f"{name}/{file}"), imgmesh.read(f"{name}/{file}").facts
+                self.assertEqual(set(written), {"files", "mesh_bytes", "layer_bytes"})
+                self.assertEqual(written, {key: facts[key] for key in written})
 
     def test_files(self):
         with tempfile.TemporaryDirectory() as name:
