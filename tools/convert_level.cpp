@@ -12,6 +12,7 @@
 #include "formats/export/spine.h"
 #include "formats/files/atomic_file.h"
 #include "formats/files/extension.h"
+#include "formats/files/stream_file.h"
 #include "formats/picture/image_io.h"
 #include "libcore/image/feature_space.h"
 #include "libcore/mesh/disc_parts.h"
@@ -205,6 +206,10 @@ void export_level(const LevelOptions& o, const MeshImage& m, int index, const Te
             text = obj_from_mesh(mesh, m.source);
         else
             text = sprite_text(*kind, mesh, m.source, image, o, context);
+        std::error_code error;
+        if (kind && !o.image.empty() && stream_descriptor(o.output) < 0 &&
+            !fs::exists(fs::path(o.output).parent_path() / o.image, error))
+            context.warnings.push_back(cat(o.output, ": names ", o.image, ", which is not beside it"));
         if (kind == ExportKind::kSpine) {
             JointFiles joint;
             write_text(level_files(o, nullptr)[1], spine_atlas(m.source, image), context.overwrite);

@@ -27,6 +27,9 @@ namespace {
 // Drawing and writing take this for each pixel drawn [bytes]; measured as in docs/limits.md.
 constexpr double kDrawBytes = 7, kDrawChannelBytes = 9;
 
+// Below, a pixel would be the mean of more than a million of the image.
+constexpr double kLeastScale = 0.001;
+
 struct Options {
     std::string input;
     std::string output;
@@ -55,7 +58,7 @@ void add_options(CLI::App& app, Options& o) {
         drawing);
     in_group(add_count(app, "--level", o.level, {0}, "Level of the pyramid, 0 the finest"), drawing);
     in_group(add_number(
-                 app, "--scale", o.draw.scale, {0, kNoLimit, true},
+                 app, "--scale", o.draw.scale, {kLeastScale},
                  "Size relative to the source's, for gouraud, wire and flat; the last two are antialiased at "
                  "any size"),
              drawing);

@@ -36,6 +36,9 @@ namespace {
 // docs/limits.md.
 constexpr double kSegmentBytes = 66;
 
+// Far beyond, distances of merges would not be finite.
+constexpr double kMostCompactness = 1e6;
+
 struct Options {
     std::string input, output;
     SegmentParams params;
@@ -67,7 +70,7 @@ void add_options(CLI::App& app, Options& o) {
              regions);
     in_group(add_count(app, "--level", o.level, {0}, "Level of the pyramid, 0 the finest"), regions);
     CLI::Option* const compactness =
-        add_number(app, "--compactness", o.compactness, {0},
+        add_number(app, "--compactness", o.compactness, {0, kMostCompactness},
                    {"Compactness of superpixels; higher is rounder", cat(usual.compactness)});
     advanced(app, in_group(compactness, regions));
     CLI::Option* const distance =

@@ -188,6 +188,8 @@ Report warp_one(const Options& o, Context& context) {
         image = read_source_image(o.image, source, o.input,
                                   image_options(o.read, o.limits, context.max_memory), context.warnings);
 
+    for (const std::string& text : far_points(edits, source))
+        context.warnings.push_back(cat(o.input, ": ", text));
     context.progress(0.3, "solve");
     const std::vector<VertexMoves> moves = solve(mesh_image, edits, o);
     DisplacementField field = displacement_field(mesh_image, moves);

@@ -21,8 +21,11 @@ Vec2d parse_pair(const std::string& name, const std::string& text, const std::st
     const std::size_t comma = part.find(',');
     if (comma == std::string::npos)
         throw Error(ErrorKind::kBadArgument, cat(name, " '", shortened(text), "': expected ", expected));
-    return {parse_number(name, part.substr(0, comma), kCoordinate),
-            parse_number(name, part.substr(comma + 1), kCoordinate)};
+    const auto number = [&](const std::string& digits) {
+        const bool plus = digits.size() > 1 && digits[0] == '+' && digits[1] != '-';
+        return parse_number(name, plus ? digits.substr(1) : digits, kCoordinate);
+    };
+    return {number(part.substr(0, comma)), number(part.substr(comma + 1))};
 }
 
 WarpHandle parse_handle(const std::string& text) {
@@ -80,6 +83,24 @@ std::optional<WarpEdit> handle_edit(const HandleOptions& o) {
     edit.solver = o.solver.value_or(edit.pins.empty() ? WarpSolver::kDirect : WarpSolver::kArap);
     edit.where = cat("--level ", edit.level);
     return edit;
+}
+
+std::vector<std::string> far_points(const WarpEdits& edits, const SourceInfo& source) {
+    constexpr double kNear = 8;  // a hand may miss the edge by this [pixels]
+    std::vector<std::string> lines;
+    const auto look = [&](const VertexSelection& selection) {
+        if (!selection.near) return;
+        const Vec2d last(source.width - 1, source.height - 1);
+        const double away = (*selection.near - selection.near->cwiseMax(Vec2d(0, 0)).cwiseMin(last)).norm();
+        if (away > kNear)
+            lines.push_back(cat(selection.where, ": the point is ", format_number(away),
+                                " pixels outside the image; the vertex nearest to it counts"));
+    };
+    for (const WarpEdit& edit : edits) {
+        for (const WarpHandle& handle : edit.handles) look(handle.vertices);
+        for (const VertexSelection& pin : edit.pins) look(pin);
+    }
+    return lines;
 }
 
 }  // namespace imgmesh

@@ -2,7 +2,10 @@
 #pragma once
 
 #include <optional>
+#include <string>
+#include <vector>
 
+#include "libcore/mesh/mesh_image.h"
 #include "libcore/warp/warp_edits.h"
 
 namespace CLI {
@@ -22,5 +25,8 @@ void add_handle_options(CLI::App& app, HandleOptions& options);
 
 /// Returns the edit; none if no handle was given.
 std::optional<WarpEdit> handle_edit(const HandleOptions& options);
+
+/// Returns a line for each point of handles and pins that is far outside the image.
+std::vector<std::string> far_points(const WarpEdits& edits, const SourceInfo& source);
 
 }  // namespace imgmesh

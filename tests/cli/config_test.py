@@ -24,6 +24,15 @@ class Config(CliCase):
         self.assertEqual((facts["draco"], facts["levels"][0]["map"]["precision"]), ("none", "float"))
         self.assertLessEqual(facts["levels"][0]["faces"], 40)
 
+    def test_wrong_values_have_their_lines(self):
+        self.refused('\npreset = "bst"\n', "c.toml:2: --preset 'bst': expected")
+        self.refused('[build]\nfaces = 0\n', "c.toml:2: --faces '0': expected")
+        self.refused("preset = best\n", "c.toml:1: ", "text needs quotes")
+        self.config('preset = "bst"\n')
+        result = self.assert_error("imgmesh-build", ["in.png", "-o", "o.glb", "--config", "c.toml", "--preset", "bad"], 2, "bad")
+        self.assertNotIn("c.toml", result.stderr)
+        self.assert_error("imgmesh-build", ["in.png", "-o", "o.glb", "--config", ""], 2, "--config", "expected a file")
+
     def test_command_line_counts_more(self):
         self.config('draco = "none"\n')
         self.build("in.png", "--config", "c.toml", "--draco", "sequential")

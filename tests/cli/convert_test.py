@@ -160,6 +160,11 @@ class Convert(CliCase):
         self.assertEqual(frame["vertices"], frame["verticesUV"])
         self.assertEqual(len(frame["triangles"]), self.facts["levels"][0]["faces"])
         self.assertLess(max(max(t) for t in frame["triangles"]), len(points))
+        for kind in ("d.json", "d.tscn"):
+            self.assertIn("hero.png, which is not beside it",
+                          self.run_tool("imgmesh-convert", "c.glb", "-o", kind, "--image", "hero.png", "-q").stderr)
+        self.run_ok("imgmesh-convert", "c.glb", "-o", "-", "--format", "json", "--image", "hero.png", "-q")
+        picture_files.png(self.folder / "hero.png", picture_files.ramp(48, 32))
         self.run_ok("imgmesh-convert", "c.glb", "-o", "d.json", "--image", "hero.png", "-q")
         self.assertIn("hero.png", json.loads((self.folder / "d.json").read_text())["frames"])
 

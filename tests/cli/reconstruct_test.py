@@ -43,7 +43,7 @@ class Reconstruct(CliCase):
                 self.assertEqual(image.shape[1::-1], size)
 
     def test_scale_without_bounds(self):
-        for scale in ("1e5", "1e300"):
+        for scale in ("1e5", "1e300", "1e-40", "0.0009"):
             self.assert_error("imgmesh-reconstruct", ["c.glb", "-o", "x.png", "--mode", "flat", "--scale", scale], 2,
                               "--scale")
 

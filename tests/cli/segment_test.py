@@ -185,7 +185,7 @@ class Segment(CliCase):
         self.assertLess(self.segment("--threshold", "0.5")[0]["min_pixels"], 50)
 
     def test_superpixels(self):
-        for compactness in ("0", "10", "100"):
+        for compactness in ("0", "10", "100", "1e6"):
             report, labels = self.segment("--superpixels", "40", "--compactness", compactness)
             self.assertEqual((report["regions"], report["distance"]), (40, "superpixels"))
             self.assertEqual(labels.max(), 39)
@@ -240,6 +240,8 @@ class Segment(CliCase):
                             (["--superpixels", "3", "--distance", "paper"], ["--superpixels", "--distance"]),
                             (["--compactness", "3"], ["--compactness", "--superpixels"]),
                             (["--superpixels", "3", "--compactness", "-1"], ["--compactness"]),
+                            (["--superpixels", "3", "--compactness", "1e30"], ["--compactness", "1e+06"]),
+                            (["--image", "-"], ["--image -", "CONTAINER can be standard input"]),
                             (["--min-size", "0"], ["--min-size"]),
                             (["--distance", "near"], ["--distance", "contour, paper"]),
                             (["--ucm", "u.png"], ["--ucm", ".exr"]),

@@ -124,6 +124,11 @@ class Usage(CliCase):
 
     def test_output_is_required(self):
         self.assert_error("imgmesh-build", ["in.png"], 2, "--output")
+        self.assert_error("imgmesh-build", ["in.png", "x.glb"], 2, "-o FILE (--output) is required; did you mean -o x.glb?")
+        picture_files.png(self.folder / "second.png", picture_files.ramp(4, 4))
+        result = self.assert_error("imgmesh-build", ["in.png", "second.png"], 2, "-o FILE")
+        self.assertNotIn("mean", result.stderr)
+        self.assert_error("imgmesh-build", ["in.png", "-o", "o.glb", "--mask", "-"], 2, "--mask -: only IMAGE can be standard input")
         self.assert_error("imgmesh-reconstruct", ["in.glb"], 2, "--output")
         self.assert_error("imgmesh-build", ["in.png", "-o"], 2, "--output")
         self.assert_error("imgmesh-build", ["in.png", "-o", ""], 2, "--output")

@@ -268,6 +268,18 @@ class Warp(CliCase):
         self.assert_error(TOOL, ["c.glb", "--image", "other.png", "-o", "x.png"], 4, "other.png", "32x48", "48x32")
         self.assert_error(TOOL, ["c.glb", "--image", "in.png", "-o", "x.jpg", "--handle", "0,0:9,9"], 2, "transparency")
 
+    def test_points_outside(self):
+        """A warning for each that no hand could mean; a plus sign is that of a number."""
+        args = ("c.glb", "-o", "w.glb", "--solver", "direct", "--handle")
+        moved = [self.report(TOOL, *args, text)["largest_move"] for text in ("47,31:10,-5", "+47,31:+10,-5", "50,31:+10,-5")]
+        self.assertEqual(len(set(moved)), 1)
+        warnings = self.report(TOOL, *args, "347,31:+10,-5", "--handle", "3,3:1,1")["warnings"]
+        self.assertEqual(len(warnings), 1)
+        self.assertIn("c.glb: --handle 347,31:+10,-5: the point is 300 pixels outside", warnings[0])
+        for text in ("3,3:++1,0", "3,3:+,0", "3,3:+-1,0"):
+            self.assert_error(TOOL, [*args, text], 2, "--handle")
+        self.assert_error(TOOL, ["c.glb", "-o", "v.glb", "--edits", "-"], 2, "--edits -: only CONTAINER")
+
     def test_threads_and_text(self):
         self.edits({"level": 1, "solver": "arap", "handles": [{"near": [24, 16], "move": [6, 2]}],
                     "pins": [{"border": True}]})

@@ -8,6 +8,7 @@
 #include <charconv>
 #include <cmath>
 #include <istream>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -32,6 +33,16 @@ constexpr std::array<const char*, 7> kTables = {"build",   "reconstruct", "info"
 class TomlConfig : public CLI::ConfigBase {
   public:
     explicit TomlConfig(const CLI::App& app) : app_(app) {}
+
+    // See place_in_config().
+    std::string place_of(std::string_view message) const {
+        for (const auto& [name, line] : line_of_) {
+            const std::string start = "--" + name;
+            if (message.starts_with(start + ' ') || message.starts_with(start + ':'))
+                return cat(file(), ":", line, ": ");
+        }
+        return "";
+    }
 
     std::vector<CLI::ConfigItem> from_config(std::istream& input) const override {
         const toml::table file = parsed(input);
@@ -106,6 +117,8 @@ class TomlConfig : public CLI::ConfigBase {
             if (std::ranges::any_of(option->get_excludes(), given)) continue;
             CLI::ConfigItem item;
             item.name = name;
+            // The table of this tool is read first, and counts.
+            if (option->count() == 0) line_of_.emplace(name, key.source().begin.line);
             item.inputs = values_of(*option, name, key.source(), value);
             if (!item.inputs.empty()) options.push_back(std::move(item));
         }
@@ -157,8 +170,9 @@ class TomlConfig : public CLI::ConfigBase {
         try {
             return toml::parse(text, file());
         } catch (const toml::parse_error& e) {
-            throw Error(ErrorKind::kBadArgument,
-                        cat(file(), ":", e.source().begin.line, ": ", e.description()));
+            const bool bare = e.description().find("could not determine value type") != std::string::npos;
+            throw Error(ErrorKind::kBadArgument, cat(file(), ":", e.source().begin.line, ": ",
+                                                     e.description(), bare ? "; text needs quotes" : ""));
         }
     }
 
@@ -199,6 +213,7 @@ class TomlConfig : public CLI::ConfigBase {
     }
 
     const CLI::App& app_;
+    mutable std::map<std::string, toml::source_index> line_of_;  // by the options' names
 };
 
 }  // namespace
@@ -209,7 +224,13 @@ CLI::Option* add_config_option(CLI::App& app) {
                                          "table [TOOL], as in [build], are of one tool");
     app.config_formatter(std::make_shared<TomlConfig>(app));
     app.allow_config_extras(false);
+    option->check([](const std::string& name) { return std::string(name.empty() ? "expected a file" : ""); });
     return option->type_name("FILE");
+}
+
+std::string place_in_config(const CLI::App& app, std::string_view message) {
+    const auto config = std::dynamic_pointer_cast<TomlConfig>(app.get_config_formatter());
+    return config ? config->place_of(message) : "";
 }
 
 }  // namespace imgmesh

@@ -1,6 +1,9 @@
 // --config FILE: options from a file.
 #pragma once
 
+#include <string>
+#include <string_view>
+
 namespace CLI {
 class App;
 class Option;
@@ -18,5 +21,9 @@ namespace imgmesh {
 /// option or table, an option given twice, one that makes no sense in a file (help, version, config), a list
 /// for an option that takes one value, a file of more than 1 MiB.
 CLI::Option* add_config_option(CLI::App& app);
+
+/// Returns "FILE:LINE: " if `message` begins with an option, as in "--preset 'bst': ...", whose value is from
+/// that file; else "".
+std::string place_in_config(const CLI::App& app, std::string_view message);
 
 }  // namespace imgmesh

@@ -157,6 +157,10 @@ ExitCode run_parsed(const Tool& given, const CLI::App& app, FileOptions files, c
     options.strict = strict != nullptr && strict->count() > 0;
     options.max_memory = common.max_memory.value_or(usual_max_memory());
     options.parameters = parameters_report(given, app);
+    for (const std::string& source : given.sources)
+        if (typed(app, {source.c_str()}) == source + " -")
+            throw Error(ErrorKind::kBadArgument,
+                        cat(source, " -: only ", given.input_name, " can be standard input"));
     const Pipes pipes(given, files, most_input(options));
     const Tool tool = pipes.has_output() ? to_pipe(given, pipes) : given;
     if (pipes.has_output()) options.stream = STDERR_FILENO;
@@ -199,6 +203,8 @@ ExitCode parse_and_run(const Tool& tool, int argc, char** argv) {
         throw Error(ErrorKind::kIo, cat("--config: ", e.what()));
     } catch (const CLI::ParseError& e) {
         throw Error(ErrorKind::kBadArgument, usage_error(app, e.what()));
+    } catch (const Error& e) {
+        throw Error(e.kind(), cat(place_in_config(app, e.what()), e.what()));
     }
     return run_parsed(tool, app, files, common);
 }

@@ -2,9 +2,12 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <filesystem>
+#include <system_error>
 #include <vector>
 
 #include "libcore/base/error.h"
+#include "tools/common/container_input.h"
 #include "tools/common/did_you_mean.h"
 #include "tools/common/text.h"
 
@@ -16,6 +19,19 @@ std::vector<std::string> option_names(const CLI::App& app) {
     for (const CLI::Option* option : app.get_options())
         for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
     return names;
+}
+
+// Where the last of several files may be the output.
+std::string output_meant(const CLI::App& app) {
+    for (const CLI::Option* option : app.get_options()) {
+        if (option->nonpositional() || option->count() < 2) continue;
+        const std::string last = option->results().back();
+        std::error_code error;
+        const bool fits = is_container(last) && app.get_name() == "imgmesh-build";
+        if (fits || (!std::filesystem::exists(last, error) && last.find('.') != std::string::npos))
+            return cat("; did you mean -o ", shortened(last), "?");
+    }
+    return "";
 }
 
 }  // namespace
@@ -30,6 +46,8 @@ std::string usage_error(const CLI::App& app, const std::string& what) {
         return cat("unknown option ", shortened(name), did_you_mean(name, option_names(app)),
                    " (see --help)");
     }
+    if (what == "--output is required")
+        return cat("-o FILE (--output) is required", output_meant(app), " (see --help)");
     return cat(what, " (see --help)");
 }
 
