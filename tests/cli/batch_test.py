@@ -156,7 +156,7 @@ class EveryTool(CliCase):
         self.assertEqual(image["sha256"], hashlib.sha256((self.folder / "p0.png").read_bytes()).hexdigest())
         self.assertEqual({k: image["parameters"][k] for k in ("faces", "refine", "texture", "mask", "density", "draco")},
                          {"faces": 9, "refine": 2, "texture": True, "mask": "picture", "density": None,
-                          "draco": "edgebreaker"})
+                          "draco": None})
         facts = self.report("imgmesh-info", "x.glb")["bytes"]
         self.assertEqual([image[k] for k in ("bytes", "mesh_bytes", "layer_bytes", "texture_bytes")],
                          [facts[k] for k in ("total", "meshes", "layers", "texture")])

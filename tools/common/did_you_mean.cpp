@@ -52,7 +52,8 @@ std::string nearest_word(const std::string& typed, const std::vector<std::string
             least = distance;
             best = word;
         }
-        if (longer.empty() && given.size() >= kLeastPrefix && candidate.starts_with(given)) longer = word;
+        const bool is_shorter = longer.empty() || word.size() < longer.size();
+        if (is_shorter && given.size() >= kLeastPrefix && candidate.starts_with(given)) longer = word;
     }
     return least > 1 && !longer.empty() ? longer : best;
 }
