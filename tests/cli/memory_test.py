@@ -57,7 +57,7 @@ class Memory(CliCase):
             # Reading alone, and all of the work.
             for limit in ("1k", "20M"):
                 result = self.assert_error(tool, [*args, "--max-memory", limit], 4, "memory")
-                self.assertRegex(result.stderr, r"\d+(\.\d)? [kM]?B\b.*\d+(\.\d)? [kM]?B\b|\d+ bytes.*\d+")
+                self.assertRegex(result.stderr, r"\d ([kM]?B|bytes)\b.*\d")
 
     def test_message_names_need_and_limit(self):
         result = self.assert_error("imgmesh-build", ["in.png", "-o", "out.glb", "--max-memory", "30M"], 4, "in.png",
