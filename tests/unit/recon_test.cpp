@@ -12,33 +12,17 @@
 #include "libcore/recon/draw.h"
 #include "libcore/recon/patch_colors.h"
 #include "libcore/recon/visit_lightness.h"
+#include "tests/support/grid_mesh_image.h"
 #include "tests/support/meshes.h"
 
 using namespace imgmesh;
 using doctest::Approx;
+using imgmesh::test::grid_mesh_image;
 
 namespace {
 
 constexpr ColorSpace kSpaces[] = {ColorSpace::kSrgb,    ColorSpace::kLinear,   ColorSpace::kRec709,
                                   ColorSpace::kGamma22, ColorSpace::kAdobeRgb, ColorSpace::kDisplayP3};
-
-// A one-level MeshImage with its trivial map and random colours inside sRGB.
-MeshImage random_mesh_image(int width, int height, int columns, int rows, std::uint32_t seed) {
-    MeshImage m;
-    m.source.width = width;
-    m.source.height = height;
-    m.levels.resize(1);
-    BaseMesh& mesh = m.levels[0].mesh;
-    mesh = test::jittered_grid(0, 0, width - 1, height - 1, columns, rows, seed);
-    std::mt19937 random(seed);
-    const auto sample = [&] { return static_cast<float>(random() % 1000) / 999.0f; };
-    for (Id v = 0; v < mesh.vertex_count(); ++v) {
-        const Vec3f luv = luv_from_linear({sample(), sample(), sample()});
-        std::copy(luv.data(), luv.data() + 3, mesh.feature_of(v));
-    }
-    m.levels[0].map = trivial_map(mesh, width, height);
-    return m;
-}
 
 Vec3f corner(const BaseMesh& mesh, Id v) {
     return Eigen::Map<const Vec3f>(mesh.feature_of(v));
@@ -96,7 +80,7 @@ TEST_CASE("LuvEncoder: as the plain form, in and out of gamut, for every space a
 
 // With every pixel as a vertex the reconstruction must be exact.
 TEST_CASE("draw map: a mesh of all pixels gives the image back") {
-    MeshImage m = random_mesh_image(17, 11, 16, 10, 1);
+    MeshImage m = grid_mesh_image(17, 11, 16, 10, 1);
     BaseMesh& mesh = m.levels[0].mesh;
     for (Vec2f& p : mesh.position) p = {std::round(p.x()), std::round(p.y())};
     m.levels[0].map = trivial_map(mesh, 17, 11);
@@ -110,7 +94,7 @@ TEST_CASE("draw map: a mesh of all pixels gives the image back") {
 }
 
 TEST_CASE("draw: a constant mesh is a constant image in every colour space") {
-    MeshImage m = random_mesh_image(40, 30, 5, 4, 2);
+    MeshImage m = grid_mesh_image(40, 30, 5, 4, 2);
     const Vec3f luv = luv_from_linear({0.2f, 0.5f, 0.1f});
     set_all(m.levels[0].mesh, luv);
     for (const ColorSpace space : kSpaces) {
@@ -130,7 +114,7 @@ TEST_CASE("draw: a constant mesh is a constant image in every colour space") {
 
 // The map, not the mesh alone, decides: pixels moved to other places of the mesh take their colours.
 TEST_CASE("draw map: every pixel interpolates its face's corners with its own weights") {
-    MeshImage m = random_mesh_image(40, 30, 5, 4, 3);
+    MeshImage m = grid_mesh_image(40, 30, 5, 4, 3);
     std::mt19937 random(4);
     Level& level = m.levels[0];
     for (PixelCoord& c : level.map) {
@@ -151,7 +135,7 @@ TEST_CASE("draw map: every pixel interpolates its face's corners with its own we
 
 // L* linear in x must come out as L* at the sample's place, also at the clamped borders.
 TEST_CASE("draw gouraud: an enlarged image samples at (i + 0.5) / scale - 0.5") {
-    MeshImage m = random_mesh_image(21, 9, 4, 2, 5);
+    MeshImage m = grid_mesh_image(21, 9, 4, 2, 5);
     for (Id v = 0; v < m.levels[0].mesh.vertex_count(); ++v)
         for (int c = 0; c < 3; ++c)
             m.levels[0].mesh.feature_of(v)[c] = c == 0 ? 10 + 4 * m.levels[0].mesh.position[v].x() : 0.0f;
@@ -193,7 +177,7 @@ TEST_CASE("draw wire: dark lines on the edges, one output pixel wide, the rest l
 
 TEST_CASE("draw patches: touching patches differ clearly, borders are darker") {
     for (std::uint32_t seed = 1; seed <= 5; ++seed) {
-        MeshImage m = random_mesh_image(80, 60, 8, 6, seed);
+        MeshImage m = grid_mesh_image(80, 60, 8, 6, seed);
         set_all(m.levels[0].mesh, {60, 0, 0});  // the worst case: one colour everywhere
         const PixelMap& map = m.levels[0].map;
         const std::vector<Vec3f> colors = patch_colors(m.levels[0].mesh, map);
@@ -216,7 +200,7 @@ TEST_CASE("draw patches: touching patches differ clearly, borders are darker") {
 }
 
 TEST_CASE("draw: a mask gives alpha, 0 outside with black") {
-    MeshImage m = random_mesh_image(20, 20, 3, 3, 7);
+    MeshImage m = grid_mesh_image(20, 20, 3, 3, 7);
     m.source.has_mask = true;
     m.levels[0].map.row(4)[5] = {};
     const Image image = draw(m, 0, {});
@@ -235,7 +219,7 @@ TEST_CASE("draw: a mask gives alpha, 0 outside with black") {
 }
 
 TEST_CASE("draw: the same bytes for one thread and several") {
-    const MeshImage m = random_mesh_image(100, 80, 9, 7, 8);
+    const MeshImage m = grid_mesh_image(100, 80, 9, 7, 8);
     for (const DrawMode mode : {DrawMode::kMap, DrawMode::kGouraud, DrawMode::kPatches}) {
         const Image many = draw(m, 0, {.mode = mode});
         const ThreadLimit limit(1);
@@ -244,7 +228,7 @@ TEST_CASE("draw: the same bytes for one thread and several") {
 }
 
 TEST_CASE("draw: levels and scales that are not there") {
-    MeshImage m = random_mesh_image(10, 10, 2, 2, 9);
+    MeshImage m = grid_mesh_image(10, 10, 2, 2, 9);
     CHECK_THROWS_WITH_AS(draw(m, 1, {}), "level is 1, expected 0 to 0", Error);
     CHECK_THROWS_AS(draw(m, -1, {}), Error);
     CHECK_THROWS_AS(draw(m, 0, {DrawMode::kMap, 2}), Error);
@@ -260,7 +244,7 @@ TEST_CASE("draw: levels and scales that are not there") {
 
 // Of 100 pixels with 1, 2, ... 100 visits the two ends are cut off; the rest goes evenly from white to black.
 TEST_CASE("draw: faces all over one another are refused before work") {
-    MeshImage m = random_mesh_image(40, 30, 4, 3, 5);
+    MeshImage m = grid_mesh_image(40, 30, 4, 3, 5);
     BaseMesh& mesh = m.levels[0].mesh;
     const std::vector<std::array<Id, 3>> once = mesh.faces;
     const auto refused = [&](DrawMode mode, double scale) {
@@ -283,7 +267,7 @@ TEST_CASE("draw: faces all over one another are refused before work") {
 }
 
 TEST_CASE("draw: visits, the less the brighter") {
-    MeshImage m = random_mesh_image(10, 10, 2, 2, 9);
+    MeshImage m = grid_mesh_image(10, 10, 2, 2, 9);
     CHECK_THROWS_AS(draw(m, 0, {DrawMode::kVisits}), Error);
     for (Id v = 1; v <= 100; ++v) m.visits.push_back(v);
     const std::vector<float> lightness = visit_lightness(m);

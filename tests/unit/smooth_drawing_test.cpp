@@ -14,30 +14,14 @@
 #include "libcore/recon/draw.h"
 #include "libcore/recon/level_colors.h"
 #include "libcore/recon/svg_text.h"
+#include "tests/support/grid_mesh_image.h"
 #include "tests/support/meshes.h"
 
 using namespace imgmesh;
 using doctest::Approx;
+using imgmesh::test::grid_mesh_image;
 
 namespace {
-
-// A whole image of random triangles and colours.
-MeshImage grid_mesh_image(int width, int height, int columns, int rows, std::uint32_t seed) {
-    MeshImage m;
-    m.source.width = width;
-    m.source.height = height;
-    m.levels.resize(1);
-    BaseMesh& mesh = m.levels[0].mesh;
-    mesh = test::jittered_grid(0, 0, width - 1, height - 1, columns, rows, seed);
-    std::mt19937 random(seed);
-    const auto sample = [&] { return static_cast<float>(random() % 1000) / 999.0f; };
-    for (Id v = 0; v < mesh.vertex_count(); ++v) {
-        const Vec3f luv = luv_from_linear({sample(), sample(), sample()});
-        std::copy(luv.data(), luv.data() + 3, mesh.feature_of(v));
-    }
-    m.levels[0].map = trivial_map(mesh, width, height);
-    return m;
-}
 
 double cross(const Vec2d& a, const Vec2d& b) {
     return a.y() * b.x() - a.x() * b.y();
