@@ -64,14 +64,14 @@ Request request_of(const py::object& source, py::dict arguments) {
     r.progress = take(arguments, "progress");
     r.threads = take_as<int>(arguments, "threads");
     r.strict = take_as<bool>(arguments, "strict").value_or(false);
-    r.alpha.use =
-        word_value("alpha", take_as<std::string>(arguments, "alpha"), alpha_uses()).value_or(AlphaUse::kAuto);
+    r.alpha.use = word_value("alpha", take_as<std::string>(arguments, "alpha"), alpha_choices())
+                      .value_or(AlphaUse::kAuto);
     r.alpha.threshold = take_as<double>(arguments, "alpha_threshold");
     const NumberRange share{0, 1, true};
     if (r.alpha.threshold && !contains(share, *r.alpha.threshold))
         throw Error(ErrorKind::kBadArgument,
                     cat("alpha_threshold is ", *r.alpha.threshold, ", expected ", describe(share)));
-    r.texture = word_value("texture", take_as<std::string>(arguments, "texture"), texture_types());
+    r.texture = word_value("texture", take_as<std::string>(arguments, "texture"), texture_type_choices());
     py::list known;
     for (const py::handle row : list_build_params()) known.append(row["name"]);
     for (const char* other : kOthers) known.append(other);

@@ -15,7 +15,7 @@ namespace {
 std::shared_ptr<ImageValue> reconstruct(const MeshValue& mesh, const std::string& mode, double scale,
                                         int level, bool all_channels, const std::optional<int>& threads) {
     check_level(mesh, level);
-    const DrawParams params{parse_choice("mode", mode, draw_modes()), scale};
+    const DrawParams params{parse_choice("mode", mode, draw_mode_choices()), scale};
     const MeshImage& mesh_image = mesh.mesh_image();
     const bool whole = params.mode == DrawMode::kMap || params.mode == DrawMode::kGouraud;
     const SplitNames names = split_names(mesh_image.source.channel_names);
@@ -32,7 +32,7 @@ std::shared_ptr<ImageValue> reconstruct(const MeshValue& mesh, const std::string
 
 std::string svg(const MeshValue& mesh, const std::string& mode, int level) {
     check_level(mesh, level);
-    return draw_svg(mesh.mesh_image(), level, parse_choice("mode", mode, draw_modes()));
+    return draw_svg(mesh.mesh_image(), level, parse_choice("mode", mode, draw_mode_choices()));
 }
 
 constexpr char kReconstruct[] =

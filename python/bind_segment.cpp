@@ -52,7 +52,7 @@ Request request_of(const std::optional<double>& threshold, const std::optional<s
     r.params.superpixels = superpixels;
     r.params.min_size = min_size;
     r.params.compactness = compactness.value_or(r.params.compactness);
-    r.params.distance = word_value("distance", distance, distance_rules()).value_or(r.params.distance);
+    r.params.distance = word_value("distance", distance, distance_choices()).value_or(r.params.distance);
     r.level = level;
     return r;
 }

@@ -41,9 +41,9 @@ ReadImageOptions take_read_options(py::dict& arguments) {
                                      color_space_choices());
     options.part = take_as<std::string>(arguments, "part", "a name");
     options.layer = take_as<std::string>(arguments, "layer", "a name");
-    options.non_finite =
-        word_value("non_finite", take_as<std::string>(arguments, "non_finite", "a word"), non_finite_rules())
-            .value_or(NonFinite::kRefuse);
+    options.non_finite = word_value("non_finite", take_as<std::string>(arguments, "non_finite", "a word"),
+                                    non_finite_choices())
+                             .value_or(NonFinite::kRefuse);
     options.values = take_as<bool>(arguments, "values", "True or False").value_or(false);
     const py::object nodata = take(arguments, "nodata");
     if (py::isinstance<py::str>(nodata)) {

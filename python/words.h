@@ -1,23 +1,13 @@
-// Words for values, as the tools have them.
+// Words for values: those of the tools (tools/common/names.h) and of numpy.
 #pragma once
 
 #include <optional>
 #include <string>
 
-#include "formats/picture/image_io.h"
-#include "formats/picture/texture_file.h"
-#include "libcore/pipeline/build_source.h"
-#include "libcore/recon/draw.h"
-#include "libcore/segment/segment.h"
 #include "tools/common/names.h"
 
 namespace imgmesh::python {
 
-Choices<DrawMode> draw_modes();
-Choices<DistanceRule> distance_rules();
-Choices<AlphaUse> alpha_uses();
-Choices<NonFinite> non_finite_rules();
-Choices<TextureType> texture_types();
 /// The names of numpy's dtypes.
 Choices<SampleType> dtype_names();
 

@@ -119,11 +119,7 @@ void add_build_options(CLI::App& app, BuildOptions& o) {
                       "channel all the same"),
              image);
     CLI::Option* const alpha = add_choice(
-        app, "--alpha", o.alpha.use,
-        Choices<AlphaUse>{{"auto", AlphaUse::kAuto},
-                          {"keep", AlphaUse::kKeep},
-                          {"cut", AlphaUse::kCut},
-                          {"ignore", AlphaUse::kIgnore}},
+        app, "--alpha", o.alpha.use, alpha_choices(),
         "Use of an alpha channel: keep it as a channel of the mesh, cut the image where it is below "
         "the threshold, or ignore it; auto keeps what is soft and cuts the rest");
     in_group(alpha, image);

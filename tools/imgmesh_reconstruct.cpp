@@ -39,11 +39,6 @@ struct Options {
     ContainerLimits limits;
 };
 
-Choices<DrawMode> mode_choices() {
-    return {{"map", DrawMode::kMap},         {"gouraud", DrawMode::kGouraud}, {"wire", DrawMode::kWire},
-            {"patches", DrawMode::kPatches}, {"flat", DrawMode::kFlat},       {"visits", DrawMode::kVisits}};
-}
-
 Choices<SampleType> depth_choices() {
     return {{"8", SampleType::kUint8},
             {"16", SampleType::kUint16},
@@ -53,9 +48,9 @@ Choices<SampleType> depth_choices() {
 
 void add_options(CLI::App& app, Options& o) {
     const std::string drawing = "Drawing";
-    in_group(
-        add_choice(app, "--mode", o.draw.mode, mode_choices(), "What to draw; map is the reconstruction"),
-        drawing);
+    in_group(add_choice(app, "--mode", o.draw.mode, draw_mode_choices(),
+                        "What to draw; map is the reconstruction"),
+             drawing);
     in_group(add_count(app, "--level", o.level, {0}, "Level of the pyramid, 0 the finest"), drawing);
     in_group(add_number(
                  app, "--scale", o.draw.scale, {kLeastScale},
@@ -73,7 +68,7 @@ void check_options(const Options& o) {
     const bool svg = lower_extension(o.output) == ".svg";
     const bool plane = o.draw.mode == DrawMode::kMap || o.draw.mode == DrawMode::kPatches ||
                        o.draw.mode == DrawMode::kVisits;
-    const std::string mode = name_of(mode_choices(), o.draw.mode);
+    const std::string mode = name_of(draw_mode_choices(), o.draw.mode);
     if (plane && o.draw.scale != 1)
         throw Error(ErrorKind::kBadArgument, cat("--scale ", o.draw.scale, ": mode ", mode,
                                                  " draws one pixel for one; expected gouraud, wire or flat"));
@@ -162,7 +157,7 @@ Report draw_one(const Options& o, Context& context) {
     const Level& level = mesh_image.levels[static_cast<std::size_t>(o.level)];
     return {{"input", o.input},
             {"output", o.output},
-            {"mode", name_of(mode_choices(), o.draw.mode)},
+            {"mode", name_of(draw_mode_choices(), o.draw.mode)},
             {"level", o.level},
             {"scale", o.draw.scale},
             {"width", width},

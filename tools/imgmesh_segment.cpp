@@ -19,6 +19,7 @@
 #include "tools/common/help.h"
 #include "tools/common/limits.h"
 #include "tools/common/memory.h"
+#include "tools/common/names.h"
 #include "tools/common/options.h"
 #include "tools/common/output.h"
 #include "tools/common/read_options.h"
@@ -50,10 +51,6 @@ struct Options {
     ContainerLimits limits;
     bool strict = false;
 };
-
-Choices<DistanceRule> distance_choices() {
-    return {{"contour", DistanceRule::kContour}, {"paper", DistanceRule::kPaper}};
-}
 
 void add_options(CLI::App& app, Options& o) {
     const SegmentParams usual;

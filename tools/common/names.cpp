@@ -30,4 +30,28 @@ Choices<SampleType> sample_type_choices() {
             {"float", SampleType::kFloat}};
 }
 
+Choices<DrawMode> draw_mode_choices() {
+    return {{"map", DrawMode::kMap},         {"gouraud", DrawMode::kGouraud}, {"wire", DrawMode::kWire},
+            {"patches", DrawMode::kPatches}, {"flat", DrawMode::kFlat},       {"visits", DrawMode::kVisits}};
+}
+
+Choices<DistanceRule> distance_choices() {
+    return {{"contour", DistanceRule::kContour}, {"paper", DistanceRule::kPaper}};
+}
+
+Choices<AlphaUse> alpha_choices() {
+    return {{"auto", AlphaUse::kAuto},
+            {"keep", AlphaUse::kKeep},
+            {"cut", AlphaUse::kCut},
+            {"ignore", AlphaUse::kIgnore}};
+}
+
+Choices<NonFinite> non_finite_choices() {
+    return {{"refuse", NonFinite::kRefuse}, {"zero", NonFinite::kZero}, {"nearest", NonFinite::kNearest}};
+}
+
+Choices<TextureType> texture_type_choices() {
+    return {{"png", TextureType::kPng}, {"jpeg", TextureType::kJpeg}};
+}
+
 }  // namespace imgmesh

@@ -28,10 +28,7 @@ void add_read_options(CLI::App& app, ReadImageOptions& options, CLI::Option* ima
     name("--layer", options.layer,
          {"Layer of an EXR: all before the last dot of its channels' names, as in ViewLayer.Combined",
           "the unnamed one if it has colour, else the first that has"});
-    advanced(app, add(add_choice(app, "--non-finite", options.non_finite,
-                                 Choices<NonFinite>{{"refuse", NonFinite::kRefuse},
-                                                    {"zero", NonFinite::kZero},
-                                                    {"nearest", NonFinite::kNearest}},
+    advanced(app, add(add_choice(app, "--non-finite", options.non_finite, non_finite_choices(),
                                  "What becomes of infinite samples and of those that are no numbers")));
     if (has_limits) return;
     const auto take_pixels = [&options](const std::string& text) {

@@ -1,6 +1,7 @@
 #include "tools/common/texture_options.h"
 
 #include "tools/common/help.h"
+#include "tools/common/names.h"
 
 namespace imgmesh {
 
@@ -17,10 +18,8 @@ void add_texture_options(CLI::App& app, TextureOptions& options, const Help& hel
             "Leave the input's texture out; viewers then show the vertices' colours");
         exclude(app, in_group(none, group), {"--texture"});
     }
-    CLI::Option* const type =
-        add_choice(app, "--texture-type", options.type,
-                   Choices<TextureType>{{"png", TextureType::kPng}, {"jpeg", TextureType::kJpeg}},
-                   "Format of the texture, lossless or smaller");
+    CLI::Option* const type = add_choice(app, "--texture-type", options.type, texture_type_choices(),
+                                         "Format of the texture, lossless or smaller");
     advanced(app, in_group(needs(type, texture), group));
 }
 
