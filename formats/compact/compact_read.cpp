@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "formats/compact/band_coder.h"
+#include "formats/compact/band_decode.h"
 #include "formats/compact/compact_bands.h"
 #include "formats/compact/compact_header.h"
 #include "formats/compact/compact_layers.h"
@@ -15,14 +15,24 @@ namespace imgmesh {
 
 struct CompactStream::Coded {
     std::vector<CompactHeader> headers;
+    std::vector<std::unique_ptr<const compact::DecodeTables>> tables;
 };
 
 CompactStream::CompactStream(std::span<const std::uint8_t> bytes, const ExpectedLayers& expected,
                              Findings& findings)
-    : coded_(new Coded{read_compact_headers(bytes, expected, findings)}) {
-    for (const CompactHeader& h : coded_->headers)
+    : coded_(new Coded{read_compact_headers(bytes, expected, findings), {}}) {
+    for (CompactHeader& h : coded_->headers) {
+        std::unique_ptr<const compact::DecodeTables> tables;
+        if (const std::optional<compact::BandTables> read = compact::read_tables(h.tables)) {
+            tables = std::make_unique<const compact::DecodeTables>(*read);
+        } else if (!h.bands.empty()) {
+            findings.add("layers.header", cat("the tables of part ", h.name, " are broken"), at_part(h.name));
+            h.bands.clear();
+        }
+        coded_->tables.push_back(std::move(tables));
         parts_.push_back({h.name, h.steps, h.band_rows, as_int(h.bands.size()), h.precision, h.has_mask,
                           h.has_visits, h.topology});
+    }
 }
 CompactStream::~CompactStream() = default;
 CompactStream::CompactStream(CompactStream&&) noexcept = default;
@@ -32,7 +42,8 @@ void CompactStream::decode(std::size_t part, int band, const CompactRows& rows) 
     std::span<const std::uint8_t> bytes = header.bands[as_index(band)];
     if ((header.has_mask && !take_mask(bytes, rows.inside, header.width)) ||
         (header.has_visits && !take_visits(bytes, rows.visits)) ||
-        !decode_band(bytes, {header.width, header.rows(as_index(band)), rows.dx, rows.dy, rows.inside}))
+        !decode_band({bytes, header.width, header.rows(as_index(band)), rows.dx, rows.dy, rows.inside},
+                     *coded_->tables[part]))
         refuse("layers.data",
                cat("the rows from ", band * header.band_rows, " on of part ", header.name, " are broken"),
                at_part(header.name));

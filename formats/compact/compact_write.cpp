@@ -1,6 +1,8 @@
 #include <algorithm>
+#include <array>
 
-#include "formats/compact/band_coder.h"
+#include "formats/compact/band_encode.h"
+#include "formats/compact/band_fit.h"
 #include "formats/compact/compact_header.h"
 #include "formats/compact/compact_layers.h"
 #include "formats/compact/plane_blocks.h"
@@ -41,52 +43,77 @@ int common_shift(const Displacements& map) {
     return shift;
 }
 
-std::vector<std::int16_t> shifted(std::span<const std::int16_t> values, int shift) {
-    std::vector<std::int16_t> result(values.begin(), values.end());
-    for (std::int16_t& value : result) value = static_cast<std::int16_t>(value >> shift);
-    return result;
+void add(compact::TokenCounts& sum, const compact::TokenCounts& counts) {
+    auto* to = &sum[0][0][0][0];
+    const auto* from = &counts[0][0][0][0];
+    for (std::size_t i = 0; i < sizeof sum / sizeof *to; ++i) to[i] += from[i];
 }
 
-Bytes band_bytes(const CompactView& part, const CompactHeader& header, int shift, std::size_t band) {
-    const Displacements& map = *part.map;
-    const int rows = header.rows(band);
-    const std::size_t first = map.row_begin(as_int(band) * header.band_rows),
-                      pixels = as_index(rows) * as_index(map.width);
-    Bytes bytes;
-    std::span<const std::uint8_t> inside;
-    if (header.has_mask) {
-        inside = std::span(map.inside.values).subspan(first, pixels);
-        put_mask(bytes, inside, map.width);
-    }
-    if (header.has_visits) put_visits(bytes, part.visits.subspan(first, pixels));
-    const std::vector<std::int16_t> dx = shifted(std::span(map.dx).subspan(first, pixels), shift),
-                                    dy = shifted(std::span(map.dy).subspan(first, pixels), shift);
-    const Bytes coded = encode_band({map.width, rows, dx, dy, inside});
-    bytes.insert(bytes.end(), coded.begin(), coded.end());
-    bytes.resize(std::max(bytes.size(), pixels / kPixelsOfByte));
-    return bytes;
+// The map with the coarsest steps.
+Displacements coarsened(const Displacements& map, int shift) {
+    Displacements coarse = map;
+    coarse.steps = map.steps >> shift;
+    for (std::vector<std::int16_t>* d : {&coarse.dx, &coarse.dy})
+        for (std::int16_t& value : *d) value = static_cast<std::int16_t>(value >> shift);
+    return coarse;
 }
 
-void put_view(Bytes& out, const CompactView& part) {
-    const Displacements& map = *part.map;
+// Encodes a part whose steps are the coarsest.
+void put_map(Bytes& out, const CompactView& part, const Displacements& map) {
     CompactHeader header;
     static_cast<GridSize&>(header) = map;
     header.name = part.name;
-    const int shift = common_shift(map);
-    header.steps = map.steps >> shift;
+    header.steps = map.steps;
     header.band_rows = band_rows_of(map);
     header.precision = part.precision;
     header.has_mask = std::ranges::find(map.inside.values, 0) != map.inside.values.end();
     header.has_visits = !part.visits.empty();
     header.topology = part.topology;
+    const std::array<compact::Taps, 2> taps{compact::fit_taps(map.dx, map.width, map.height),
+                                            compact::fit_taps(map.dy, map.width, map.height)};
+    const auto rows_of = [&](const auto& all, int band) {
+        const std::size_t first = map.row_begin(band * header.band_rows),
+                          pixels = as_index(header.rows(as_index(band))) * as_index(map.width);
+        return std::span(all).subspan(first, pixels);
+    };
     const int bands = (map.height + header.band_rows - 1) / header.band_rows;
-    std::vector<Bytes> coded(as_index(bands));
-    parallel_blocks(0, bands, 1, [&](int first, int last) {
-        for (int band = first; band < last; ++band)
-            coded[as_index(band)] = band_bytes(part, header, shift, as_index(band));
+    std::vector<compact::BandTokens> tokens(as_index(bands));
+    const auto for_bands = [&](const auto& body) {
+        parallel_blocks(0, bands, 1, [&](int first, int last) {
+            for (int band = first; band < last; ++band) body(band);
+        });
+    };
+    for_bands([&](int band) {
+        compact::Band rows{
+            map.width, header.rows(as_index(band)), rows_of(map.dx, band), rows_of(map.dy, band), {}};
+        if (header.has_mask) rows.inside = rows_of(map.inside.values, band);
+        tokens[as_index(band)] = compact::band_tokens(rows, taps);
     });
+    compact::TokenCounts counts{};
+    for (const compact::BandTokens& band : tokens) add(counts, band.counts);
+    const Bytes table_bytes = compact::table_bytes(taps, counts);
+    const compact::BandTables tables = compact::read_tables(table_bytes).value();
+    std::vector<Bytes> coded(as_index(bands));
+    for_bands([&](int band) {
+        Bytes& bytes = coded[as_index(band)];
+        if (header.has_mask) put_mask(bytes, rows_of(map.inside.values, band), map.width);
+        if (header.has_visits) put_visits(bytes, rows_of(part.visits, band));
+        compact::put_band(bytes, tokens[as_index(band)], tables);
+        const std::size_t pixels = as_index(header.rows(as_index(band))) * as_index(map.width);
+        bytes.resize(std::max(bytes.size(), pixels / kPixelsOfByte));
+        tokens[as_index(band)] = {};
+    });
+    header.tables = table_bytes;
     header.bands.assign(coded.begin(), coded.end());
     put_part(out, header);
+}
+
+void put_view(Bytes& out, const CompactView& part) {
+    const int shift = common_shift(*part.map);
+    if (shift == 0)
+        put_map(out, part, *part.map);
+    else
+        put_map(out, part, coarsened(*part.map, shift));
 }
 
 }  // namespace
