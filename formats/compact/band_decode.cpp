@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <utility>
 
 #include "formats/compact/band_pixel.h"
 #include "libcore/base/index.h"
@@ -13,26 +14,31 @@ namespace {
 // words is checked, and there is room for so many words behind them.
 constexpr int kChunk = 1024, kSlackWords = 4 * kChunk;
 
-// Decodes residuals.
+// Decodes the residuals of a band. Pointers into the tables, because nothing that a loop stores changes them.
 template <bool kMasked>
 struct TokenReader {
-    const DecodeTables& tables;
+    const std::uint8_t* table_of;  // [component][class][energy]
+    const DecodeTables::TableSlots* tables;
     const std::uint16_t* words;
     const std::uint8_t* inside;
     std::uint32_t state[2];
 
     template <int kComponent>
-    IMGMESH_INLINE int code(int rest_class, int energy, int /*whole*/, bool negative, int x) {
-        if (kMasked && !inside[x]) return 0;
+    IMGMESH_INLINE int code(int predicted, int energy, int x, std::int16_t& value) {
+        const int number = kMasked && !inside[x] ? 0 : next_number<kComponent>(place_of(predicted, energy));
+        value = value_of(predicted, number);
+        return number;
+    }
+
+    template <int kComponent>
+    IMGMESH_INLINE int next_number(int place) {
         std::uint32_t s = state[kComponent];
-        const std::size_t table =
-            tables
-                .table_of[kComponent][static_cast<std::size_t>(rest_class)][static_cast<std::size_t>(energy)];
-        const std::uint32_t slot = s & ((1u << kFrequencyBits) - 1);
-        const std::size_t token = tables.token_of.data()[table].data()[slot];
-        const Slots slots = tables.slots.data()[table].data()[token];
-        s = refilled(slots.frequency * (s >> kFrequencyBits) + slot - slots.first);
-        int number = static_cast<int>(token);
+        const std::size_t table = table_of[kComponent * kClasses * kEnergies + place];
+        constexpr std::uint32_t kSlotMask = (1u << kFrequencyBits) - 1;
+        const std::uint32_t slot = tables[table].data()[s & kSlotMask];
+        const std::uint32_t frequency = (slot >> DecodeTables::kFrequencyShift) & (2 * kSlotMask + 1);
+        s = refilled(frequency * (s >> kFrequencyBits) + (slot & kSlotMask));
+        int number = static_cast<int>(slot >> DecodeTables::kTokenShift);
         if (number >= kPlainTokens) [[unlikely]] {
             const auto range = static_cast<std::size_t>(number - kPlainTokens);
             const int count = kTokenBits[range];
@@ -40,90 +46,153 @@ struct TokenReader {
             s = refilled(s >> count);
         }
         state[kComponent] = s;
-        const int residual = residual_of(number);
-        return negative ? -residual : residual;
+        return number;
     }
 
     // Without a branch, for nobody can predict it.
     IMGMESH_INLINE std::uint32_t refilled(std::uint32_t s) {
-        const bool low = s < kLowest;
-        const std::uint32_t filled = (s << kWordBits) | *words;
+        const std::uint32_t low = s < kLowest;
+        s = (s << (low * kWordBits)) | (*words & (0u - low));
         words += low;
-        return low ? filled : s;
+        return s;
     }
 };
 
+// A band while it is decoded.
+template <bool kMasked>
 class BandDecoder {
   public:
     BandDecoder(const CodedBand& band, const DecodeTables& tables)
         : band_(band),
-          tables_(tables),
+          taps_(tables.taps),
           rows_(band.width, tables.taps),
           count_(band.bytes.size() / 2),
-          words_(count_ + kSlackWords) {
+          words_(std::max<std::size_t>(count_, 4) + kSlackWords),
+          lane_(rows_, taps_),
+          reader_{
+              tables.table_of[0][0].data(), tables.tables.data(), words_.data() + 4, band.inside.data(), {}} {
         std::memcpy(words_.data(), band.bytes.data(), 2 * count_);
+        for (std::size_t i : {0, 1})
+            reader_.state[i] = static_cast<std::uint32_t>(words_[2 * i]) << kWordBits | words_[2 * i + 1];
     }
 
-    template <bool kMasked>
-    bool decode() {
-        if (count_ < 4) return false;
-        const auto state = [&](std::size_t i) {
-            return static_cast<std::uint32_t>(words_[i]) << kWordBits | words_[i + 1];
-        };
-        TokenReader<kMasked> reader{tables_, words_.data() + 4, band_.inside.data(), {state(0), state(2)}};
-        const auto width = as_index(band_.width);
-        for (int y = 0; y < band_.rows; ++y) {
-            rows_.next();
-            Lane lane(rows_, tables_.taps);
-            for (int x = 0; x < band_.width; x += kChunk) {
-                const int end = std::min(band_.width, x + kChunk);
-                for (int i = x; i < end; ++i) code_pixel(lane, i, reader);
-                if (as_index(reader.words - words_.data()) > count_) return false;
-            }
-            const std::size_t first = as_index(y) * width;
-            std::copy_n(rows_.x.value.get(), width, band_.dx.data() + first);
-            std::copy_n(rows_.y.value.get(), width, band_.dy.data() + first);
-            if (kMasked) reader.inside += width;
+    int rows() const { return band_.rows; }
+
+    void begin_row() {
+        rows_.next();
+        lane_ = Lane(rows_, taps_);
+    }
+
+    /// Decodes pixels of the row, of two bands in turns: neither waits for the other, and together they take
+    /// little more time than one. The loop works on copies, which its stores cannot change.
+    static void decode_pixels(BandDecoder& a, BandDecoder& b, int begin, int end) {
+        Lane lane_a = a.lane_, lane_b = b.lane_;
+        TokenReader<kMasked> reader_a = a.reader_, reader_b = b.reader_;
+        for (int x = begin; x < end; ++x) {
+            code_pixel(lane_a, x, reader_a);
+            code_pixel(lane_b, x, reader_b);
         }
-        return ends_well(as_index(reader.words - words_.data()), reader.state);
+        a.lane_ = lane_a;
+        b.lane_ = lane_b;
+        a.reader_ = reader_a;
+        b.reader_ = reader_b;
+    }
+    void decode_pixels(int begin, int end) {
+        Lane lane = lane_;
+        TokenReader<kMasked> reader = reader_;
+        for (int x = begin; x < end; ++x) code_pixel(lane, x, reader);
+        lane_ = lane;
+        reader_ = reader;
+    }
+
+    /// Returns whether the words have lasted until now.
+    bool sound() const { return place() <= count_; }
+
+    void end_row(int y) {
+        const std::size_t width = as_index(band_.width), first = as_index(y) * width;
+        for (const auto& [component, out] : {std::pair(&rows_.x, band_.dx), std::pair(&rows_.y, band_.dy)}) {
+            const std::int16_t* value = component->value.get();
+            std::int16_t* to = out.data() + first;
+            if (kMasked)
+                for (std::size_t x = 0; x < width; ++x)
+                    to[x] = reader_.inside[x] ? value[x] : std::int16_t{0};
+            else
+                std::copy_n(value, width, to);
+        }
+        if (kMasked) reader_.inside += width;
+    }
+
+    /// The encoder has begun with the lowest states; what follows is there for a band's least size.
+    bool ended_well() const {
+        return sound() && reader_.state[0] == kLowest && reader_.state[1] == kLowest &&
+               std::ranges::all_of(band_.bytes.subspan(2 * place()),
+                                   [](std::uint8_t byte) { return byte == 0; });
     }
 
   private:
-    // The encoder has begun with the lowest states; what follows is there for a band's least size.
-    bool ends_well(std::size_t at, const std::uint32_t (&state)[2]) const {
-        return state[0] == kLowest && state[1] == kLowest &&
-               std::ranges::all_of(band_.bytes.subspan(2 * at), [](std::uint8_t byte) { return byte == 0; });
-    }
+    std::size_t place() const { return as_index(reader_.words - words_.data()); }
 
-    const CodedBand& band_;
-    const DecodeTables& tables_;
+    CodedBand band_;
+    std::array<Taps, 2> taps_;
     BandRows rows_;
     std::size_t count_;
     std::vector<std::uint16_t> words_;
+    Lane lane_;
+    TokenReader<kMasked> reader_;
 };
+
+// Decodes the rows from `first` on of both bands; of a alone if there is no b.
+template <bool kMasked>
+bool decode_rows(BandDecoder<kMasked>& a, BandDecoder<kMasked>* b, int width, int first, int last) {
+    for (int y = first; y < last; ++y) {
+        a.begin_row();
+        if (b) b->begin_row();
+        for (int x = 0; x < width; x += kChunk) {
+            const int end = std::min(width, x + kChunk);
+            if (b)
+                BandDecoder<kMasked>::decode_pixels(a, *b, x, end);
+            else
+                a.decode_pixels(x, end);
+            if (!a.sound() || (b && !b->sound())) return false;
+        }
+        a.end_row(y);
+        if (b) b->end_row(y);
+    }
+    return true;
+}
+
+template <bool kMasked>
+bool decode(const CodedBand& first, const CodedBand* second, const DecodeTables& tables) {
+    BandDecoder<kMasked> a(first, tables);
+    if (!second) return decode_rows<kMasked>(a, nullptr, first.width, 0, first.rows) && a.ended_well();
+    BandDecoder<kMasked> b(*second, tables);
+    const int both = std::min(first.rows, second->rows);
+    return decode_rows<kMasked>(a, &b, first.width, 0, both) &&
+           decode_rows<kMasked>(a, nullptr, first.width, both, first.rows) &&
+           decode_rows<kMasked>(b, nullptr, first.width, both, second->rows) && a.ended_well() &&
+           b.ended_well();
+}
 
 }  // namespace
 
-DecodeTables::DecodeTables(const BandTables& tables) : taps(tables.taps), slots(tables.tables) {
+DecodeTables::DecodeTables(const BandTables& from) : taps(from.taps), tables(from.tables.size()) {
     for (std::size_t component = 0; component < 2; ++component)
         for (std::size_t rest_class = 0; rest_class < kClasses; ++rest_class)
-            for (int energy = 0; energy <= kMaxEnergy; ++energy)
+            for (int energy = 0; energy < kEnergies; ++energy)
                 table_of[component][rest_class][as_index(energy)] =
-                    tables.table_of[component][rest_class][as_index(level_of(energy))];
-    token_of.resize(slots.size());
-    for (std::size_t table = 0; table < slots.size(); ++table)
-        for (std::size_t token = 0; token < kTokens; ++token)
-            std::fill_n(token_of[table].begin() + slots[table][token].first, slots[table][token].frequency,
-                        static_cast<std::uint8_t>(token));
+                    from.table_of[component][rest_class][as_index(level_of(energy))];
+    for (std::size_t table = 0; table < tables.size(); ++table) {
+        std::uint32_t* slot = tables[table].data();
+        for (std::uint32_t token = 0; token < kTokens; ++token) {
+            const std::uint32_t frequency = from.tables[table][token].frequency;
+            for (std::uint32_t i = 0; i < frequency; ++i)
+                *slot++ = token << kTokenShift | frequency << kFrequencyShift | i;
+        }
+    }
 }
 
-bool decode_band(const CodedBand& band, const DecodeTables& tables) {
-    BandDecoder decoder(band, tables);
-    if (band.inside.empty()) return decoder.decode<false>();
-    if (!decoder.decode<true>()) return false;
-    for (std::size_t i = 0; i < band.inside.size(); ++i)
-        if (!band.inside[i]) band.dx[i] = band.dy[i] = 0;
-    return true;
+bool decode_bands(const CodedBand& first, const CodedBand* second, const DecodeTables& tables) {
+    return first.inside.empty() ? decode<false>(first, second, tables) : decode<true>(first, second, tables);
 }
 
 }  // namespace imgmesh::compact

@@ -11,13 +11,15 @@ namespace imgmesh::compact {
 
 /// The tables of a part, laid out for the decoder.
 struct DecodeTables {
-    explicit DecodeTables(const BandTables& tables);
+    explicit DecodeTables(const BandTables& from);
 
     std::array<Taps, 2> taps;
     /// The table of a context: [component][class][energy].
-    std::array<std::array<std::array<std::uint8_t, kMaxEnergy + 1>, kClasses>, 2> table_of;
-    std::vector<std::array<std::uint8_t, 1 << kFrequencyBits>> token_of;  ///< of each table's slots
-    std::vector<TokenSlots> slots;                                        ///< of each table's tokens
+    std::array<std::array<std::array<std::uint8_t, kEnergies>, kClasses>, 2> table_of;
+    /// For each slot of a table its token, the token's frequency and the slot's place among the token's.
+    static constexpr int kTokenShift = 2 * kFrequencyBits + 1, kFrequencyShift = kFrequencyBits;
+    using TableSlots = std::array<std::uint32_t, 1 << kFrequencyBits>;
+    std::vector<TableSlots> tables;
 };
 
 /// A band and its bytes. `inside` is empty if all pixels are; pixels outside get 0.
@@ -28,7 +30,8 @@ struct CodedBand {
     std::span<const std::uint8_t> inside;
 };
 
-/// Fills a band; returns whether the bytes are a band of that size. Safe for any bytes.
-bool decode_band(const CodedBand& band, const DecodeTables& tables);
+/// Fills a band, or two of one part in the time of little more than one (`second` may be null). Returns
+/// whether the bytes are bands of these sizes. Safe for any bytes.
+bool decode_bands(const CodedBand& first, const CodedBand* second, const DecodeTables& tables);
 
 }  // namespace imgmesh::compact

@@ -1,6 +1,7 @@
 #include "formats/compact/band_encode.h"
 
 #include <algorithm>
+#include <cstring>
 #include <utility>
 
 #include "formats/compact/band_pixel.h"
@@ -9,19 +10,34 @@
 namespace imgmesh::compact {
 namespace {
 
-// Tells residuals of known values, and writes down their tokens.
+// The contexts of a component by place_of().
+constexpr auto kContextOf = [] {
+    std::array<std::uint8_t, kClasses * kEnergies> contexts{};
+    for (int place = 0; place < kClasses * kEnergies; ++place)
+        contexts[static_cast<std::size_t>(place)] =
+            static_cast<std::uint8_t>(place / kEnergies * kLevels + level_of(place % kEnergies));
+    return contexts;
+}();
+
+// Tells the numbers of known values, and writes down their tokens.
 template <bool kMasked>
 struct TokenSource {
     BandTokens& band;
     const std::int16_t* values[2];
     const std::uint8_t* inside;
     BandTokens::Token* out;
+    std::uint32_t* counts;  // [component][class][level][token]
 
     template <int kComponent>
-    IMGMESH_INLINE int code(int rest_class, int energy, int whole, bool negative, int x) {
-        if (kMasked && !inside[x]) return 0;
-        const auto residual = static_cast<std::int16_t>(values[kComponent][x] - whole);
-        const int number = number_of(negative ? -residual : residual), level = level_of(energy);
+    IMGMESH_INLINE int code(int predicted, int energy, int x, std::int16_t& value) {
+        if (kMasked && !inside[x]) {
+            value = value_of(predicted, 0);
+            return 0;
+        }
+        value = values[kComponent][x];
+        const auto residual = static_cast<std::int16_t>(value - whole_of(predicted));
+        const int number = number_of(turned(residual, has_negative_rest(predicted))),
+                  context = kContextOf.data()[place_of(predicted, energy)];
         int token = number;
         if (number >= kPlainTokens) [[unlikely]] {
             std::size_t range = kTokenFirst.size() - 1;
@@ -29,20 +45,23 @@ struct TokenSource {
             band.bits.push_back(static_cast<std::uint16_t>(number - kTokenFirst[range]));
             token = kPlainTokens + static_cast<int>(range);
         }
-        ++band.counts[kComponent][as_index(rest_class)][as_index(level)][as_index(token)];
-        *out++ = {static_cast<std::uint8_t>(rest_class * kLevels + level), static_cast<std::uint8_t>(token)};
-        return residual;
+        ++counts[((kComponent * kClasses * kLevels) + context) * kTokens + token];
+        *out++ = {static_cast<std::uint8_t>(context), static_cast<std::uint8_t>(token)};
+        return number;
     }
 };
 
 template <bool kMasked>
 void fill_tokens(const Band& in, const std::array<Taps, 2>& taps, BandTokens& band) {
     BandRows rows(in.width, taps);
-    TokenSource<kMasked> source{band, {in.dx.data(), in.dy.data()}, in.inside.data(), band.tokens.data()};
+    TokenSource<kMasked> source{
+        band, {in.dx.data(), in.dy.data()}, in.inside.data(), band.tokens.data(), &band.counts[0][0][0][0]};
     for (int y = 0; y < in.rows; ++y) {
         rows.next();
         Lane lane(rows, taps);
-        for (int x = 0; x < in.width; ++x) code_pixel(lane, x, source);
+        TokenSource<kMasked> copy = source;  // which the loop's stores cannot change
+        for (int x = 0; x < in.width; ++x) code_pixel(lane, x, copy);
+        source.out = copy.out;
         source.values[0] += in.width;
         source.values[1] += in.width;
         if (kMasked) source.inside += in.width;
@@ -50,33 +69,25 @@ void fill_tokens(const Band& in, const std::array<Taps, 2>& taps, BandTokens& ba
     band.tokens.resize(static_cast<std::size_t>(source.out - band.tokens.data()));
 }
 
-// A state of rANS that takes tokens from the last to the first.
-class Encoder {
-  public:
-    explicit Encoder(std::vector<std::uint16_t>& words) : words_(words) {}
+// A state of rANS that takes tokens from the last to the first, and writes words from the last to the first.
+struct Encoder {
+    std::uint32_t state = kLowest;
 
-    IMGMESH_INLINE void put(Slots slots) {
+    IMGMESH_INLINE void put(Slots slots, std::uint16_t*& words) {
         const std::uint32_t frequency = slots.frequency;
-        if (state_ >= std::uint64_t{frequency} << (2 * kWordBits - kFrequencyBits)) put_word();
-        state_ = ((state_ / frequency) << kFrequencyBits) + state_ % frequency + slots.first;
+        put_word(state >= std::uint64_t{frequency} << (2 * kWordBits - kFrequencyBits), words);
+        state = ((state / frequency) << kFrequencyBits) + state % frequency + slots.first;
     }
-    void put_bits(unsigned value, int count) {
-        if (state_ >= std::uint64_t{1} << (2 * kWordBits - count)) put_word();
-        state_ = (state_ << count) | value;
+    void put_bits(unsigned value, int count, std::uint16_t*& words) {
+        put_word(state >= std::uint64_t{1} << (2 * kWordBits - count), words);
+        state = (state << count) | value;
     }
-    void finish() {
-        put_word();
-        put_word();
+    // Without a branch, for nobody can predict it.
+    IMGMESH_INLINE void put_word(bool wanted, std::uint16_t*& words) {
+        words[-1] = static_cast<std::uint16_t>(state);
+        words -= wanted;
+        state >>= wanted * kWordBits;
     }
-
-  private:
-    IMGMESH_INLINE void put_word() {
-        words_.push_back(static_cast<std::uint16_t>(state_));
-        state_ >>= kWordBits;
-    }
-
-    std::vector<std::uint16_t>& words_;
-    std::uint32_t state_ = kLowest;
 };
 
 }  // namespace
@@ -92,32 +103,36 @@ BandTokens band_tokens(const Band& in, const std::array<Taps, 2>& taps) {
 }
 
 void put_band(std::vector<std::uint8_t>& out, const BandTokens& band, const BandTables& tables) {
-    // The slots of a token by its context.
-    std::array<std::array<const TokenSlots*, kClasses * kLevels>, 2> slots_of{};
-    for (std::size_t component = 0; component < 2; ++component)
-        for (std::size_t context = 0; context < kClasses * kLevels; ++context)
-            slots_of[component][context] =
-                &tables.tables[tables.table_of[component][context / kLevels][context % kLevels]];
-    std::vector<std::uint16_t> words;
-    words.reserve(band.tokens.size() / 2);
-    std::array<Encoder, 2> encoders{Encoder(words), Encoder(words)};
-    std::size_t bits = band.bits.size();
-    const auto put = [&](BandTokens::Token token, std::size_t component) {
+    // The slots of all tokens: [component][context][token].
+    std::vector<Slots> slots(std::size_t{2} * kClasses * kLevels * kTokens);
+    for (std::size_t i = 0; i < slots.size(); ++i) {
+        const std::size_t level = i / kTokens % kLevels, rest_class = i / kTokens / kLevels % kClasses;
+        slots[i] = tables.tables[tables.table_of[i / (slots.size() / 2)][rest_class][level]][i % kTokens];
+    }
+    // A token takes at most a word, so do the bits that follow it, and the states take four. One is spare,
+    // for what is written before it is known to be wanted.
+    std::vector<std::uint16_t> words(band.tokens.size() + band.bits.size() + 5);
+    std::uint16_t* at = words.data() + words.size();
+    Encoder x, y;
+    const std::uint16_t* bits = band.bits.data() + band.bits.size();
+    const auto put = [&](Encoder& encoder, BandTokens::Token token, const Slots* of) {
         if (token.token >= kPlainTokens) [[unlikely]]
-            encoders[component].put_bits(band.bits[--bits], kTokenBits[as_index(token.token - kPlainTokens)]);
-        encoders[component].put((*slots_of[component][token.context])[token.token]);
+            encoder.put_bits(*--bits, kTokenBits[as_index(token.token - kPlainTokens)], at);
+        encoder.put(of[token.context * kTokens + token.token], at);
     };
-    for (std::size_t i = band.tokens.size(); i > 0; i -= 2) {
-        put(band.tokens[i - 1], 1);
-        put(band.tokens[i - 2], 0);
+    const Slots *slots_x = slots.data(), *slots_y = slots_x + slots.size() / 2;
+    for (const BandTokens::Token* token = band.tokens.data() + band.tokens.size();
+         token != band.tokens.data();) {
+        token -= 2;
+        put(y, token[1], slots_y);
+        put(x, token[0], slots_x);
     }
-    encoders[1].finish();
-    encoders[0].finish();
-    out.reserve(out.size() + 2 * words.size());
-    for (std::size_t i = words.size(); i-- > 0;) {
-        out.push_back(static_cast<std::uint8_t>(words[i]));
-        out.push_back(static_cast<std::uint8_t>(words[i] >> 8));
-    }
+    for (Encoder* encoder : {&y, &x})
+        for (int word = 0; word < 2; ++word) encoder->put_word(true, at);
+    const auto count = static_cast<std::size_t>(words.data() + words.size() - at);
+    const std::size_t before = out.size();
+    out.resize(before + 2 * count);
+    std::memcpy(out.data() + before, at, 2 * count);
 }
 
 }  // namespace imgmesh::compact

@@ -13,7 +13,7 @@ namespace {
 constexpr Taps kDefault = {208, -40, 160, -88, 48, -32, 0, 0, 0, 0};
 
 // More pixels change the taps by less than they are rounded.
-constexpr std::size_t kSample = 8192, kFewest = 256;
+constexpr std::size_t kSample = 4096, kFewest = 256;
 constexpr int kRounds = 3;
 
 using Row = std::array<double, kTaps + 1>;

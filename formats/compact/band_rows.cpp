@@ -57,6 +57,33 @@ V load(const T* from) {
     return v;
 }
 
+// Eight residuals, clamped.
+Short8 small(const std::int16_t* from) {
+    constexpr Short8 kMost = Short8{} + static_cast<std::int16_t>(kMaxProduct);
+    Short8 v = load<Short8>(from);
+    v = v > kMost ? kMost : v;
+    return v < -kMost ? -kMost : v;
+}
+
+// Four of eight numbers with their signs in 32 bits.
+Int4 lower(Short8 v) {
+    return reinterpret_cast<Int4>(__builtin_shufflevector(v, v, 0, 0, 1, 1, 2, 2, 3, 3)) >> 16;
+}
+Int4 upper(Short8 v) {
+    return reinterpret_cast<Int4>(__builtin_shufflevector(v, v, 4, 4, 5, 5, 6, 6, 7, 7)) >> 16;
+}
+
+// The quotients' whole parts, with kSlopeBits behind the point. Exact: the numbers are below 2^24, so that a
+// rounded quotient never reaches the next whole number.
+Short8 quotients(Int4 numerator, Int4 denominator) {
+    const Float4 q = __builtin_convertvector(numerator << kSlopeBits, Float4) /
+                     __builtin_convertvector(denominator, Float4);
+    Int4 whole = __builtin_convertvector(q, Int4);
+    whole = whole > kMaxSlope ? Int4{} + kMaxSlope : whole;
+    whole = whole < -kMaxSlope ? Int4{} - kMaxSlope : whole;
+    return reinterpret_cast<Short8>(whole);
+}
+
 // A weighted sum of eight pixels' neighbours in the rows above, of magnitudes or of products.
 template <typename Load>
 auto above_sum(Load n, Load nn, int x) {
@@ -69,6 +96,7 @@ ComponentRows::ComponentRows(int width)
     : value(width),
       value_n(width),
       value_nn(width),
+      plain(width),
       size(width),
       size_n(width),
       size_nn(width),
@@ -79,8 +107,6 @@ BandRows::BandRows(int width, const std::array<Taps, 2>& taps)
     : x(width),
       y(width),
       slope(width),
-      small_x(width),
-      small_y(width),
       width_(width),
       taps_(taps),
       xx_n_(width),
@@ -112,9 +138,11 @@ void BandRows::next_slope() {
     if (row_ == 0) return;
     std::swap(xx_nn_, xx_n_);
     std::swap(xy_nn_, xy_n_);
-    for (int i = 0; i < width_; ++i) {
-        xx_n_[i] = static_cast<std::int16_t>(small_x[i] * small_x[i]);
-        xy_n_[i] = static_cast<std::int16_t>(small_x[i] * small_y[i]);
+    for (int i = 0; i < width_; i += 8) {
+        const Short8 small_x = small(x.plain.get() + i), small_y = small(y.plain.get() + i),
+                     xx = small_x * small_x, xy = small_x * small_y;
+        __builtin_memcpy(xx_n_.get() + i, &xx, sizeof xx);
+        __builtin_memcpy(xy_n_.get() + i, &xy, sizeof xy);
     }
     const auto of = [](const PaddedRow<std::int16_t>& row) {
         return [from = row.get()](int at) { return load<Short8>(from + at); };
@@ -122,18 +150,9 @@ void BandRows::next_slope() {
     for (int i = 0; i < width_; i += 8) {
         const Short8 xx = above_sum(of(xx_n_), of(xx_nn_), i) + static_cast<std::int16_t>(kSlopeStart),
                      xy = above_sum(of(xy_n_), of(xy_nn_), i);
-        for (int half = 0; half < 8; half += 4) {
-            // Exact: below 2^24, a quotient's rounding never reaches the next whole number.
-            Float4 a, b;
-            for (int k = 0; k < 4; ++k) {
-                a[k] = static_cast<float>(xy[half + k] * (1 << kSlopeBits));
-                b[k] = xx[half + k];
-            }
-            const Float4 q = a / b;
-            for (int k = 0; k < 4; ++k)
-                slope[i + half + k] =
-                    static_cast<std::int16_t>(std::clamp(static_cast<int>(q[k]), -kMaxSlope, kMaxSlope));
-        }
+        const Short8 slopes = __builtin_shufflevector(
+            quotients(lower(xy), lower(xx)), quotients(upper(xy), upper(xx)), 0, 2, 4, 6, 8, 10, 12, 14);
+        __builtin_memcpy(slope.get() + i, &slopes, sizeof slopes);
     }
 }
 

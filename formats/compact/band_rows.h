@@ -31,6 +31,7 @@ struct ComponentRows {
     explicit ComponentRows(int width);
 
     PaddedRow<std::int16_t> value, value_n, value_nn;
+    PaddedRow<std::int16_t> plain;  ///< residuals of the row, without the slope
     PaddedRow<std::uint8_t> size, size_n, size_nn;
     PaddedRow<std::int32_t> prediction;  ///< part of it, with kTapBits behind the point
     PaddedRow<std::uint16_t> energy;     ///< part of it
@@ -43,11 +44,10 @@ class BandRows {
     BandRows(int width, const std::array<Taps, 2>& taps);
 
     ComponentRows x, y;
-    PaddedRow<std::int16_t> slope;            ///< of dy's residual to dx's
-    PaddedRow<std::int8_t> small_x, small_y;  ///< residuals of the row without slope, clamped
+    PaddedRow<std::int16_t> slope;  ///< of dy's residual to dx's
 
     /// Sets prediction, energy and slope of the next row, and its neighbours on the left. The row before must
-    /// have its values, sizes and small residuals.
+    /// have its values, residuals and sizes.
     void next();
     bool first_row() const { return row_ == 0; }
 

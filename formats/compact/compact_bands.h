@@ -46,6 +46,8 @@ class CompactStream {
 
     /// Decodes a band: the rows from band * band_rows on. Bands need no others. Throws FindingError.
     void decode(std::size_t part, int band, const CompactRows& rows) const;
+    /// Decodes one band or two, `first` and the next, faster than one after the other.
+    void decode(std::size_t part, int first, std::span<const CompactRows> bands) const;
 
   private:
     struct Coded;

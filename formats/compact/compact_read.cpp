@@ -38,14 +38,25 @@ CompactStream::~CompactStream() = default;
 CompactStream::CompactStream(CompactStream&&) noexcept = default;
 
 void CompactStream::decode(std::size_t part, int band, const CompactRows& rows) const {
+    decode(part, band, {&rows, 1});
+}
+
+void CompactStream::decode(std::size_t part, int first, std::span<const CompactRows> bands) const {
     const CompactHeader& header = coded_->headers[part];
-    std::span<const std::uint8_t> bytes = header.bands[as_index(band)];
-    if ((header.has_mask && !take_mask(bytes, rows.inside, header.width)) ||
-        (header.has_visits && !take_visits(bytes, rows.visits)) ||
-        !decode_band({bytes, header.width, header.rows(as_index(band)), rows.dx, rows.dy, rows.inside},
-                     *coded_->tables[part]))
+    compact::CodedBand coded[2];
+    for (std::size_t i = 0; i < bands.size(); ++i) {
+        const std::size_t band = as_index(first) + i;
+        const CompactRows& rows = bands[i];
+        std::span<const std::uint8_t> bytes = header.bands[band];
+        if ((header.has_mask && !take_mask(bytes, rows.inside, header.width)) ||
+            (header.has_visits && !take_visits(bytes, rows.visits)))
+            refuse("layers.data", cat("the mask or the visits of part ", header.name, " are broken"),
+                   at_part(header.name));
+        coded[i] = {bytes, header.width, header.rows(band), rows.dx, rows.dy, rows.inside};
+    }
+    if (!compact::decode_bands(coded[0], bands.size() > 1 ? &coded[1] : nullptr, *coded_->tables[part]))
         refuse("layers.data",
-               cat("the rows from ", band * header.band_rows, " on of part ", header.name, " are broken"),
+               cat("the rows from ", first * header.band_rows, " on of part ", header.name, " are broken"),
                at_part(header.name));
 }
 
@@ -63,16 +74,18 @@ CompactPart decode_part(const CompactStream& stream, std::size_t which, const Ex
     map.dy.resize(pixels);
     if (in.has_mask) map.inside = Mask(map);
     if (in.has_visits) part.visits.resize(pixels);
-    parallel_blocks(0, in.bands, 1, [&](int first, int last) {
-        for (int band = first; band < last; ++band) {
-            const std::size_t begin = map.row_begin(band * in.band_rows),
-                              count = std::min(pixels - begin, as_index(in.band_rows) * as_index(map.width));
-            const auto rows = [&](auto& all) {
-                return all.empty() ? std::span(all) : std::span(all).subspan(begin, count);
-            };
-            stream.decode(which, band,
-                          {rows(map.dx), rows(map.dy), rows(map.inside.values), rows(part.visits)});
-        }
+    const auto rows_of = [&](int band) {
+        const std::size_t begin = map.row_begin(band * in.band_rows),
+                          count = std::min(pixels - begin, as_index(in.band_rows) * as_index(map.width));
+        const auto rows = [&](auto& all) {
+            return all.empty() ? std::span(all) : std::span(all).subspan(begin, count);
+        };
+        return CompactRows{rows(map.dx), rows(map.dy), rows(map.inside.values), rows(part.visits)};
+    };
+    parallel_blocks(0, in.bands, 2, [&](int first, int last) {
+        std::vector<CompactRows> bands;
+        for (int band = first; band < last; ++band) bands.push_back(rows_of(band));
+        stream.decode(which, first, bands);
     });
     return part;
 }
