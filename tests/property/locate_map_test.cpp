@@ -122,10 +122,11 @@ double high(int side) {
 
 TEST_CASE("locate_map: the rule, on random meshes, and back") {
     std::uint32_t seed = 0;
-    for (const auto [width, height] : {Size{40, 30}, {1, 60}, {60, 1}, {1, 1}, {2, 2}, {90, 7}})
+    for (const Size& size : {Size{40, 30}, {1, 60}, {60, 1}, {1, 1}, {2, 2}, {90, 7}})
         for (const int cells : {1, 4, 12})
             for (const int steps : {8, 16, 32})
                 for (const WeightPrecision precision : kPrecisions) {
+                    const int width = size.width, height = size.height;
                     INFO(width << " x " << height << ", " << cells << " cells, " << steps << " steps");
                     const auto count = [&](int side) { return std::clamp(side / 2, 1, cells); };
                     const BaseMesh mesh =
