@@ -113,8 +113,10 @@ py::object report(const MeshValue& mesh) {
         py::dict channels;
         for (std::size_t c = 0; c < level.auxiliary_rms.size(); ++c)
             channels[py::str(names.at(c))] = level.auxiliary_rms[c];
-        levels.append(py::dict(py::arg("map_rms") = level.map_rms, py::arg("gouraud_rms") = level.gouraud_rms,
-                               py::arg("channel_rms") = channels));
+        levels.append(py::dict(
+            py::arg("map_rms") = level.map_rms, py::arg("gouraud_rms") = level.gouraud_rms,
+            py::arg("channel_rms") = channels, py::arg("position_step") = level.position_step,
+            py::arg("fine_vertices") = level.fine_vertices, py::arg("color_levels") = level.color_levels));
     }
     return py::dict(
         py::arg("pixels") = r.pixels, py::arg("clipped_samples") = r.clipped_samples,

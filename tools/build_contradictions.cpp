@@ -36,6 +36,10 @@ void check_contradictions(const CLI::App& app, const BuildParams& p) {
         refuse(map, projection, "the trivial map follows no colour");
     if (map_kind(p) == MapKind::kTracked && rounds > 0)
         refuse(map, typed_rounds(app, rounds), "a tracked map follows the collapse alone");
+    if (map_kind(p) == MapKind::kTracked && (p.position_step || p.mesh_precision == MeshPrecision::kCompact))
+        refuse(map, typed(app, {"--position-step", "--mesh-precision"}),
+               "a tracked map follows the collapse to where its vertices are");
+    if (p.values && p.color_levels) refuse("--values", "--color-levels", "values have no colours");
     if (p.values && given(app, "--texture"))
         refuse("--values", "--texture", "values are no colours that a texture could show");
     if (p.values && given(app, "--color-space"))

@@ -1,5 +1,6 @@
 #include "tools/build_report.h"
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <ostream>
 
@@ -26,6 +27,12 @@ Report image_report(const Image& image, const std::string& alpha, bool values, c
             levels.back()["map_rms"] = built.levels[k].map_rms;
             levels.back()["flipped_pixel_triangles"] = map_quality(level.mesh, level.map).flipped_triangles;
         }
+        const LevelReport& figures = built.levels[k];
+        if (figures.position_step > double{kPositionStep}) {
+            levels.back()["position_step"] = figures.position_step;
+            levels.back()["fine_vertices"] = figures.fine_vertices;
+        }
+        if (figures.color_levels > 0) levels.back()["color_levels"] = figures.color_levels;
         for (std::size_t c = 0; c < auxiliary.size(); ++c)
             levels.back()["channel_rms"][auxiliary[c]] = built.levels[k].auxiliary_rms[c];
     }
@@ -70,6 +77,18 @@ void print_build(const Report& image, std::ostream& out) {
     if (image["pixels"] != image["width"].get<std::int64_t>() * image["height"].get<std::int64_t>())
         table.add("masked image", cat(image["pixels"], " pixels"));
     table.add("mesh", cat(image["vertices"], " vertices, ", image["faces"], " faces"));
+    if (image.contains("position_step") || image.contains("color_levels")) {
+        std::string text;
+        if (image.contains("position_step")) {
+            const auto step = image["position_step"].get<double>();
+            text = cat("positions on ", step == 1 ? "" : "1/", std::lround(1 / step), " pixel");
+            if (const auto fine = image["fine_vertices"].get<std::size_t>(); fine > 0)
+                text += cat(" but for ", fine, fine == 1 ? " vertex" : " vertices");
+        }
+        if (image.contains("color_levels"))
+            text += cat(text.empty() ? "" : ", ", image["color_levels"], " levels of R, G and B");
+        table.add("precision", text);
+    }
     const bool has_map = image.contains("map_rms");
     table.add("error",
               cat(has_map ? cat("map ", number("map_rms"), ", ") : "", "Gouraud ", number("gouraud_rms"),

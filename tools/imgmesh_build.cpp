@@ -75,6 +75,11 @@ Report build_one(const BuildOptions& given, Context& context) {
     const double read_seconds = stage.lap();
     ContainerOptions container;
     compress(container, o.compression, o.no_map ? DracoMode::kOff : DracoMode::kEdgebreaker);
+    if (o.params.mesh_precision == MeshPrecision::kCompact && container.draco == DracoMode::kOff &&
+        !container.meshopt)
+        add_warning(
+            "--mesh-precision compact: meshes without compression take the same bytes; --compression draco "
+            "makes them smaller");
     container.layers = !o.no_map;
     container.overwrite = context.overwrite;
     container.metadata = read.metadata;

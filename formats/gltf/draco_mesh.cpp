@@ -8,12 +8,14 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <memory>
 #include <type_traits>
 
 #include "formats/files/byte_reader.h"
 #include "formats/findings/findings.h"
 #include "libcore/base/error.h"
+#include "libcore/image/color_levels.h"
 
 namespace imgmesh {
 namespace {
@@ -32,14 +34,53 @@ int add_attribute(draco::Mesh& mesh, draco::GeometryAttribute::Type type, draco:
     return id;
 }
 
-// With range = (2^bits - 1) step Draco's step is exactly kPositionStep, and origin + q step has no rounding:
-// all are multiples of the step and below 2^23 of them (kMaxCoordinate).
+// Returns the largest power of two, at most a pixel, of which all positions are multiples away from `low`;
+// at least kPositionStep.
+float common_step(const StoredMesh& mesh, const std::array<float, 3>& low) {
+    std::uint32_t bits = 32;  // a pixel in steps of kPositionStep
+    for (const auto& p : mesh.position)
+        for (std::size_t i = 0; i < 2; ++i)
+            bits |= static_cast<std::uint32_t>((p[i] - low[i]) / kPositionStep);
+    return static_cast<float>(1 << std::countr_zero(bits)) * kPositionStep;
+}
+
+// With range = (2^bits - 1) step Draco's step is exactly that of the mesh, and origin + q step has no
+// rounding: all are multiples of the step and below 2^23 of them (kMaxCoordinate).
 void quantize_positions(draco::ExpertEncoder& encoder, int attribute, const StoredMesh& mesh) {
     const auto [low, high] = bounds_of(mesh.position);
+    const float step = common_step(mesh, low);
     const float extent = std::max(high[0] - low[0], high[1] - low[1]);
-    const auto bits = static_cast<int>(std::bit_width(static_cast<std::uint32_t>(extent / kPositionStep)));
-    const float range = static_cast<float>((1 << bits) - 1) * kPositionStep;
+    const auto bits = static_cast<int>(std::bit_width(static_cast<std::uint32_t>(extent / step)));
+    const float range = static_cast<float>((1 << bits) - 1) * step;
     encoder.SetAttributeExplicitQuantization(attribute, bits, 3, low.data(), range);
+}
+
+// How Draco predicts values, where its usual choice is not the smallest.
+struct Predictions {
+    bool parallelogram = false;  // positions by one parallelogram, not the mean of several
+    bool plain_color = false;    // colours not at all
+};
+
+// Whether colours have few levels (ColorLevels). Differences of levels have as many values as colours of 16
+// bits, so a prediction would lose what the levels gain.
+bool has_color_levels(const StoredMesh& mesh) {
+    std::vector<bool> used(std::size_t{1} << 16);
+    for (const auto& color : mesh.color)
+        for (const std::uint16_t code : color) used[code] = true;
+    return std::ranges::count(used, true) <= kMostColorLevels;
+}
+
+// Whether most positions, but not all, are on a coarser grid. A parallelogram of such is on it too, a mean of
+// several need not be.
+bool is_mostly_coarse(const StoredMesh& mesh) {
+    constexpr float kCoarser = 4;
+    const std::array<float, 3> low = bounds_of(mesh.position).low;
+    const float step = kCoarser * common_step(mesh, low);
+    const auto coarse = std::ranges::count_if(mesh.position, [&](const std::array<float, 3>& p) {
+        const float x = (p[0] - low[0]) / step, y = (p[1] - low[1]) / step;
+        return x == std::floor(x) && y == std::floor(y);
+    });
+    return 4 * static_cast<std::size_t>(coarse) >= 3 * mesh.position.size();
 }
 
 struct Header {
@@ -230,12 +271,13 @@ DracoMesh encode_draco_mesh(const StoredMesh& mesh, DracoMode mode) {
     const DracoAttributeIds ids = draco_ids(mesh.layout());
     const int position = add_attribute(out, draco::GeometryAttribute::POSITION, draco::DT_FLOAT32, false,
                                        ids.position, mesh.position);
+    int color = -1;
+    if (ids.color)
+        color = add_attribute(out, draco::GeometryAttribute::COLOR, draco::DT_UINT16, true, *ids.color,
+                              mesh.color);
     const auto add = [&](draco::DataType type, std::uint32_t id, const auto& values) {
-        const bool color = type == draco::DT_UINT16;
-        add_attribute(out, color ? draco::GeometryAttribute::COLOR : draco::GeometryAttribute::GENERIC, type,
-                      color, id, values);
+        add_attribute(out, draco::GeometryAttribute::GENERIC, type, false, id, values);
     };
-    if (ids.color) add(draco::DT_UINT16, *ids.color, mesh.color);
     // Floats without quantisation are stored unchanged.
     if (ids.hdr) add(draco::DT_FLOAT32, *ids.hdr, mesh.hdr);
     for (std::size_t c = 0; c < mesh.channels.size(); ++c) {
@@ -248,16 +290,32 @@ DracoMesh encode_draco_mesh(const StoredMesh& mesh, DracoMode mode) {
         add_attribute(out, draco::GeometryAttribute::TEX_COORD, draco::DT_FLOAT32, false, *ids.texcoord,
                       mesh.texcoord);
 
-    draco::ExpertEncoder encoder(out);
-    encoder.SetEncodingMethod(mode == DracoMode::kEdgebreaker ? draco::MESH_EDGEBREAKER_ENCODING
-                                                              : draco::MESH_SEQUENTIAL_ENCODING);
-    encoder.SetSpeedOptions(0, 0);  // smallest; base meshes are small
-    quantize_positions(encoder, position, mesh);
-    draco::EncoderBuffer buffer;
-    const draco::Status status = encoder.EncodeToBuffer(&buffer);
-    if (!status.ok())
-        throw Error(ErrorKind::kInternal, cat("Draco cannot encode the mesh: ", status.error_msg_string()));
-    DracoMesh result{{buffer.data(), buffer.data() + buffer.size()}, {}};
+    const auto encode = [&](const Predictions& predictions) {
+        draco::ExpertEncoder encoder(out);
+        encoder.SetEncodingMethod(mode == DracoMode::kEdgebreaker ? draco::MESH_EDGEBREAKER_ENCODING
+                                                                  : draco::MESH_SEQUENTIAL_ENCODING);
+        encoder.SetSpeedOptions(0, 0);  // smallest; base meshes are small
+        quantize_positions(encoder, position, mesh);
+        if (predictions.parallelogram)
+            encoder.SetAttributePredictionScheme(position, draco::MESH_PREDICTION_PARALLELOGRAM);
+        if (predictions.plain_color) encoder.SetAttributePredictionScheme(color, draco::PREDICTION_NONE);
+        draco::EncoderBuffer buffer;
+        const draco::Status status = encoder.EncodeToBuffer(&buffer);
+        if (!status.ok())
+            throw Error(ErrorKind::kInternal,
+                        cat("Draco cannot encode the mesh: ", status.error_msg_string()));
+        return std::vector<std::uint8_t>(buffer.data(), buffer.data() + buffer.size());
+    };
+    DracoMesh result{encode({}), {}};
+    Predictions best;
+    const auto improve = [&](Predictions other) {
+        std::vector<std::uint8_t> bytes = encode(other);
+        if (bytes.size() >= result.bytes.size()) return;
+        result.bytes = std::move(bytes);
+        best = other;
+    };
+    if (ids.color && has_color_levels(mesh)) improve({best.parallelogram, true});
+    if (mode == DracoMode::kEdgebreaker && is_mostly_coarse(mesh)) improve({true, best.plain_color});
     Findings findings = Findings::strict();
     result.decoded = decode(result.bytes, ids, mode == DracoMode::kEdgebreaker, findings);
     return result;

@@ -6,6 +6,7 @@
 
 #include "libcore/base/parallel.h"
 #include "libcore/image/channel_count.h"
+#include "libcore/image/color_levels.h"
 #include "libcore/mesh/adjacency.h"
 #include "libcore/mesh/vertex_coloring.h"
 
@@ -17,10 +18,18 @@ namespace {
 // that is farther away than the present colour, the colour stays, so the error never rises. Other features
 // have no gamut.
 
-Vec3f limited(const Vec3f& color, const FeatureSpace& space) {
-    if (space.color_weight == 1) return in_gamut(color, space.gamut);
-    return space.color_weight * in_gamut(color / space.color_weight, space.gamut);
-}
+// A colour of the gamut, or one of its levels, that is close to another.
+struct Limit {
+    const FeatureSpace& space;
+    const ColorLevels* levels;
+
+    Vec3f operator()(const Vec3f& color) const {
+        const float weight = space.color_weight;
+        if (levels) return weight * levels->rounded(color / weight);
+        if (weight == 1) return in_gamut(color, space.gamut);
+        return weight * in_gamut(color / weight, space.gamut);
+    }
+};
 void set_color(BaseMesh& mesh, Id v, const Vec3f& color) {
     std::copy(color.data(), color.data() + 3, mesh.feature_of(v));
 }
@@ -144,7 +153,7 @@ struct ClassSystem {
 
 template <int C>
 void fit(BaseMesh& mesh, const FeatureImage& feature, const std::vector<FitTerm>& terms,
-         const FeatureSpace& space) {
+         const FeatureSpace& space, const Limit& limited) {
     const int features = feature_count<C>(mesh.channels);
     constexpr int kGrain = 512;
     // Class by class: no two vertices of a class share a face, so no thread sees another's change.
@@ -167,7 +176,7 @@ void fit(BaseMesh& mesh, const FeatureImage& feature, const std::vector<FitTerm>
     if (space.color)
         parallel_blocks(0, as_int(mesh.vertex_count()), kGrain, [&](int begin, int end) {
             for (Id v = as_id(begin); v < as_id(end); ++v)
-                set_color(mesh, v, limited(Vec3f(mesh.feature_of(v)), space));
+                set_color(mesh, v, limited(Vec3f(mesh.feature_of(v))));
         });
     const auto improve = [&](const ClassSystem<C>& all, std::size_t n) {
         const VertexSystem<C>& system = all.vertices[n];
@@ -181,7 +190,7 @@ void fit(BaseMesh& mesh, const FeatureImage& feature, const std::vector<FitTerm>
         }
         int c = 0;
         if (space.color) {
-            const Vec3f color(own), best = (Vec3d(rhs) / diagonal).cast<float>(), next = limited(best, space);
+            const Vec3f color(own), best = (Vec3d(rhs) / diagonal).cast<float>(), next = limited(best);
             if ((next - best).squaredNorm() < (color - best).squaredNorm())
                 set_color(mesh, system.vertex, next);
             c = 3;
@@ -198,11 +207,12 @@ void fit(BaseMesh& mesh, const FeatureImage& feature, const std::vector<FitTerm>
 }  // namespace
 
 void fit_colors(BaseMesh& mesh, const FeatureImage& feature, const std::vector<FitTerm>& terms,
-                const FeatureSpace& space) {
+                const FeatureSpace& space, const ColorLevels* levels) {
+    const Limit limited{space, levels};
     if (mesh.channels == 3)
-        fit<3>(mesh, feature, terms, space);
+        fit<3>(mesh, feature, terms, space, limited);
     else
-        fit<kMaxFeatures>(mesh, feature, terms, space);
+        fit<kMaxFeatures>(mesh, feature, terms, space, limited);
 }
 
 }  // namespace imgmesh

@@ -8,6 +8,8 @@
 
 namespace imgmesh {
 
+class ColorLevels;
+
 /// One way to draw the image from the mesh, and the weight of its error.
 struct FitTerm {
     const PixelMap* map;
@@ -19,7 +21,11 @@ struct FitTerm {
 /// (in_gamut). It starts from mesh.feature. Vertices that no pixel touches keep their
 /// value. Maps and feature have one size, mesh and feature have the features of `space`.
 /// Deterministic.
+///
+/// levels  the colours that are allowed, only for Gamut::kDisplay; null for all of the gamut. The colours
+///         that it starts from are rounded to them, and then each takes the level nearest to its best beside
+///         its neighbours', so that some of the rounding cancels out.
 void fit_colors(BaseMesh& mesh, const FeatureImage& feature, const std::vector<FitTerm>& terms,
-                const FeatureSpace& space = {});
+                const FeatureSpace& space = {}, const ColorLevels* levels = nullptr);
 
 }  // namespace imgmesh

@@ -11,9 +11,11 @@
 #include "libcore/base/stopwatch.h"
 #include "libcore/image/color.h"
 #include "libcore/mesh/grid_mesh.h"
+#include "libcore/mesh/round_positions.h"
 #include "libcore/mesh/trivial_map.h"
 #include "libcore/metrics/metrics.h"
 #include "libcore/param/fit_map.h"
+#include "libcore/pipeline/lean_mesh.h"
 #include "libcore/pipeline/lod_meshes.h"
 #include "libcore/pipeline/param_table.h"
 #include "libcore/pipeline/params.h"
@@ -138,25 +140,39 @@ struct Pipeline {
         if (refinement.rounds > 0 || params.objective == Objective::kRgb)
             refine_level(level.mesh, feature, mask, params.objective, refinement,
                          part_of(progress, begin, middle));
+        figures.position_step = position_step(params, report.pixels, level.mesh.vertex_count());
+        if (figures.position_step > double{kPositionStep}) {
+            refinement.position_step = static_cast<float>(figures.position_step);
+            figures.fine_vertices = round_positions(level.mesh, refinement.position_step, params.min_quality);
+            if (refinement.rounds > 0) {
+                // One round on the grid makes good what the rounding has cost.
+                refinement.rounds = 1;
+                refinement.relocations = 0;
+                refinement.exchange = 0;
+                refine_level(level.mesh, feature, mask, params.objective, refinement, {});
+            }
+        }
         report.seconds.refine += watch.lap();
         FitParams fit;
         fit.color_weight = map_color_weight(params);
         fit.bary = params.bary;
         fit.space = space;
         fit.keep_colors = params.quadric_colors || params.objective == Objective::kRgb;
-        const bool tracked_map = tracked.has_value();
-        if (params.map_is_left_out && !tracked)
+        const bool left_out = params.map_is_left_out && !tracked;
+        if (left_out)
             level.map = fit_drawing(level.mesh, feature, fit, mask);
         else
             level.map = tracked ? fit_given_map(level.mesh, feature, *std::move(tracked), fit, mask)
                                 : fit_map(level.mesh, feature, fit, part_of(progress, middle, end), mask);
+        const PixelMap trivial =
+            left_out ? PixelMap() : trivial_map(level.mesh, feature.width, feature.height, mask);
+        const PixelMap& drawing = left_out ? level.map : trivial;
+        figures.color_levels = round_colors(params, level.mesh, feature, space, level.map, drawing,
+                                            fit.gouraud_share, fit.keep_colors);
         limit_alpha(level.mesh, feature, space, mask);
-        if (params.map_is_left_out && !tracked_map) {
-            figures.map_rms = figures.gouraud_rms = map_rms(level.mesh, level.map, feature);
-        } else {
-            const PixelMap trivial = trivial_map(level.mesh, feature.width, feature.height, mask);
-            figures = {map_rms(level.mesh, level.map, feature), map_rms(level.mesh, trivial, feature), {}};
-        }
+        figures.map_rms = map_rms(level.mesh, level.map, feature);
+        figures.gouraud_rms = left_out ? figures.map_rms : map_rms(level.mesh, trivial, feature);
+        figures.auxiliary_rms.clear();
         for (int c = space.color ? 3 : 0; c < space.features(); ++c)
             figures.auxiliary_rms.push_back(feature_rms(level.mesh, level.map, feature, c) / space.weight(c));
         figures.map_rms /= unit;
@@ -317,6 +333,10 @@ BuildResult build_mesh_image(const Image& image, const BuildParams& asked, const
                     "refinement, which the presets best and fem include, is only for colours without HDR, "
                     "and not for "
                     "auxiliary channels");
+    if (params.color_levels && (!space.color || space.gamut != Gamut::kDisplay))
+        throw Error(ErrorKind::kUnsupported,
+                    cat("color-levels is only for colours without HDR; this image has ",
+                        space.color ? "HDR colours" : "no colour"));
     const FeatureImage feature = extract_features(image, space, mask);
 
     BuildResult result;

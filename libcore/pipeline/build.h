@@ -20,6 +20,9 @@ struct LevelReport {
     double map_rms = 0;
     double gouraud_rms = 0;             ///< of the base mesh drawn without the map, in the same unit
     std::vector<double> auxiliary_rms;  ///< of each auxiliary channel, through the map [its own unit]
+    double position_step = 0;           ///< of the vertices [pixels]
+    std::size_t fine_vertices = 0;      ///< that are no multiples of it, only of kPositionStep
+    int color_levels = 0;               ///< ColorLevels of the colours; 0 where they are not rounded to any
     std::size_t target = 0;             ///< which of the wanted levels this is; the missing ones are alike
 };
 

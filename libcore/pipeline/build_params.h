@@ -49,6 +49,12 @@ enum class Objective {
     kRgb   ///< encoded sRGB, interpolated as such; colours are the best for that drawing alone
 };
 
+/// How finely the meshes' positions and colours are stored.
+enum class MeshPrecision {
+    kExact,   ///< positions on kPositionStep, colours as 16-bit codes of linear RGB
+    kCompact  ///< half the bytes, for at most a few hundredths of a dB (docs/decisions/0035-lean-meshes.md)
+};
+
 inline constexpr int kMaxRefine = 1000;
 
 /// All of it. Defaults are those of the preset "default".
@@ -88,6 +94,13 @@ struct BuildParams {
     double exchange = RefineParams().exchange;
     Objective objective = Objective::kLuv;
     double min_quality = RefineParams().min_quality;  ///< of every triangle, collapsed or refined; 0 to 0.8
+    MeshPrecision mesh_precision = MeshPrecision::kExact;
+    /// Vertex positions are multiples of this where no face turns over by that; a power of two from
+    /// kPositionStep to 1 [pixels]. None: by mesh_precision. A tracked map allows only kPositionStep.
+    std::optional<double> position_step;
+    /// Equal steps of the sRGB curve that each of R, G and B has (ColorLevels). None: by mesh_precision. Only
+    /// for colours without HDR.
+    std::optional<std::int64_t> color_levels;
     /// The levels' maps are only to say which pixels are inside, for meshes that are written without: `map`
     /// is kTrivial, maps keep weights that are not rounded, and colours are fitted to the drawing without a
     /// map.

@@ -3,6 +3,7 @@
 #include <initializer_list>
 #include <sstream>
 
+#include "libcore/image/color_levels.h"
 #include "libcore/param/fit_map.h"
 #include "libcore/param/track.h"
 #include "libcore/pipeline/param_access.h"
@@ -28,6 +29,8 @@ constexpr ParamListing kGeometry = {"unless the metric is hoppe",
                                     [](const BuildParams& p) { return p.metric != Metric::kHoppe; }};
 constexpr ParamListing kQuality = {"where above 0", [](const BuildParams& p) { return p.min_quality > 0; }};
 constexpr ParamListing kValues = {"where given", [](const BuildParams& p) { return p.values; }};
+constexpr ParamListing kCompact = {
+    "where compact", [](const BuildParams& p) { return p.mesh_precision == MeshPrecision::kCompact; }};
 constexpr ParamListing kVisits = {"where given", [](const BuildParams& p) { return p.visits; }};
 
 constexpr ParamListing kAsWeight = {"as projection-color-weight", [](const BuildParams&) { return false; }};
@@ -47,7 +50,7 @@ std::vector<Param> make_table() {
     const auto levels = &B::levels;
     const NumberRange positive{0, kNoLimit, true}, any_error{0};
     const std::string image = "Image", size = "Size", pyramid = "Levels", simplification = "Simplification",
-                      refinement = "Refinement", map = "Pixel map";
+                      refinement = "Refinement", map = "Pixel map", precision = "Mesh precision";
     const std::vector<std::string> limits = {"faces", "vertices", "error", "density"};
     const auto with = [](std::vector<std::string> names, std::initializer_list<const char*> more) {
         names.insert(names.end(), more.begin(), more.end());
@@ -222,6 +225,28 @@ std::vector<Param> make_table() {
          .kind = access<FlagParam>(&B::visits),
          .help = "Store how often the collapse touched each pixel",
          .listed = kVisits},
+
+        {.name = "mesh-precision",
+         .group = precision,
+         .kind = words<MeshPrecision, MeshPrecision>(
+             &B::mesh_precision, {{"exact", MeshPrecision::kExact}, {"compact", MeshPrecision::kCompact}}),
+         .help = "Precision of the meshes; compact has half the bytes, and coarser positions and colours, "
+                 "which cost at most a few hundredths of a dB",
+         .listed = kCompact},
+        {.name = "position-step",
+         .group = precision,
+         .kind = words<std::optional<double>, double>(
+             &B::position_step,
+             {{"1/32", 0.03125}, {"1/16", 0.0625}, {"1/8", 0.125}, {"1/4", 0.25}, {"1/2", 0.5}, {"1", 1}}),
+         .help = "Grid of the vertices' positions, in pixels",
+         .otherwise = "1/32; for compact 1/16 of the distance of vertices, at most 1/2",
+         .listed = kWhereGiven},
+        {.name = "color-levels",
+         .group = precision,
+         .kind = count({kLeastColorLevels, kMostColorLevels}, &B::color_levels),
+         .help = "Number of levels of R, G and B of the vertices, equal steps of the sRGB curve",
+         .otherwise = "65536 of linear RGB; for compact as few as add 1 % to the squared error",
+         .listed = kWhereGiven},
     };
 }
 

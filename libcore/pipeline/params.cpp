@@ -41,6 +41,10 @@ void check_params(const BuildParams& p) {
     require(
         map_kind(p) != MapKind::kTracked || p.refine.value_or(0) == 0,
         cat("a tracked map follows the collapse alone: refine is ", p.refine.value_or(0), ", expected 0"));
+    require(
+        map_kind(p) != MapKind::kTracked || (p.mesh_precision == MeshPrecision::kExact && !p.position_step),
+        "a tracked map follows the collapse alone: mesh-precision compact and position-step would move "
+        "its vertices");
     require(!p.quadric_colors || (p.refine.value_or(0) == 0 && p.objective == Objective::kLuv),
             "colors are the quadrics', but refinement and the objective rgb fit their own: expected refine 0 "
             "and objective luv");

@@ -15,6 +15,7 @@ struct RefineParams {
     double shape_weight = 0.22;  ///< of sum (1/q - 1) over faces, in mean squared errors of a face; >= 0
     double relocations = 0.05;   ///< share of the vertices that a round may relocate; 0 to 1
     double exchange = 0;         ///< share of the vertices that a round adds, then removes elsewhere; 0 to 1
+    float position_step = 1.0f / 32;  ///< new positions are multiples of this power of two [pixels]
     ColorRange range = ColorRange::kLuv;
 };
 

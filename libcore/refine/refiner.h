@@ -1,6 +1,7 @@
 // The state of a refinement, and its steps.
 #pragma once
 
+#include <cmath>
 #include <vector>
 
 #include "libcore/refine/pixel_sums.h"
@@ -57,6 +58,7 @@ class Refiner {
 
     Corner corner(Id v) const { return {vertex_.position[v], vertex_.color[v]}; }
     Vec3f allowed(const Vec3f& color) const;
+    float snapped(float x) const { return std::round(x / params_.position_step) * params_.position_step; }
     bool better(const Cost& now, const Cost& before) const;
     void add_shape(Cost& cost, const Vec2f& a, const Vec2f& b, const Vec2f& c) const;
     Cost cost_of(const OneRing& ring) const;

@@ -93,6 +93,9 @@ class _LevelReport(TypedDict):
     map_rms: float
     gouraud_rms: float
     channel_rms: dict[str, float]
+    position_step: float
+    fine_vertices: int
+    color_levels: int
 
 class _Report(TypedDict):
     pixels: int
@@ -297,6 +300,9 @@ def build(
     map_smoothness: float | None = None,
     bary: Literal["half", "float"] | None = None,
     visits: bool | None = None,
+    mesh_precision: Literal["exact", "compact"] | None = None,
+    position_step: Literal["1/32", "1/16", "1/8", "1/4", "1/2", "1"] | None = None,
+    color_levels: int | None = None,
 ) -> Mesh: ...
 def build_parameters() -> list[dict[str, Any]]: ...
 def compare(a: _ImageLike | Mesh, b: _ImageLike | Mesh, *, threads: int | None = None) -> Comparison: ...

@@ -4,6 +4,7 @@
 
 #include "formats/findings/finding_error.h"
 #include "libcore/base/error.h"
+#include "libcore/image/color_levels.h"
 #include "tests/support/random_mesh_image.h"
 
 using namespace imgmesh;
@@ -36,6 +37,36 @@ TEST_CASE("draco: sequential returns the same mesh, edgebreaker the same faces, 
         CHECK(decode(DracoMode::kSequential) == mesh);
         CHECK_NOTHROW(match_faces(mesh, decode(DracoMode::kEdgebreaker)));
     }
+}
+
+TEST_CASE("draco: coarse positions and few levels of colour take fewer bytes, and come back alike") {
+    std::mt19937 random(3);
+    const StoredMesh fine = stored_from_base(random_mesh(800, 600, 80, 60, random));
+    const auto size = [](const StoredMesh& mesh) {
+        for (const DracoMode mode : {DracoMode::kSequential, DracoMode::kEdgebreaker}) {
+            const DracoMesh draco = encode_draco_mesh(mesh, mode);
+            CHECK_NOTHROW(match_faces(mesh, draco.decoded));
+            if (mode == DracoMode::kSequential) CHECK(draco.decoded == mesh);
+        }
+        return encode_draco_mesh(mesh, DracoMode::kEdgebreaker).bytes.size();
+    };
+    const auto rounded = [&](float step, std::size_t but) {
+        StoredMesh mesh = fine;
+        for (std::size_t v = but; v < mesh.position.size(); ++v)
+            for (float& x : mesh.position[v]) x = std::round(x / step) * step;
+        return mesh;
+    };
+    const std::size_t vertices = fine.position.size();
+    const std::size_t exact = size(fine);
+    CHECK(size(rounded(0.25f, 0)) < exact - vertices / 2);
+    CHECK(size(rounded(1, 0)) < exact - vertices);
+    // A few fine vertices do not undo it.
+    CHECK(size(rounded(0.25f, vertices / 50)) < exact - vertices / 2);
+    StoredMesh levels = fine;
+    const ColorLevels few(90);
+    for (auto& color : levels.color)
+        for (std::uint16_t& code : color) code = few.nearest(code);
+    CHECK(size(levels) < exact - 3 * vertices);
 }
 
 TEST_CASE("stored mesh: to a base mesh and back, and what it refuses") {

@@ -1,0 +1,34 @@
+// Meshes of fewer bytes: positions and colours on coarser grids, as MeshPrecision and two parameters choose.
+#pragma once
+
+#include <cstddef>
+
+#include "libcore/image/feature_space.h"
+#include "libcore/image/image.h"
+#include "libcore/mesh/base_mesh.h"
+#include "libcore/mesh/pixel_map.h"
+#include "libcore/pipeline/build_params.h"
+
+namespace imgmesh {
+
+/// Returns the step of positions of a mesh with that many vertices and meshed pixels: the parameter, else by
+/// MeshPrecision [pixels].
+double position_step(const BuildParams& params, std::int64_t pixels, std::size_t vertices);
+
+/// The step of MeshPrecision::kCompact: a power of two, at most half a pixel and a sixteenth of the distance
+/// of vertices, so that rounding costs the same share of the error at any density.
+double compact_step(std::int64_t pixels, std::size_t vertices);
+
+/// Rounds the colours of a mesh to levels of the sRGB curve. Unless `keep_colors`, they are fitted again
+/// among the levels.
+///
+/// feature  the image, space.features() channels, in which the mesh's features are too
+/// map      the mesh's, and `trivial` its trivial one, which has the weight `gouraud_share` in the fit
+/// return   how many levels they have: the parameter; else for kCompact the fewest, at least 64, with which
+///          rounding adds about 1 % to the squared error of R, G and B through the map. 0 where colours stay
+///          as they are: for kExact, HDR, no colour, and where 4096 levels are too few.
+int round_colors(const BuildParams& params, BaseMesh& mesh, const FeatureImage& feature,
+                 const FeatureSpace& space, const PixelMap& map, const PixelMap& trivial,
+                 double gouraud_share, bool keep_colors);
+
+}  // namespace imgmesh
