@@ -1,11 +1,14 @@
 // write-samples FOLDER: a container of every flavour for the tests that use other software, and for each .glb
 // the image (.ppm) that a reader must draw of its level 0. FOLDER/regions: base meshes in pieces.
+// FOLDER/compact: streams of displacements (.imap), and what a reader must find in their lod0 (.d16: dx, then
+// dy).
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
 
+#include "formats/compact/compact_layers.h"
 #include "formats/container/container.h"
 #include "formats/gltf/region_gltf.h"
 #include "tests/support/random_mesh_image.h"
@@ -98,6 +101,40 @@ void write_regions(const std::filesystem::path& folder, const std::string& name,
                       true);
 }
 
+// Waves with noise, some of it large; with a mask and visits if `mask`.
+void write_compact(const std::filesystem::path& folder, const std::string& name, int width, int height,
+                   bool mask) {
+    std::mt19937 random(7);
+    std::vector<CompactPart> parts(2);
+    for (const char* level : {"lod1", "lod0"}) {
+        CompactPart& part = parts[level[3] == '0' ? 1 : 0];
+        part = {level, {}, WeightPrecision::kHalf, {}, std::string(64, 'c')};
+        Displacements& map = part.map;
+        map.width = width;
+        map.height = height;
+        if (mask) map.inside = Mask(map, 1);
+        for (std::size_t i = 0; i < map.pixel_count(); ++i) {
+            const int x = map.x_of(i), y = map.y_of(i), noise = static_cast<int>(random() % 5) - 2;
+            const bool outside = mask && (x - 10) * (x - 10) + (y - 20) * (y - 20) < 50;
+            const double large = random() % 40 == 0 ? 300 : 1;
+            const auto of = [&](double value) {
+                return outside ? std::int16_t{0} : static_cast<std::int16_t>(value);
+            };
+            map.dx.push_back(of(20 * std::sin(0.1 * x + 0.2 * y) + noise * large));
+            map.dy.push_back(of(9 * std::cos(0.2 * x) - 2 * noise));
+            if (outside) map.inside[i] = 0;
+            if (mask && level[3] == '0') part.visits.push_back(static_cast<Id>(random() % 9));
+        }
+    }
+    const auto write = [&](const char* extension, const void* data, std::size_t size) {
+        std::ofstream out(folder / (name + extension), std::ios::binary | std::ios::app);
+        out.write(static_cast<const char*>(data), static_cast<std::streamsize>(size));
+    };
+    const std::vector<std::uint8_t> bytes = encode_compact_layers(parts);
+    write(".imap", bytes.data(), bytes.size());
+    for (const auto* d : {&parts[1].map.dx, &parts[1].map.dy}) write(".d16", d->data(), 2 * d->size());
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -107,13 +144,17 @@ int main(int argc, char** argv) {
     }
     const std::filesystem::path folder = argv[1];
     std::filesystem::remove_all(folder);
-    for (const char* name : {"regions", "plain"}) std::filesystem::create_directories(folder / name);
+    for (const char* name : {"regions", "plain", "compact"})
+        std::filesystem::create_directories(folder / name);
     const std::pair<const char*, DracoMode> modes[] = {{"edgebreaker", DracoMode::kEdgebreaker},
                                                        {"sequential", DracoMode::kSequential},
                                                        {"none", DracoMode::kOff}};
     const std::pair<const char*, WeightPrecision> precisions[] = {{"half", WeightPrecision::kHalf},
                                                                   {"float", WeightPrecision::kFloat}};
     const std::array<std::array<int, 2>, 3> sizes = {{{96, 64}, {1, 9}, {1, 1}}};
+    write_compact(folder / "compact", "plain", 61, 45, false);
+    write_compact(folder / "compact", "mask", 33, 70, true);
+    write_compact(folder / "compact", "column", 1, 9, false);
     std::uint32_t seed = 0;
     for (const auto& [mode_name, mode] : modes)
         for (const auto& [precision_name, precision] : precisions)
