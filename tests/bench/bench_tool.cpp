@@ -1,8 +1,9 @@
 // What ./run bench needs of C++: images of any size, the stages of a build in one process, and the side of
 // the comparison with other simplifiers that is ours.
 //
-//     bench-tool mosaic SIDE OUT.png PICTURE...    SIDE x SIDE pixels: the images side by side, mirrored in
-//     turn bench-tool stages PICTURE FOLDER PRESET DENSITY THREADS REPEATS   JSON: a row for every stage
+//     bench-tool mosaic SIDE OUT.png PICTURE...    SIDE x SIDE pixels: the images in turns, mirrored
+//     bench-tool stages PICTURE FOLDER PRESET DENSITY THREADS REPEATS   JSON: a row for every stage
+//     bench-tool compact PICTURE STEPS REPEATS     JSON: bits and speed of the compact stream
 //     bench-tool features PICTURE OUT              what a simplifier gets (raw_files.h)
 //     bench-tool measure FEATURES MESH             JSON: the error of the mesh that it gives back
 #include <cstdio>
@@ -22,6 +23,7 @@
 #include "libcore/metrics/metrics.h"
 #include "libcore/param/fit_colors.h"
 #include "libcore/pipeline/presets.h"
+#include "tests/bench/bench_compact.h"
 #include "tests/bench/bench_stages.h"
 #include "tests/bench/raw_files.h"
 #include "tools/common/huge_pages.h"
@@ -92,6 +94,16 @@ int stages(const Arguments& a) {
     return 0;
 }
 
+int compact(const Arguments& a) {
+    const CompactFigures figures = measure_compact(a.at(0), number(a.at(1), 8, 32), number(a.at(2), 1, 1000));
+    std::cout << Json{{"bits_per_pixel", figures.bits_per_pixel},
+                      {"encode_megapixels", figures.encode_megapixels},
+                      {"decode_megapixels", figures.decode_megapixels}}
+                     .dump(2)
+              << '\n';
+    return 0;
+}
+
 int features(const Arguments& a) {
     const Image image = read_image(a.at(0));
     write_features(a.at(1), extract_features(image, feature_space(image, {})));
@@ -120,11 +132,14 @@ int measure(const Arguments& a) {
 
 int main(int argc, char** argv) {
     use_huge_pages();  // as the tools do
-    const std::map<std::string, std::function<int(const Arguments&)>> commands = {
-        {"mosaic", mosaic}, {"stages", stages}, {"features", features}, {"measure", measure}};
+    const std::map<std::string, std::function<int(const Arguments&)>> commands = {{"mosaic", mosaic},
+                                                                                  {"stages", stages},
+                                                                                  {"compact", compact},
+                                                                                  {"features", features},
+                                                                                  {"measure", measure}};
     const auto at = argc > 1 ? commands.find(argv[1]) : commands.end();
     if (at == commands.end()) {
-        std::fputs("usage: bench-tool mosaic | stages | features | measure ARGUMENTS\n", stderr);
+        std::fputs("usage: bench-tool mosaic | stages | compact | features | measure ARGUMENTS\n", stderr);
         return 2;
     }
     try {
