@@ -1,7 +1,10 @@
 """--max-memory and --max-pixels: work is refused before it starts, and the estimate is near what is taken."""
+import pathlib
 import re
+import shutil
 import subprocess
 import sys
+import tempfile
 
 import numpy
 import picture_files
@@ -23,11 +26,18 @@ class Memory(CliCase):
     def setUpClass(cls):
         super().setUpClass()
         cls.sanitized = b"__asan_init" in (BIN / "imgmesh-info").read_bytes()
+        # Made once, as building it takes a second.
+        folder = tempfile.TemporaryDirectory(prefix="imgmesh-cli-")
+        cls.addClassCleanup(folder.cleanup)
+        cls.inputs = pathlib.Path(folder.name)
+        picture_files.png(cls.inputs / "in.png", scene())
+        subprocess.run([BIN / "imgmesh-build", "in.png", "-o", "in.glb", "-q", "--preset", "fast"], cwd=cls.inputs,
+                       check=True)
 
     def setUp(self):
         super().setUp()
-        picture_files.png(self.folder / "in.png", scene())
-        self.run_ok("imgmesh-build", "in.png", "-o", "in.glb", "-q", "--preset", "fast")
+        for name in ("in.png", "in.glb"):
+            shutil.copy(self.inputs / name, self.folder)
         self.jobs = {
             "imgmesh-build": ["in.png", "-o", "out.glb"],
             "imgmesh-reconstruct": ["in.glb", "-o", "out.png"],
