@@ -53,5 +53,6 @@ bool accepts(Read&& read) {
 bool feed_image(Target target, std::span<const std::uint8_t> bytes);
 bool feed_profile(std::span<const std::uint8_t> bytes);
 bool feed_config(std::span<const std::uint8_t> bytes);
+bool feed_compact(std::span<const std::uint8_t> bytes);
 
 }  // namespace imgmesh::fuzz

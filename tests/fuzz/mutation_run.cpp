@@ -37,10 +37,10 @@ constexpr bool kSanitized = false;
 
 // A third are containers. imgmesh does not read the formats of imgmesh-codecs in its own process.
 Target target_at(std::uint32_t index) {
-    constexpr Target kShares[] = {Target::kContainer, Target::kPng,     Target::kJpeg,  Target::kContainer,
-                                  Target::kTiff,      Target::kExr,     Target::kWebp,  Target::kContainer,
-                                  Target::kBmp,       Target::kTga,     Target::kPnm,   Target::kEdits,
-                                  Target::kContainer, Target::kProfile, Target::kConfig};
+    constexpr Target kShares[] = {Target::kContainer, Target::kPng,     Target::kJpeg,   Target::kContainer,
+                                  Target::kTiff,      Target::kExr,     Target::kWebp,   Target::kContainer,
+                                  Target::kBmp,       Target::kTga,     Target::kPnm,    Target::kEdits,
+                                  Target::kContainer, Target::kProfile, Target::kConfig, Target::kCompact};
     return kShares[index % std::size(kShares)];
 }
 

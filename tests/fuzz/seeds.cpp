@@ -123,6 +123,8 @@ std::vector<Bytes> seeds(Target target) {
             return files_of(IMGMESH_SCHEMAS "/examples/valid", [](const std::filesystem::path& path) {
                 return path.filename().string().starts_with("imgmesh-warp.edits.");
             });
+        case Target::kCompact:
+            return compact_seeds();
         case Target::kConfig:
             break;
     }

@@ -1,4 +1,4 @@
-// Good BMP, TGA and Netpbm files to start from.
+// Good BMP, TGA and Netpbm files and compact streams to start from.
 #pragma once
 
 #include <vector>
@@ -11,5 +11,6 @@ namespace imgmesh::fuzz {
 std::vector<Bytes> bmp_seeds();
 std::vector<Bytes> tga_seeds();
 std::vector<Bytes> netpbm_seeds();
+std::vector<Bytes> compact_seeds();
 
 }  // namespace imgmesh::fuzz

@@ -11,8 +11,9 @@
 namespace imgmesh::fuzz {
 namespace {
 
-constexpr const char* kNames[] = {"container", "png", "jpeg", "tiff", "exr",  "webp",    "bmp",   "tga",
-                                  "pnm",       "gif", "hdr",  "jp2",  "heif", "profile", "edits", "config"};
+constexpr const char* kNames[] = {"container", "png",     "jpeg",  "tiff",   "exr",    "webp",
+                                  "bmp",       "tga",     "pnm",   "gif",    "hdr",    "jp2",
+                                  "heif",      "profile", "edits", "config", "compact"};
 static_assert(std::size(kNames) == static_cast<std::size_t>(kLastTarget) + 1);
 
 bool feed_container(std::span<const std::uint8_t> bytes) {
@@ -68,6 +69,8 @@ bool feed(Target target, std::span<const std::uint8_t> bytes) {
             return feed_profile(bytes);
         case Target::kConfig:
             return feed_config(bytes);
+        case Target::kCompact:
+            return feed_compact(bytes);
         default:
             return feed_image(target, bytes);
     }

@@ -13,7 +13,8 @@
 namespace imgmesh::fuzz {
 
 /// kGif to kHeif are the formats of imgmesh-codecs, decoded in this process. kProfile is an ICC profile
-/// alone, kConfig a file for --config.
+/// alone, kConfig a file for --config, kCompact a container's compact
+/// stream by itself.
 enum class Target {
     kContainer,
     kPng,
@@ -30,9 +31,10 @@ enum class Target {
     kHeif,
     kProfile,
     kEdits,
-    kConfig
+    kConfig,
+    kCompact
 };
-inline constexpr Target kLastTarget = Target::kConfig;
+inline constexpr Target kLastTarget = Target::kCompact;
 
 /// container, png, and so on.
 const char* name_of(Target target);
