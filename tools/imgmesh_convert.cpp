@@ -12,9 +12,11 @@
 #include "libcore/image/feature_space.h"
 #include "libcore/mesh/outer_edge.h"
 #include "libcore/mesh/outline_mesh.h"
+#include "libcore/pipeline/lean_mesh.h"
 #include "libcore/recon/draw.h"
 #include "tools/common/compression_options.h"
 #include "tools/common/container_input.h"
+#include "tools/common/help.h"
 #include "tools/common/in_file.h"
 #include "tools/common/limits.h"
 #include "tools/common/memory.h"
@@ -48,6 +50,7 @@ struct Options {
     CompressionOptions compression;
     std::vector<int> levels;
     bool no_map = false;
+    MeshPrecision precision = MeshPrecision::kExact;
     TextureOptions texture;
     std::optional<int> level;
     std::optional<ExportKind> as;
@@ -75,6 +78,12 @@ void add_options(CLI::App& app, Options& o) {
                  app, "--no-map", [&o] { o.no_map = true; },
                  "Write the meshes alone: a plain glTF asset for engines, that imgmesh cannot read"),
              container);
+    advanced(app, in_group(add_choice(app, "--mesh-precision", o.precision,
+                                      Choices<MeshPrecision>{{"exact", MeshPrecision::kExact},
+                                                             {"compact", MeshPrecision::kCompact}},
+                                      "Precision of the meshes: as in the input, or colours of 128 levels "
+                                      "and with --no-map coarser positions, for fewer bytes"),
+                           container));
     // Its name until it had one in imgmesh-build, too.
     in_group(add_flag(
                  app, "--no-layers", [&o] { o.no_map = true; }, "The same as --no-map"),
@@ -138,6 +147,7 @@ void check_options(const Options& o) {
     only_for(!o.levels.empty(), "--levels", container, "container");
     only_for(o.compression.method.has_value(), "--compression", container, "container");
     only_for(o.no_map, "--no-map", container, "container");
+    only_for(o.precision == MeshPrecision::kCompact, "--mesh-precision", container, "container");
     check_compression(o.compression, !o.no_map && !o.outline_tolerance);
     only_for(o.texture.wanted.has_value(), "--texture", container || obj, "container or .obj");
     if (container && o.level)
@@ -222,6 +232,21 @@ Texture chosen_texture(const Options& o, MeshImage& m, Texture kept, Context& co
     });
 }
 
+// Makes the meshes compact as far as their map and their compression allow, and says where they do not.
+void compact(const Options& o, MeshImage& m, ContainerOptions& options, std::vector<std::string>& warnings) {
+    const bool own_places = !options.texture.picture.empty() && options.texture.coords == texture_coords(m);
+    make_compact(m, options.layers);
+    if (own_places) options.texture.coords = texture_coords(m);
+    if (options.layers)
+        warnings.push_back(cat(o.input,
+                               ": --mesh-precision compact: positions stay, because the pixel map lies on "
+                               "them; imgmesh-build --mesh-precision compact makes them coarser as well"));
+    if (options.draco == DracoMode::kOff && !options.meshopt)
+        warnings.push_back(cat(o.input,
+                               ": --mesh-precision compact: meshes without compression take the same bytes; "
+                               "--compression draco makes them smaller"));
+}
+
 // An image is put on a mesh by where its vertices lie, which is where they were before imgmesh-warp.
 void check_places(const Options& o, const MeshImage& m) {
     const std::optional<ExportKind> kind = export_kind(level_options(o));
@@ -269,6 +294,7 @@ Report convert_one(const Options& given, Context& context) {
             outline();
             options.texture.coords = texture_coords(m);
         }
+        if (o.precision == MeshPrecision::kCompact) compact(o, m, options, context.warnings);
         written = write_container(o.output, m, options);
     } else {
         const LevelOptions exported = level_options(o);

@@ -316,8 +316,8 @@ Asset asset_from_json(std::string_view text, const ContainerLimits& limits, Find
     const json* extensions = find(document, "extensions");
     const json* root = extensions ? find(*extensions, kPixelMap) : nullptr;
     if (!root)
-        refuse("ext.missing", cat("the asset has no pixel map, that is, no extension ", kPixelMap,
-                                  "; imgmesh-build makes one from the image"));
+        refuse("ext.missing", cat("a plain mesh, which has no pixel map, that is, no extension ", kPixelMap,
+                                  "; imgmesh-build without no-map makes one from the image"));
     check_required(document, findings);
 
     Asset asset;

@@ -110,9 +110,8 @@ PixelMap fit_map(BaseMesh& mesh, const FeatureImage& feature, const FitParams& p
 
 PixelMap fit_drawing(BaseMesh& mesh, const FeatureImage& feature, const FitParams& params, const Mask& mask) {
     PixelMap trivial = trivial_map(mesh, feature.width, feature.height, mask);
-    const ColorFit colors(mesh, feature, params, trivial);
-    colors.fit(trivial);
-    colors.round();
+    if (!params.keep_colors) fit_colors(mesh, feature, {{&trivial, 1}}, params.space);
+    if (params.space.color) round_colors(mesh, params.space);
     return trivial;
 }
 

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "libcore/image/color_levels.h"
+#include "libcore/mesh/round_positions.h"
 #include "libcore/metrics/metrics.h"
 #include "libcore/param/fit_colors.h"
 
@@ -34,6 +36,13 @@ int compact_levels(double rms) {
     return count > kMostColorLevels ? 0 : static_cast<int>(std::max(count, kFewest));
 }
 
+void round_to(const ColorLevels& levels, float weight, BaseMesh& mesh) {
+    for (Id v = 0; v < mesh.vertex_count(); ++v) {
+        const Vec3f color = weight * levels.rounded(Vec3f(mesh.feature_of(v)) / weight);
+        std::copy(color.data(), color.data() + 3, mesh.feature_of(v));
+    }
+}
+
 }  // namespace
 
 double compact_step(std::int64_t pixels, std::size_t vertices) {
@@ -61,15 +70,26 @@ int round_colors(const BuildParams& params, BaseMesh& mesh, const FeatureImage& 
     if (count == 0) return 0;
     const ColorLevels levels(count);
     if (!keep_colors) {
-        fit_colors(mesh, feature, {{&map, 1 - gouraud_share}, {&trivial, gouraud_share}}, space, &levels);
+        std::vector<FitTerm> terms = {{&map, 1}};
+        if (&map != &trivial) terms = {{&map, 1 - gouraud_share}, {&trivial, gouraud_share}};
+        fit_colors(mesh, feature, terms, space, &levels);
         return count;
     }
-    for (Id v = 0; v < mesh.vertex_count(); ++v) {
-        const Vec3f color =
-            space.color_weight * levels.rounded(Vec3f(mesh.feature_of(v)) / space.color_weight);
-        std::copy(color.data(), color.data() + 3, mesh.feature_of(v));
-    }
+    round_to(levels, space.color_weight, mesh);
     return count;
+}
+
+void make_compact(MeshImage& mesh_image, bool keep_positions) {
+    const ColorLevels levels(kCompactLevels);
+    const SourceInfo& source = mesh_image.source;
+    const bool color = !split_names(source.channel_names).color.empty() && source.gamut == Gamut::kDisplay;
+    for (Level& level : mesh_image.levels) {
+        if (color) round_to(levels, 1, level.mesh);
+        const auto pixels = std::ranges::count_if(
+            level.map.values, [](const PixelCoord& coord) { return coord.face != kNone; });
+        if (!keep_positions)
+            round_positions(level.mesh, static_cast<float>(compact_step(pixels, level.mesh.vertex_count())));
+    }
 }
 
 }  // namespace imgmesh

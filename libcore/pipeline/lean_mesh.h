@@ -6,6 +6,7 @@
 #include "libcore/image/feature_space.h"
 #include "libcore/image/image.h"
 #include "libcore/mesh/base_mesh.h"
+#include "libcore/mesh/mesh_image.h"
 #include "libcore/mesh/pixel_map.h"
 #include "libcore/pipeline/build_params.h"
 
@@ -30,5 +31,11 @@ double compact_step(std::int64_t pixels, std::size_t vertices);
 int round_colors(const BuildParams& params, BaseMesh& mesh, const FeatureImage& feature,
                  const FeatureSpace& space, const PixelMap& map, const PixelMap& trivial,
                  double gouraud_share, bool keep_colors);
+
+/// Makes the meshes of a finished mesh image compact: colours, unless HDR, get kCompactLevels, and positions
+/// lie on compact_step(). With `keep_positions` they stay, as a pixel map needs whose pixels would move
+/// along.
+inline constexpr int kCompactLevels = 128;
+void make_compact(MeshImage& mesh_image, bool keep_positions);
 
 }  // namespace imgmesh

@@ -80,6 +80,32 @@ class Lean(CliCase):
         self.assertEqual(result.returncode, 0, result.stderr)
         self.assertIn("--compression draco", result.stderr)
 
+    def test_convert(self):
+        """Colours may change without a map's leave, positions may not."""
+        self.build("p.png", "--density", "4", output="c.glb")
+        result = self.run_tool("imgmesh-convert", "c.glb", "-o", "colours.glb", "--mesh-precision", "compact")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertIn("positions stay", result.stderr)
+        self.run_ok("imgmesh-info", "colours.glb", "--validate")
+        self.assertGreater(self.psnr("colours.glb", "map"), self.psnr("c.glb", "map") - 0.1)
+        sizes = [self.report("imgmesh-convert", "c.glb", "-o", "m.glb", "--no-map", "--compression", "draco",
+                             "--mesh-precision", precision)["mesh_bytes"] for precision in ("exact", "compact")]
+        self.assertLess(sizes[1], 0.9 * sizes[0])
+        self.assert_error("imgmesh-convert", ["c.glb", "-o", "x.svg", "--mesh-precision", "compact"], 2, "--mesh-precision")
+
+    def test_plain_meshes(self):
+        """Every tool that needs a pixel map says so in one line, and who makes one."""
+        for name in ("plain.glb", "plain.gltf"):
+            self.run_ok("imgmesh-build", "p.png", "-o", name, "--no-map", "-q")
+            for tool, *args in (("imgmesh-reconstruct", "-o", "x.png"), ("imgmesh-segment", "-o", "x.png"),
+                                ("imgmesh-warp", "-o", "x.glb", "--handle", "1,1:2,2"), ("imgmesh-info",),
+                                ("imgmesh-convert", "-o", "x.glb"), ("imgmesh-convert", "-o", "x.svg")):
+                self.assert_error(tool, [name, *args], 4, name, "no pixel map", "imgmesh-build without no-map")
+            self.assert_error("imgmesh-compare", ["p.png", name], 4, name, "imgmesh-build without no-map")
+            result = self.run_tool("imgmesh-info", name, "--validate")
+            self.assertEqual(result.returncode, 4)
+            self.assertIn("imgmesh-build without no-map", result.stdout)
+
     def test_wrong_use(self):
         for options, words in ((["--mesh-precision", "compact", "--map", "tracked"], ("--mesh-precision", "--map")),
                                (["--position-step", "1/4", "--map", "tracked"], ("--position-step", "--map")),
