@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cstring>
-#include <utility>
 
 #include "formats/compact/band_pixel.h"
 #include "libcore/base/index.h"
@@ -10,9 +9,9 @@
 namespace imgmesh::compact {
 namespace {
 
-// A pixel takes at most two words for each component. So many pixels are decoded before the place in the
-// words is checked, and there is room for so many words behind them.
-constexpr int kChunk = 1024, kSlackWords = 4 * kChunk;
+// A pixel takes at most two words for each component. The place in the words is checked once for each chunk,
+// and there is room for so many words behind them.
+constexpr int kSlackWords = 4 * Chunk::kPixels;
 
 // Decodes the residuals of a band. Pointers into the tables, because nothing that a loop stores changes them.
 template <bool kMasked>
@@ -79,28 +78,33 @@ class BandDecoder {
     int rows() const { return band_.rows; }
 
     void begin_row() {
-        rows_.next();
+        rows_.next_row();
         lane_ = Lane(rows_, taps_);
     }
+    void begin_chunk(int x, int count) { rows_.begin_chunk(x, count); }
+    void end_chunk(int x, int count) {
+        rows_.end_chunk(x, count);
+        if (kMasked) reader_.inside += count;
+    }
 
-    /// Decodes pixels of the row, of two bands in turns: neither waits for the other, and together they take
-    /// little more time than one. The loop works on copies, which its stores cannot change.
-    static void decode_pixels(BandDecoder& a, BandDecoder& b, int begin, int end) {
+    /// Decodes a chunk of two bands in turns: neither waits for the other, and together they take little more
+    /// time than one. The loop works on copies, which its stores cannot change.
+    static void decode_pixels(BandDecoder& a, BandDecoder& b, int count) {
         Lane lane_a = a.lane_, lane_b = b.lane_;
         TokenReader<kMasked> reader_a = a.reader_, reader_b = b.reader_;
-        for (int x = begin; x < end; ++x) {
-            code_pixel(lane_a, x, reader_a);
-            code_pixel(lane_b, x, reader_b);
+        for (int i = 0; i < count; ++i) {
+            code_pixel(lane_a, i, reader_a);
+            code_pixel(lane_b, i, reader_b);
         }
         a.lane_ = lane_a;
         b.lane_ = lane_b;
         a.reader_ = reader_a;
         b.reader_ = reader_b;
     }
-    void decode_pixels(int begin, int end) {
+    void decode_pixels(int count) {
         Lane lane = lane_;
         TokenReader<kMasked> reader = reader_;
-        for (int x = begin; x < end; ++x) code_pixel(lane, x, reader);
+        for (int i = 0; i < count; ++i) code_pixel(lane, i, reader);
         lane_ = lane;
         reader_ = reader;
     }
@@ -110,16 +114,15 @@ class BandDecoder {
 
     void end_row(int y) {
         const std::size_t width = as_index(band_.width), first = as_index(y) * width;
-        for (const auto& [component, out] : {std::pair(&rows_.x, band_.dx), std::pair(&rows_.y, band_.dy)}) {
-            const std::int16_t* value = component->value.get();
-            std::int16_t* to = out.data() + first;
+        for (std::size_t component = 0; component < 2; ++component) {
+            const std::int16_t* value = rows_.values(component);
+            std::int16_t* to = (component == 0 ? band_.dx : band_.dy).data() + first;
             if (kMasked)
                 for (std::size_t x = 0; x < width; ++x)
-                    to[x] = reader_.inside[x] ? value[x] : std::int16_t{0};
+                    to[x] = band_.inside[first + x] ? value[x] : std::int16_t{0};
             else
                 std::copy_n(value, width, to);
         }
-        if (kMasked) reader_.inside += width;
     }
 
     /// The encoder has begun with the lowest states; what follows is there for a band's least size.
@@ -147,12 +150,17 @@ bool decode_rows(BandDecoder<kMasked>& a, BandDecoder<kMasked>* b, int width, in
     for (int y = first; y < last; ++y) {
         a.begin_row();
         if (b) b->begin_row();
-        for (int x = 0; x < width; x += kChunk) {
-            const int end = std::min(width, x + kChunk);
-            if (b)
-                BandDecoder<kMasked>::decode_pixels(a, *b, x, end);
-            else
-                a.decode_pixels(x, end);
+        for (int x = 0; x < width; x += Chunk::kPixels) {
+            const int count = std::min(Chunk::kPixels, width - x);
+            a.begin_chunk(x, count);
+            if (b) {
+                b->begin_chunk(x, count);
+                BandDecoder<kMasked>::decode_pixels(a, *b, count);
+                b->end_chunk(x, count);
+            } else {
+                a.decode_pixels(count);
+            }
+            a.end_chunk(x, count);
             if (!a.sound() || (b && !b->sound())) return false;
         }
         a.end_row(y);

@@ -57,17 +57,31 @@ void fill_tokens(const Band& in, const std::array<Taps, 2>& taps, BandTokens& ba
     TokenSource<kMasked> source{
         band, {in.dx.data(), in.dy.data()}, in.inside.data(), band.tokens.data(), &band.counts[0][0][0][0]};
     for (int y = 0; y < in.rows; ++y) {
-        rows.next();
+        rows.next_row();
         Lane lane(rows, taps);
-        TokenSource<kMasked> copy = source;  // which the loop's stores cannot change
-        for (int x = 0; x < in.width; ++x) code_pixel(lane, x, copy);
-        source.out = copy.out;
-        source.values[0] += in.width;
-        source.values[1] += in.width;
-        if (kMasked) source.inside += in.width;
+        for (int x = 0; x < in.width; x += Chunk::kPixels) {
+            const int count = std::min(Chunk::kPixels, in.width - x);
+            rows.begin_chunk(x, count);
+            TokenSource<kMasked> copy = source;  // which the loop's stores cannot change
+            Lane lane_copy = lane;
+            for (int i = 0; i < count; ++i) code_pixel(lane_copy, i, copy);
+            lane = lane_copy;
+            source.out = copy.out;
+            rows.end_chunk(x, count);
+            for (const std::int16_t*& values : source.values) values += count;
+            if (kMasked) source.inside += count;
+        }
     }
     band.tokens.resize(static_cast<std::size_t>(source.out - band.tokens.data()));
 }
+
+// For each frequency the number by which division is multiplication (Encoder::put).
+constexpr auto kReciprocal = [] {
+    std::array<std::uint64_t, (1 << kFrequencyBits) + 1> reciprocals{};
+    for (std::uint64_t frequency = 1; frequency < reciprocals.size(); ++frequency)
+        reciprocals[frequency] = ~std::uint64_t{0} / frequency;
+    return reciprocals;
+}();
 
 // A state of rANS that takes tokens from the last to the first, and writes words from the last to the first.
 struct Encoder {
@@ -76,7 +90,12 @@ struct Encoder {
     IMGMESH_INLINE void put(Slots slots, std::uint16_t*& words) {
         const std::uint32_t frequency = slots.frequency;
         put_word(state >= std::uint64_t{frequency} << (2 * kWordBits - kFrequencyBits), words);
-        state = ((state / frequency) << kFrequencyBits) + state % frequency + slots.first;
+        // floor((2^64 - 1) / f) (s + 1) / 2^64 is less than (s + 1) / f, by so little that its whole part is
+        // that of s / f.
+        const auto quotient = static_cast<std::uint32_t>(
+            (static_cast<unsigned __int128>(kReciprocal.data()[frequency]) * (std::uint64_t{state} + 1)) >>
+            64);
+        state = (quotient << kFrequencyBits) + (state - quotient * frequency) + slots.first;
     }
     void put_bits(unsigned value, int count, std::uint16_t*& words) {
         put_word(state >= std::uint64_t{1} << (2 * kWordBits - count), words);

@@ -22,53 +22,51 @@ IMGMESH_INLINE int place_of(int prediction, int energy) {
     return kClassOffset.data()[prediction & ((1 << kTapBits) - 1)] + energy;
 }
 
-/// A component of the row that is coded, in the hands of a loop over its pixels.
+/// What is on the left of a pixel of a component, and the taps for it.
 struct ComponentLane {
-    std::int16_t* value = nullptr;
-    std::int16_t* plain = nullptr;
-    std::uint8_t* size = nullptr;
-    const std::int32_t* prediction = nullptr;
-    const std::uint16_t* energy = nullptr;
     int tap_w = 0, tap_ww = 0;
     int w = 0, ww = 0, size_w = 0, size_ww = 0;
-
-    /// The parts of the prediction and of the energy that the pixels on the left have are added here.
-    IMGMESH_INLINE int predicted(int x) const { return prediction[x] + tap_w * w + tap_ww * ww; }
-    IMGMESH_INLINE int energy_at(int x) const { return energy[x] + 4 * size_w + 2 * size_ww; }
-
-    /// Notes the pixel's value and the number of its residual.
-    IMGMESH_INLINE void note(int x, std::int16_t stored, int number) {
-        value[x] = stored;
-        ww = w;
-        w = stored;
-        size_ww = size_w;
-        size_w = std::min(magnitude_of(number), kMaxMagnitude);
-        size[x] = static_cast<std::uint8_t>(size_w);
-    }
 };
 
+/// A row in the hands of a loop over its pixels.
 struct Lane {
+    Chunk* chunk = nullptr;
     ComponentLane x, y;
-    const std::int16_t* slope = nullptr;
 
-    /// Of the row for which `rows.next()` was called last.
-    IMGMESH_INLINE Lane(BandRows& rows, const std::array<Taps, 2>& taps) : slope(rows.slope.get()) {
-        begin(x, rows.x, taps[0], rows.first_row());
-        begin(y, rows.y, taps[1], rows.first_row());
+    /// Of the row for which `rows.next_row()` was called last.
+    IMGMESH_INLINE Lane(BandRows& rows, const std::array<Taps, 2>& taps) : chunk(&rows.chunk) {
+        for (std::size_t k = 0; k < 2; ++k) {
+            ComponentLane& lane = k == 0 ? x : y;
+            // The first row is predicted by the pixel on the left alone.
+            lane.tap_w = rows.first_row() ? 1 << kTapBits : taps[k][0];
+            lane.tap_ww = rows.first_row() ? 0 : taps[k][1];
+            lane.w = lane.ww = rows.left(k);
+        }
     }
 
-  private:
-    static IMGMESH_INLINE void begin(ComponentLane& lane, ComponentRows& rows, const Taps& taps,
-                                     bool first_row) {
-        lane.value = rows.value.get();
-        lane.plain = rows.plain.get();
-        lane.size = rows.size.get();
-        lane.prediction = rows.prediction.get();
-        lane.energy = rows.energy.get();
-        // The first row is predicted by the pixel on the left alone.
-        lane.tap_w = first_row ? 1 << kTapBits : taps[0];
-        lane.tap_ww = first_row ? 0 : taps[1];
-        lane.w = lane.ww = rows.value[-1];
+    /// The parts of prediction and energy that the pixels on the left have are added to those of the rows
+    /// above.
+    template <std::size_t kComponent>
+    IMGMESH_INLINE int predicted(int i) const {
+        const ComponentLane& lane = kComponent == 0 ? x : y;
+        return chunk->prediction.data()[kComponent].data()[i] + lane.tap_w * lane.w + lane.tap_ww * lane.ww;
+    }
+    template <std::size_t kComponent>
+    IMGMESH_INLINE int energy(int i) const {
+        const ComponentLane& lane = kComponent == 0 ? x : y;
+        return chunk->energy.data()[kComponent].data()[i] + 4 * lane.size_w + 2 * lane.size_ww;
+    }
+    /// Notes a pixel's value, the number of its residual and its residual without the slope.
+    template <std::size_t kComponent>
+    IMGMESH_INLINE void note(int i, std::int16_t value, int number, int plain) {
+        ComponentLane& lane = kComponent == 0 ? x : y;
+        lane.ww = lane.w;
+        lane.w = value;
+        lane.size_ww = lane.size_w;
+        lane.size_w = std::min(magnitude_of(number), kMaxMagnitude);
+        chunk->value.data()[kComponent].data()[i] = value;
+        chunk->plain.data()[kComponent].data()[i] = static_cast<std::int16_t>(plain);
+        chunk->size.data()[kComponent].data()[i] = static_cast<std::uint8_t>(lane.size_w);
     }
 };
 
@@ -78,25 +76,22 @@ IMGMESH_INLINE std::int16_t value_of(int predicted, int number) {
     return static_cast<std::int16_t>(whole_of(predicted) + residual_of(number, has_negative_rest(predicted)));
 }
 
-/// Codes pixel x. source.code<COMPONENT>(predicted, energy, x, value) tells the number of a component's
-/// residual, which is turned where the prediction has a negative rest: what lies on the rest's side is
-/// likelier. It sets the value to value_of() both.
+/// Codes pixel i of the chunk. source.code<COMPONENT>(predicted, energy, i, value) tells the number of a
+/// component's residual, which is turned where the prediction has a negative rest: what lies on the rest's
+/// side is likelier. It sets the value to value_of() both.
 template <typename Source>
-IMGMESH_INLINE void code_pixel(Lane& lane, int x, Source& source) {
+IMGMESH_INLINE void code_pixel(Lane& lane, int i, Source& source) {
     std::int16_t value = 0;
-    const int predicted_x = lane.x.predicted(x), energy_y = lane.y.energy_at(x),
-              number_x =
-                  source.template code<0>(predicted_x, lane.x.energy_at(x) + (energy_y >> 3), x, value);
-    lane.x.note(x, value, number_x);
-    lane.x.plain[x] = static_cast<std::int16_t>(value - whole_of(predicted_x));
+    const int predicted_x = lane.predicted<0>(i), energy_y = lane.energy<1>(i),
+              number_x = source.template code<0>(predicted_x, lane.energy<0>(i) + (energy_y >> 3), i, value);
+    lane.note<0>(i, value, number_x, value - whole_of(predicted_x));
 
     // dx's residual, with the rest, says by the slope of the rows above what dy's will be.
     const std::int64_t exact_x = std::int64_t{value} * (1 << kTapBits) - predicted_x;
-    const int plain_y = lane.y.predicted(x),
-              predicted_y = plain_y + static_cast<int>((lane.slope[x] * exact_x) >> kSlopeBits),
-              number_y = source.template code<1>(predicted_y, energy_y + 2 * lane.x.size_w, x, value);
-    lane.y.note(x, value, number_y);
-    lane.y.plain[x] = static_cast<std::int16_t>(value - whole_of(plain_y));
+    const int plain_y = lane.predicted<1>(i),
+              predicted_y = plain_y + static_cast<int>((lane.chunk->slope.data()[i] * exact_x) >> kSlopeBits),
+              number_y = source.template code<1>(predicted_y, energy_y + 2 * lane.x.size_w, i, value);
+    lane.note<1>(i, value, number_y, value - whole_of(plain_y));
 }
 
 }  // namespace imgmesh::compact

@@ -1,7 +1,8 @@
 #include "formats/compact/band_rows.h"
 
 #include <algorithm>
-#include <utility>
+
+#include "libcore/base/simd.h"
 
 #if defined(__SSE2__)
 #include <emmintrin.h>
@@ -84,83 +85,80 @@ Short8 quotients(Int4 numerator, Int4 denominator) {
     return reinterpret_cast<Short8>(whole);
 }
 
+IMGMESH_INLINE UShort8 widened(const std::uint8_t* from) {
+    return __builtin_convertvector(load<Byte8>(from), UShort8);
+}
+
 // A weighted sum of eight pixels' neighbours in the rows above, of magnitudes or of products.
-template <typename Load>
-auto above_sum(Load n, Load nn, int x) {
+template <typename LoadN, typename LoadNn>
+IMGMESH_INLINE auto above_sum(const LoadN& n, const LoadNn& nn, int x) {
     return 4 * n(x) + 2 * (n(x - 1) + n(x + 1) + nn(x)) + n(x - 2) + n(x + 2) + nn(x - 1) + nn(x + 1);
 }
 
 }  // namespace
 
-ComponentRows::ComponentRows(int width)
-    : value(width),
-      value_n(width),
-      value_nn(width),
-      plain(width),
-      size(width),
-      size_n(width),
-      size_nn(width),
-      prediction(width),
-      energy(width) {}
-
 BandRows::BandRows(int width, const std::array<Taps, 2>& taps)
-    : x(width),
-      y(width),
-      slope(width),
-      width_(width),
+    : width_(width),
       taps_(taps),
-      xx_n_(width),
-      xx_nn_(width),
-      xy_n_(width),
-      xy_nn_(width) {}
+      values_{ThreeRows<std::int16_t>(width), ThreeRows<std::int16_t>(width)},
+      sizes_{ThreeRows<std::uint8_t>(width), ThreeRows<std::uint8_t>(width)},
+      xx_(width),
+      xy_(width) {}
 
-void BandRows::next_component(ComponentRows& c, const Taps& taps) {
-    if (row_ == 0) return;
-    for (int k = 0; k < 2; ++k) c.value[width_ + k] = c.value[width_ - 1];
-    std::swap(c.value_nn, c.value_n);
-    std::swap(c.value_n, c.value);
-    for (int k = 1; k <= 2; ++k) c.value[-k] = c.value_n[0];
-    sum_taps(above(c.value_n.get(), (row_ == 1 ? c.value_n : c.value_nn).get()), taps.data() + 2, width_,
-             c.prediction.get());
-    std::swap(c.size_nn, c.size_n);
-    std::swap(c.size_n, c.size);
-    const auto widened = [](const PaddedRow<std::uint8_t>& row) {
-        return
-            [from = row.get()](int at) { return __builtin_convertvector(load<Byte8>(from + at), UShort8); };
-    };
-    for (int i = 0; i < width_; i += 8) {
-        const UShort8 sum = above_sum(widened(c.size_n), widened(c.size_nn), i);
-        __builtin_memcpy(c.energy.get() + i, &sum, sizeof sum);
+void BandRows::next_row() {
+    if (++row_ == 0) return;
+    for (ThreeRows<std::int16_t>& values : values_) {
+        for (int k = 0; k < 2; ++k) values.row[width_ + k] = values.row[width_ - 1];
+        values.next();
+        for (int k = 1; k <= 2; ++k) values.row[-k] = values.n[0];
+    }
+    for (ThreeRows<std::uint8_t>& sizes : sizes_) sizes.next();
+    xx_.next();
+    xy_.next();
+}
+
+void BandRows::begin_chunk(int x, int count) {
+    if (row_ == 0) return;  // all is 0
+    for (std::size_t component = 0; component < 2; ++component) {
+        const ThreeRows<std::int16_t>& values = values_[component];
+        sum_taps(above(values.n.get() + x, (row_ == 1 ? values.n : values.nn).get() + x),
+                 taps_[component].data() + 2, count, chunk.prediction[component].data());
+        const std::uint8_t *n = sizes_[component].n.get() + x, *nn = sizes_[component].nn.get() + x;
+        for (int i = 0; i < count; i += 8) {
+            const UShort8 sum = above_sum([&](int at) { return widened(n + at); },
+                                          [&](int at) { return widened(nn + at); }, i);
+            __builtin_memcpy(chunk.energy[component].data() + i, &sum, sizeof sum);
+        }
+    }
+    const std::int16_t *xx_n = xx_.n.get() + x, *xx_nn = xx_.nn.get() + x, *xy_n = xy_.n.get() + x,
+                       *xy_nn = xy_.nn.get() + x;
+    for (int i = 0; i < count; i += 8) {
+        const auto sum = [&](const std::int16_t* in_n, const std::int16_t* in_nn) {
+            return above_sum([&](int at) { return load<Short8>(in_n + at); },
+                             [&](int at) { return load<Short8>(in_nn + at); }, i);
+        };
+        const Short8 xx = sum(xx_n, xx_nn) + static_cast<std::int16_t>(kSlopeStart), xy = sum(xy_n, xy_nn),
+                     slopes =
+                         __builtin_shufflevector(quotients(lower(xy), lower(xx)),
+                                                 quotients(upper(xy), upper(xx)), 0, 2, 4, 6, 8, 10, 12, 14);
+        __builtin_memcpy(chunk.slope.data() + i, &slopes, sizeof slopes);
     }
 }
 
-void BandRows::next_slope() {
-    if (row_ == 0) return;
-    std::swap(xx_nn_, xx_n_);
-    std::swap(xy_nn_, xy_n_);
-    for (int i = 0; i < width_; i += 8) {
-        const Short8 small_x = small(x.plain.get() + i), small_y = small(y.plain.get() + i),
+void BandRows::end_chunk(int x, int count) {
+    const auto pixels = static_cast<std::size_t>(count);
+    for (std::size_t component = 0; component < 2; ++component) {
+        std::copy_n(chunk.value[component].data(), pixels, values_[component].row.get() + x);
+        std::copy_n(chunk.size[component].data(), pixels, sizes_[component].row.get() + x);
+        // Beyond the row's end there are no residuals.
+        std::fill_n(chunk.plain[component].data() + pixels, 8, std::int16_t{0});
+    }
+    for (int i = 0; i < count; i += 8) {
+        const Short8 small_x = small(chunk.plain[0].data() + i), small_y = small(chunk.plain[1].data() + i),
                      xx = small_x * small_x, xy = small_x * small_y;
-        __builtin_memcpy(xx_n_.get() + i, &xx, sizeof xx);
-        __builtin_memcpy(xy_n_.get() + i, &xy, sizeof xy);
+        __builtin_memcpy(xx_.row.get() + x + i, &xx, sizeof xx);
+        __builtin_memcpy(xy_.row.get() + x + i, &xy, sizeof xy);
     }
-    const auto of = [](const PaddedRow<std::int16_t>& row) {
-        return [from = row.get()](int at) { return load<Short8>(from + at); };
-    };
-    for (int i = 0; i < width_; i += 8) {
-        const Short8 xx = above_sum(of(xx_n_), of(xx_nn_), i) + static_cast<std::int16_t>(kSlopeStart),
-                     xy = above_sum(of(xy_n_), of(xy_nn_), i);
-        const Short8 slopes = __builtin_shufflevector(
-            quotients(lower(xy), lower(xx)), quotients(upper(xy), upper(xx)), 0, 2, 4, 6, 8, 10, 12, 14);
-        __builtin_memcpy(slope.get() + i, &slopes, sizeof slopes);
-    }
-}
-
-void BandRows::next() {
-    ++row_;
-    next_component(x, taps_[0]);
-    next_component(y, taps_[1]);
-    next_slope();
 }
 
 }  // namespace imgmesh::compact

@@ -2,8 +2,9 @@
 // computed for many pixels at a time. Internal to this room.
 #pragma once
 
+#include <array>
 #include <cstdint>
-#include <span>
+#include <utility>
 #include <vector>
 
 #include "formats/compact/residual_model.h"
@@ -25,40 +26,59 @@ class PaddedRow {
     std::vector<T> values_;
 };
 
-/// One component, dx or dy: its values and the magnitudes of its residuals in a row and in the two above, and
-/// what the rows above give.
-struct ComponentRows {
-    explicit ComponentRows(int width);
-
-    PaddedRow<std::int16_t> value, value_n, value_nn;
-    PaddedRow<std::int16_t> plain;  ///< residuals of the row, without the slope
-    PaddedRow<std::uint8_t> size, size_n, size_nn;
-    PaddedRow<std::int32_t> prediction;  ///< part of it, with kTapBits behind the point
-    PaddedRow<std::uint16_t> energy;     ///< part of it
+/// A row and the two above it.
+template <typename T>
+struct ThreeRows {
+    explicit ThreeRows(int width) : row(width), n(width), nn(width) {}
+    void next() {
+        std::swap(nn, n);
+        std::swap(n, row);
+    }
+    PaddedRow<T> row, n, nn;
 };
 
-/// The rows of a band, as coding moves down.
+/// Some pixels of a row, of dx and of dy, where a loop over them finds all it needs at one place: what the
+/// rows above give, and what the loop sets.
+struct Chunk {
+    static constexpr int kPixels = 256;
+    template <typename T>
+    using Pixels = std::array<T, kPixels + 8>;  // whole vectors
+
+    std::array<Pixels<std::int32_t>, 2> prediction{};  ///< without W and WW; with kTapBits behind the point
+    std::array<Pixels<std::uint16_t>, 2> energy{};     ///< without W and WW
+    Pixels<std::int16_t> slope{};                      ///< of dy's residual to dx's
+
+    std::array<Pixels<std::int16_t>, 2> value{};
+    std::array<Pixels<std::int16_t>, 2> plain{};  ///< residuals, without the slope
+    std::array<Pixels<std::uint8_t>, 2> size{};   ///< magnitudes of residuals
+};
+
+/// The rows of a band, as coding moves down: for each row next_row(), then begin_chunk() and end_chunk() of
+/// all its chunks in turn.
 class BandRows {
   public:
     /// `taps` of dx and dy.
     BandRows(int width, const std::array<Taps, 2>& taps);
 
-    ComponentRows x, y;
-    PaddedRow<std::int16_t> slope;  ///< of dy's residual to dx's
+    Chunk chunk;
 
-    /// Sets prediction, energy and slope of the next row, and its neighbours on the left. The row before must
-    /// have its values, residuals and sizes.
-    void next();
+    void next_row();
     bool first_row() const { return row_ == 0; }
+    /// Returns the value left of the row.
+    std::int16_t left(std::size_t component) const { return values_[component].row[-1]; }
+    /// Sets what the rows above give to `count` pixels from column x on.
+    void begin_chunk(int x, int count);
+    /// Takes what was set for these pixels.
+    void end_chunk(int x, int count);
+    const std::int16_t* values(std::size_t component) const { return values_[component].row.get(); }
 
   private:
-    void next_component(ComponentRows& c, const Taps& taps);
-    void next_slope();
-
     int width_;
     int row_ = -1;
     std::array<Taps, 2> taps_;
-    PaddedRow<std::int16_t> xx_n_, xx_nn_, xy_n_, xy_nn_;  // products of residuals
+    std::array<ThreeRows<std::int16_t>, 2> values_;
+    std::array<ThreeRows<std::uint8_t>, 2> sizes_;
+    ThreeRows<std::int16_t> xx_, xy_;  // products of residuals
 };
 
 }  // namespace imgmesh::compact
