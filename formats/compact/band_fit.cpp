@@ -14,9 +14,10 @@ constexpr Taps kDefault = {208, -40, 160, -88, 48, -32, 0, 0, 0, 0};
 
 // More pixels change the taps by less than they are rounded.
 constexpr std::size_t kSample = 4096, kFewest = 256;
-constexpr int kRounds = 3;
+constexpr int kRounds = 2;
 
-using Row = std::array<double, kTaps + 1>;
+// The taps' neighbours, the pixel, and a 0 so that loops over rows are whole vectors.
+using Row = std::array<double, kTaps + 2>;
 using System = std::array<Row, kTaps>;
 
 // Solves the symmetric system by elimination without pivots; what is added to the diagonal keeps it regular.
@@ -46,7 +47,7 @@ Taps fit_taps(std::span<const std::int16_t> values, int width, int height) {
     for (std::size_t i = 2 * as_index(width); i < values.size(); i += step) {
         const std::size_t x = i % as_index(width);
         if (x < 2 || x + 2 >= as_index(width)) continue;
-        Row row;
+        Row row{};
         for (std::size_t k = 0; k < kTaps; ++k) row[k] = values[i + static_cast<std::size_t>(offset[k])];
         row[kTaps] = values[i];
         sample.push_back(row);
@@ -67,11 +68,10 @@ Taps fit_taps(std::span<const std::int16_t> values, int width, int height) {
             const double weight = 1 / (std::abs(residual) + 0.7);
             for (std::size_t i = 0; i < kTaps; ++i) {
                 const double weighted = weight * row[i];
-                for (std::size_t j = i; j <= kTaps; ++j) m[i][j] += weighted * row[j];
+                double* sums = m.data()[i].data();
+                for (std::size_t j = 0; j < row.size(); ++j) sums[j] += weighted * row.data()[j];
             }
         }
-        for (std::size_t i = 0; i < kTaps; ++i)
-            for (std::size_t j = 0; j < i; ++j) m[i][j] = m[j][i];
         taps = solve(m);
     }
     Taps rounded{};

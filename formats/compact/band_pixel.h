@@ -66,7 +66,7 @@ struct Lane {
         lane.size_w = std::min(magnitude_of(number), kMaxMagnitude);
         chunk->value.data()[kComponent].data()[i] = value;
         chunk->plain.data()[kComponent].data()[i] = static_cast<std::int16_t>(plain);
-        chunk->size.data()[kComponent].data()[i] = static_cast<std::uint8_t>(lane.size_w);
+        chunk->size.data()[kComponent].data()[i] = static_cast<std::uint16_t>(lane.size_w);
     }
 };
 

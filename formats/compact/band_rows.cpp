@@ -28,6 +28,7 @@ void sum_taps(const std::array<const std::int16_t*, kTaps - 2>& from, const std:
     // The rows have room for whole vectors.
     for (; x < width; x += 8) {
         __m128i low{}, high{};
+#pragma GCC unroll 4
         for (std::size_t k = 0; k < 4; ++k) {
             const __m128i a = _mm_loadu_si128(reinterpret_cast<const __m128i*>(from[2 * k] + x)),
                           b = _mm_loadu_si128(reinterpret_cast<const __m128i*>(from[2 * k + 1] + x));
@@ -47,7 +48,6 @@ void sum_taps(const std::array<const std::int16_t*, kTaps - 2>& from, const std:
 
 using Short8 = std::int16_t __attribute__((vector_size(16)));
 using UShort8 = std::uint16_t __attribute__((vector_size(16)));
-using Byte8 = std::uint8_t __attribute__((vector_size(8)));
 using Int4 = std::int32_t __attribute__((vector_size(16)));
 using Float4 = float __attribute__((vector_size(16)));
 
@@ -85,10 +85,6 @@ Short8 quotients(Int4 numerator, Int4 denominator) {
     return reinterpret_cast<Short8>(whole);
 }
 
-IMGMESH_INLINE UShort8 widened(const std::uint8_t* from) {
-    return __builtin_convertvector(load<Byte8>(from), UShort8);
-}
-
 // A weighted sum of eight pixels' neighbours in the rows above, of magnitudes or of products.
 template <typename LoadN, typename LoadNn>
 IMGMESH_INLINE auto above_sum(const LoadN& n, const LoadNn& nn, int x) {
@@ -101,7 +97,7 @@ BandRows::BandRows(int width, const std::array<Taps, 2>& taps)
     : width_(width),
       taps_(taps),
       values_{ThreeRows<std::int16_t>(width), ThreeRows<std::int16_t>(width)},
-      sizes_{ThreeRows<std::uint8_t>(width), ThreeRows<std::uint8_t>(width)},
+      sizes_{ThreeRows<std::uint16_t>(width), ThreeRows<std::uint16_t>(width)},
       xx_(width),
       xy_(width) {}
 
@@ -112,7 +108,7 @@ void BandRows::next_row() {
         values.next();
         for (int k = 1; k <= 2; ++k) values.row[-k] = values.n[0];
     }
-    for (ThreeRows<std::uint8_t>& sizes : sizes_) sizes.next();
+    for (ThreeRows<std::uint16_t>& sizes : sizes_) sizes.next();
     xx_.next();
     xy_.next();
 }
@@ -123,10 +119,10 @@ void BandRows::begin_chunk(int x, int count) {
         const ThreeRows<std::int16_t>& values = values_[component];
         sum_taps(above(values.n.get() + x, (row_ == 1 ? values.n : values.nn).get() + x),
                  taps_[component].data() + 2, count, chunk.prediction[component].data());
-        const std::uint8_t *n = sizes_[component].n.get() + x, *nn = sizes_[component].nn.get() + x;
+        const std::uint16_t *n = sizes_[component].n.get() + x, *nn = sizes_[component].nn.get() + x;
         for (int i = 0; i < count; i += 8) {
-            const UShort8 sum = above_sum([&](int at) { return widened(n + at); },
-                                          [&](int at) { return widened(nn + at); }, i);
+            const UShort8 sum = above_sum([&](int at) { return load<UShort8>(n + at); },
+                                          [&](int at) { return load<UShort8>(nn + at); }, i);
             __builtin_memcpy(chunk.energy[component].data() + i, &sum, sizeof sum);
         }
     }

@@ -50,7 +50,7 @@ struct Chunk {
 
     std::array<Pixels<std::int16_t>, 2> value{};
     std::array<Pixels<std::int16_t>, 2> plain{};  ///< residuals, without the slope
-    std::array<Pixels<std::uint8_t>, 2> size{};   ///< magnitudes of residuals
+    std::array<Pixels<std::uint16_t>, 2> size{};  ///< magnitudes of residuals
 };
 
 /// The rows of a band, as coding moves down: for each row next_row(), then begin_chunk() and end_chunk() of
@@ -77,7 +77,7 @@ class BandRows {
     int row_ = -1;
     std::array<Taps, 2> taps_;
     std::array<ThreeRows<std::int16_t>, 2> values_;
-    std::array<ThreeRows<std::uint8_t>, 2> sizes_;
+    std::array<ThreeRows<std::uint16_t>, 2> sizes_;
     ThreeRows<std::int16_t> xx_, xy_;  // products of residuals
 };
 
