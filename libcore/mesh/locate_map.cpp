@@ -11,6 +11,7 @@
 #include "libcore/base/parallel.h"
 #include "libcore/base/parallel_vector.h"
 #include "libcore/mesh/face_bins.h"
+#include "libcore/mesh/pixel_run.h"
 
 namespace imgmesh {
 namespace {
@@ -25,6 +26,12 @@ constexpr std::int64_t kMostTries = 64, kFreeTries = 1 << 22;
 // are tried, in either direction.
 constexpr int kFarthestSteps = 4;
 
+// Where a pixel is on the mesh, if a step is that many units.
+GridPoint position(const Displacements& d, int units, int x, int y) {
+    const std::size_t pixel = d.index(x, y);
+    return {x * kPixelUnits + d.dx[pixel] * units, y * kPixelUnits + d.dy[pixel] * units};
+}
+
 // Rows of a map, by the faces and the grid of positions.
 class Rows {
   public:
@@ -37,35 +44,66 @@ class Rows {
     int bits() const { return bits_; }
     bool too_many_tries() const { return tries_ > most_tries_; }
 
+    // What a thread needs for rows one after the other.
+    struct Scratch {
+        Scratch(int width, WeightPrecision precision) : ids(as_index(width), kNone), run(precision) {}
+        std::vector<Id> ids;  // the faces of the row, and beyond the pixel at hand those of the row before
+        PixelRun run;
+        std::vector<std::pair<int, PixelCoord>> large;  // pixels whose faces are too large for `run`
+    };
+
     // Writes the coordinates of row y. Returns the column of the first pixel on no face, or the width.
-    int locate(const Displacements& d, int y, std::span<PixelCoord> out) {
-        const int units = kPixelUnits / d.steps;
-        const std::size_t begin = d.row_begin(y);
+    int locate(const Displacements& d, int y, Scratch& scratch, std::span<PixelCoord> out) {
         std::int64_t tries = 0;
         int x = 0;
-        Id id = kNone;
-        ExactFace face{};
-        for (; x < d.width; ++x) {
-            const std::size_t i = begin + as_index(x);
-            if (!d.inside.contains(i)) {
-                out[as_index(x)] = {};
-                continue;
+        while (x < d.width) {
+            const int count = std::min(d.width - x, PixelRun::kPixels);
+            const int found = find_faces(d, x, y, count, scratch, tries);
+            scratch.run.divide(found);
+            for (int i = 0; i < found; ++i) {
+                const Id id = scratch.ids[as_index(x + i)];
+                out[as_index(x + i)] =
+                    id == kNone ? PixelCoord{} : PixelCoord{id, scratch.run.u(i), scratch.run.v(i)};
             }
-            const GridPoint p{x * kPixelUnits + d.dx[i] * units, y * kPixelUnits + d.dy[i] * units};
-            SideAreas areas = face.at(p);
-            if (!areas.hold_strictly()) {
-                id = bins_.find(p, tries);
-                if (id == kNone) break;
-                face = bins_.face(id);
-                areas = face.at(p);
-            }
-            out[as_index(x)] = face.weights(id, areas, bits_);
+            for (const auto& [i, coord] : scratch.large) out[as_index(x + i)] = coord;
+            x += found;
+            if (found < count) break;
         }
         tries_ += tries;
         return x;
     }
 
   private:
+    // Finds the faces of `count` pixels from column x on. Returns the first that has none, or `count`.
+    int find_faces(const Displacements& d, int x, int y, int count, Scratch& scratch, std::int64_t& tries) {
+        const std::size_t begin = d.index(x, y);
+        const int units = kPixelUnits / d.steps;
+        const std::int64_t large = scratch.run.most_area();
+        scratch.large.clear();
+        ExactFace face{};
+        Id id = kNone;
+        for (int i = 0; i < count; ++i) {
+            const std::size_t pixel = begin + as_index(i);
+            Id& above = scratch.ids[as_index(x + i)];
+            if (!d.inside.contains(pixel)) {
+                above = kNone;
+                continue;
+            }
+            const GridPoint p = position(d, units, x + i, y);
+            SideAreas areas = face.at(p);
+            if (!areas.hold_strictly()) {
+                id = above != kNone && bins_.face(above).at(p).hold_strictly() ? above : bins_.find(p, tries);
+                if (id == kNone) return i;
+                face = bins_.face(id);
+                areas = face.at(p);
+            }
+            above = id;
+            scratch.run.put(i, face, areas);
+            if (face.area > large) scratch.large.emplace_back(i, face.weights(id, areas, bits_));
+        }
+        return count;
+    }
+
     FaceBins bins_;
     int bits_;
     std::int64_t most_tries_;
@@ -92,60 +130,79 @@ class Inverse {
         std::atomic<bool> failed{false};
         parallel_blocks(0, d.height, kGrainRows, [&](int first, int last) {
             std::vector<PixelCoord> back(as_index(d.width));
+            Rows::Scratch scratch(d.width, map_.precision);
             for (int y = first; y < last && !failed; ++y)
-                if (!find_row(d, y, back) || rows_.too_many_tries()) failed = true;
+                if (!find_row(d, y, scratch, back) || rows_.too_many_tries()) failed = true;
         });
         if (failed) return std::nullopt;
         return d;
     }
 
   private:
-    bool find_row(Displacements& d, int y, std::span<PixelCoord> back) {
+    bool find_row(Displacements& d, int y, Rows::Scratch& scratch, std::span<PixelCoord> back) {
         const auto row = map_.row(y);
         for (int x = 0; x < d.width; ++x)
-            if (row[as_index(x)].face != kNone && !find_pixel(d, x, y)) return false;
-        return rows_.locate(d, y, back) == d.width && std::equal(back.begin(), back.end(), row.begin());
+            if (row[as_index(x)].face != kNone && !set(d, x, y, nearest(d.steps, x, y))) return false;
+        const auto comes_back = [&] {
+            return rows_.locate(d, y, scratch, back) == d.width &&
+                   std::equal(back.begin(), back.end(), row.begin());
+        };
+        if (comes_back()) return true;
+        for (int x = 0; x < d.width; ++x)
+            if (row[as_index(x)].face != kNone && !fits(d, x, y) && !search(d, x, y)) return false;
+        return comes_back();
     }
 
-    bool find_pixel(Displacements& d, int x, int y) {
-        const std::size_t i = d.index(x, y);
-        const PixelCoord& coord = map_[i];
+    // Returns the grid point nearest to where the map has the pixel, as a displacement.
+    GridPoint nearest(int steps, int x, int y) const {
+        const PixelCoord& coord = map_.at(x, y);
         const ExactFace& face = rows_.bins().face(coord.face);
-        const int units = kPixelUnits / d.steps, bits = rows_.bits();
+        const int bits = rows_.bits(), shift = bits + (steps == 8 ? 2 : steps == 16 ? 1 : 0);
         const auto one = static_cast<float>(1 << bits);
         const auto b = static_cast<std::int64_t>(coord.u * one), c = static_cast<std::int64_t>(coord.v * one);
-        // bx, cx and the like are turned sides: b - a is (-cy, cx), and c - a is (by, -bx).
-        const auto nearest = [&](std::int32_t from, std::int32_t to_b, std::int32_t to_c, int pixel) {
-            const std::int64_t all =
-                ((std::int64_t{from} - pixel * kPixelUnits) << bits) + b * to_b + c * to_c;
-            const std::int64_t step = std::int64_t{units} << bits;
-            return (all + step / 2) >> (bits + (units == 4 ? 2 : units == 2 ? 1 : 0));
+        const std::int64_t half = (std::int64_t{1} << shift) / 2;
+        const auto rounded = [&](std::int32_t from, std::int32_t to_b, std::int32_t to_c) {
+            return static_cast<std::int32_t>(((std::int64_t{from} << bits) + b * to_b + c * to_c + half) >>
+                                             shift);
         };
-        const std::int64_t dx = nearest(face.a.x, -face.cy, face.by, x),
-                           dy = nearest(face.a.y, face.cx, -face.bx, y);
-        const auto fits = [&](std::int64_t at_x, std::int64_t at_y) {
-            using Limits = std::numeric_limits<std::int16_t>;
-            if (at_x != std::clamp<std::int64_t>(at_x, Limits::min(), Limits::max()) ||
-                at_y != std::clamp<std::int64_t>(at_y, Limits::min(), Limits::max()))
-                return false;
-            d.dx[i] = static_cast<std::int16_t>(at_x);
-            d.dy[i] = static_cast<std::int16_t>(at_y);
-            const SideAreas areas =
-                face.at({x * kPixelUnits + d.dx[i] * units, y * kPixelUnits + d.dy[i] * units});
-            return face.area > 0 && areas.hold() && face.weights(coord.face, areas, bits) == coord;
-        };
-        if (fits(dx, dy)) return true;
-        // A weight is off by less than a step and all by 0 together, so positions by less than a side's
-        // share.
+        // The gradients are turned sides: b - a is (-cy, cx), and c - a is (by, -bx).
+        return {rounded(face.a.x - x * kPixelUnits, -face.cy, face.by),
+                rounded(face.a.y - y * kPixelUnits, face.cx, -face.bx)};
+    }
+
+    static bool set(Displacements& d, int x, int y, GridPoint by) {
+        d.dx[d.index(x, y)] = static_cast<std::int16_t>(by.x);
+        d.dy[d.index(x, y)] = static_cast<std::int16_t>(by.y);
+        return d.dx[d.index(x, y)] == by.x && d.dy[d.index(x, y)] == by.y;
+    }
+
+    // Whether the pixel's own face gives its weights back.
+    bool fits(const Displacements& d, int x, int y) const {
+        const PixelCoord& coord = map_.at(x, y);
+        const ExactFace& face = rows_.bins().face(coord.face);
+        const SideAreas areas = face.at(position(d, kPixelUnits / d.steps, x, y));
+        return face.area > 0 && areas.hold() && face.weights(coord.face, areas, rows_.bits()) == coord;
+    }
+
+    // Tries the grid points around the nearest one.
+    bool search(Displacements& d, int x, int y) const {
+        // Weights are off by less than a step each and by 0 together, so a position by less than a step of
+        // the longest side.
+        const ExactFace& face = rows_.bins().face(map_.at(x, y).face);
         const std::int64_t side =
             std::max({std::abs(face.bx), std::abs(face.by), std::abs(face.cx), std::abs(face.cy),
                       std::abs(face.bx + face.cx), std::abs(face.by + face.cy)});
-        const std::int64_t reach = std::min<std::int64_t>(kFarthestSteps, (side >> bits) / units + 1);
-        if (2 * side < std::int64_t{units} << bits) return false;
-        for (std::int64_t ring = 1; ring <= reach; ++ring)
-            for (std::int64_t oy = -ring; oy <= ring; ++oy)
-                for (std::int64_t ox = -ring; ox <= ring; ++ox)
-                    if (std::max(std::abs(ox), std::abs(oy)) == ring && fits(dx + ox, dy + oy)) return true;
+        const std::int64_t in_steps = side * d.steps / kPixelUnits;
+        if (2 * in_steps < std::int64_t{1} << rows_.bits()) return false;
+        const int reach =
+            static_cast<int>(std::min<std::int64_t>(kFarthestSteps, (in_steps >> rows_.bits()) + 1));
+        const GridPoint middle = nearest(d.steps, x, y);
+        for (int ring = 1; ring <= reach; ++ring)
+            for (int oy = -ring; oy <= ring; ++oy)
+                for (int ox = -ring; ox <= ring; ++ox)
+                    if (std::max(std::abs(ox), std::abs(oy)) == ring &&
+                        set(d, x, y, {middle.x + ox, middle.y + oy}) && fits(d, x, y))
+                        return true;
         return false;
     }
 
@@ -164,9 +221,10 @@ LocatedMap locate_map(const BaseMesh& mesh, const Displacements& displacements, 
                            parallel_vector<PixelCoord>(displacements.pixel_count()), precision);
     std::atomic<std::size_t> lost{std::numeric_limits<std::size_t>::max()};
     parallel_blocks(0, displacements.height, kGrainRows, [&](int first, int last) {
+        Rows::Scratch scratch(displacements.width, precision);
         for (int y = first; y < last; ++y) {
             if (displacements.row_begin(y) > lost || rows.too_many_tries()) return;
-            const int x = rows.locate(displacements, y, located.map.row(y));
+            const int x = rows.locate(displacements, y, scratch, located.map.row(y));
             if (x == displacements.width) continue;
             const std::size_t pixel = displacements.index(x, y);
             for (std::size_t before = lost; pixel < before && !lost.compare_exchange_weak(before, pixel);) {
