@@ -2,6 +2,7 @@
 // first touched, which is most of the time that a fresh vector takes.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <vector>
 
@@ -24,7 +25,13 @@ std::vector<T> parallel_vector(std::size_t size, const T& value = {}) {
     std::vector<T> vector;
     vector.reserve(size);
     touch_pages(vector.data(), size * sizeof(T));
-    vector.resize(size, value);
+    // Block by block, as bytes. One by one, g++ 12 makes a store and a load of it for each value: 6 ns for a
+    // PixelCoord instead of 0.5.
+    const std::vector<T> block(std::min<std::size_t>(size, 1024), value);
+    while (vector.size() < size) {
+        const auto count = std::min(block.size(), size - vector.size());
+        vector.insert(vector.end(), block.begin(), block.begin() + static_cast<std::ptrdiff_t>(count));
+    }
     return vector;
 }
 
