@@ -35,4 +35,9 @@ endif()
 if(IMGMESH_SANITIZE)
   target_compile_options(imgmesh_compiler INTERFACE -fsanitize=${IMGMESH_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
   target_link_options(imgmesh_compiler INTERFACE -fsanitize=${IMGMESH_SANITIZE})
+  if(IMGMESH_SANITIZE MATCHES "address,undefined" AND CMAKE_CXX_COMPILER_ID MATCHES Clang)
+    # An access beyond the object is what the address sanitizer finds.
+    target_compile_options(imgmesh_compiler INTERFACE -fno-sanitize=object-size
+      -fsanitize-ignorelist=${PROJECT_SOURCE_DIR}/cmake/sanitizers_leave_out.txt)
+  endif()
 endif()
