@@ -243,7 +243,10 @@ LocatedMap locate_map(const BaseMesh& mesh, const Displacements& displacements, 
 }
 
 std::optional<Displacements> displacements_of(const BaseMesh& mesh, const PixelMap& map) {
-    if (map.empty()) return std::nullopt;
+    if (map.empty() || std::any_of(map.begin(), map.end(), [&](const PixelCoord& c) {
+            return c.face != kNone && c.face >= mesh.faces.size();
+        }))
+        return std::nullopt;
     try {
         Inverse inverse(mesh, map);
         for (const int steps : {8, 16, 32})
