@@ -1,4 +1,5 @@
 // imgmesh-build: images in, containers out.
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "formats/container/container.h"
@@ -46,6 +47,19 @@ ReadImageOptions read_options(const BuildOptions& o) {
     return read;
 }
 
+// Returns what is known before the work: levels may be left out, and only numbers of vertices are reached
+// exactly.
+ContainerPlan container_plan(const BuildParams& params, const Image& image, const Mask& mask) {
+    const auto inside = mask.empty() ? static_cast<std::int64_t>(image.pixel_count()) : mask.count();
+    const StopParams& stop = params.stop;
+    ContainerPlan plan{static_cast<std::int64_t>(image.pixel_count()), 0};
+    if (!stop.faces && !stop.error && !stop.rms && params.levels.faces.empty() &&
+        params.levels.errors.empty())
+        plan.vertices = std::min(inside, stop.vertices.value_or(static_cast<std::int64_t>(
+                                             static_cast<double>(inside) * stop.density / 100)));
+    return plan;
+}
+
 void check_options(const BuildOptions& o) {
     if (!is_container(o.output))
         throw Error(ErrorKind::kBadArgument,
@@ -72,7 +86,6 @@ Report build_one(const BuildOptions& given, Context& context) {
     Mask mask = mask_of(image, o.input, plan, o, warnings);
     const bool missing = !read.data.empty(), mask_is_data = missing && mask.empty();
     if (missing) mask = in_file(o.input, [&] { return in_both(mask, read.data); });
-    const double read_seconds = stage.lap();
     ContainerOptions container;
     compress(container, o.compression, o.no_map ? DracoMode::kOff : DracoMode::kEdgebreaker);
     if (o.params.mesh_precision == MeshPrecision::kCompact && container.draco == DracoMode::kOff &&
@@ -81,6 +94,9 @@ Report build_one(const BuildOptions& given, Context& context) {
             "--mesh-precision compact: meshes without compression take the same bytes; --compression draco "
             "makes them smaller");
     container.layers = !o.no_map;
+    const std::string doubt = check_buffer(o.output, container_plan(plan.params, image, mask), container);
+    if (!doubt.empty()) warnings.push_back(doubt);
+    const double read_seconds = stage.lap();
     container.overwrite = context.overwrite;
     container.metadata = read.metadata;
     if (o.texture.wanted)

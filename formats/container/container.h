@@ -34,7 +34,20 @@ struct ContainerOptions {
     bool meshopt = false;  ///< EXT_meshopt_compression instead of Draco; only without layers
     Texture texture = {};  ///< with the coordinates of all vertices of all levels
     ExrMetadata metadata = {};  ///< of the source, if it is an EXR; without an exr_metadata_fault()
+    /// Of the buffer, which holds the meshes and in a .glb the pixel maps as well; at most 2^31 - 1.
+    std::uint64_t max_buffer_bytes = 0x7FFFFFFF;
 };
+
+/// What is known of a container before it is built.
+struct ContainerPlan {
+    std::int64_t pixels = 0;    ///< with a pixel map, once for each level
+    std::int64_t vertices = 0;  ///< of all levels, at least
+};
+
+/// Throws Error(kUnsupported) where the buffer of the container `path` will surely be too long, as
+/// write_container() would after the work. Returns a warning where that is likely, as its pixel maps are
+/// 3 bytes a pixel or more of most images; "" otherwise.
+std::string check_buffer(const std::string& path, const ContainerPlan& plan, const ContainerOptions& options);
 
 /// What write_container() has written.
 struct WrittenContainer {
@@ -53,7 +66,7 @@ struct WrittenContainer {
 /// A .gltf appears after its sidecar files, and the sidecar files of a container that it replaces are removed
 /// last: at any moment either the old container or the new one is there. The same mesh image and options give
 /// the same bytes. Takes O(pixels + faces) time. Throws Error: kBadArgument for another extension; kIo if a
-/// file cannot be written.
+/// file cannot be written; kUnsupported if the buffer would be too long, and then no file has appeared.
 WrittenContainer write_container(const std::string& path, const MeshImage& mesh_image,
                                  const ContainerOptions& options = {});
 

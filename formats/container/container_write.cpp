@@ -87,15 +87,27 @@ FileVariant variant_of(const std::string& path) {
     throw Error(ErrorKind::kBadArgument, cat(path, ": a container's name ends with .glb or .gltf"));
 }
 
+// Throws Error(kUnsupported) if the buffer is too long. `apart` is what a .gltf would keep in another file.
+void check_length(const std::string& path, std::uint64_t bytes, std::uint64_t apart, const char* need,
+                  const ContainerOptions& options) {
+    if (bytes <= options.max_buffer_bytes) return;
+    const bool fits_apart = bytes - apart <= options.max_buffer_bytes;
+    throw Error(
+        ErrorKind::kUnsupported,
+        cat(path, ": its buffer ", need, ' ', bytes, " bytes, and has at most ", options.max_buffer_bytes,
+            fits_apart ? "; a .gltf keeps the pixel maps in a file of any size"
+                       : "; fewer vertices or another compression of the meshes make it shorter"));
+}
+
 // The layers are most of the file, so they are written without a copy.
 void write_glb(const std::string& path, Asset& asset, const std::vector<std::uint8_t>& buffer,
                const std::vector<std::uint8_t>& layers, bool overwrite) {
-    AtomicFile file(path, overwrite);
     constexpr std::array<std::uint8_t, 3> kZeros = {};
     const std::size_t padding = (4 - layers.size() % 4) % 4;
     if (asset.has_layers) asset.layers = {buffer.size(), layers.size()};
     asset.buffer_length = buffer.size() + layers.size() + padding;
     const std::vector<std::uint8_t> head = glb_head(json_from_asset(asset), asset.buffer_length);
+    AtomicFile file(path, overwrite);
     const std::array<std::span<const std::uint8_t>, 4> parts = {head, buffer, layers,
                                                                 std::span(kZeros).first(padding)};
     file.write_parts(parts);
@@ -165,6 +177,22 @@ std::vector<std::string> container_files(const std::string& path) {
     return {path, stem + ".bin", stem + ".exr"};
 }
 
+std::string check_buffer(const std::string& path, const ContainerPlan& plan,
+                         const ContainerOptions& options) {
+    // A position and a channel. How far Draco and deflate go depends on the image: a flat one takes nothing.
+    constexpr std::uint64_t kVertexBytes = 12 + 4, kUsualPixelBytes = 3;
+    const bool plain = options.draco == DracoMode::kOff && !options.meshopt;
+    const std::uint64_t least = options.texture.picture.size() +
+                                (plain ? kVertexBytes * static_cast<std::uint64_t>(plan.vertices) : 0);
+    const bool has_maps = variant_of(path) == FileVariant::kGlb && options.layers;
+    check_length(path, least, 0, "will need at least", options);
+    const std::uint64_t usual =
+        least + (has_maps ? kUsualPixelBytes * static_cast<std::uint64_t>(plan.pixels) : 0);
+    if (usual <= options.max_buffer_bytes) return "";
+    return cat(path, ": will probably be too long for a .glb: about ", usual, " bytes, at most ",
+               options.max_buffer_bytes, "; a .gltf keeps the pixel maps in a file of any size");
+}
+
 WrittenContainer write_container(const std::string& path, const MeshImage& mesh_image,
                                  const ContainerOptions& options) {
     const FileVariant variant = variant_of(path);
@@ -210,6 +238,10 @@ WrittenContainer write_container(const std::string& path, const MeshImage& mesh_
     asset.has_layers = options.layers;
     const std::vector<std::uint8_t> layers =
         options.layers ? encode_exr_layers(parts) : std::vector<std::uint8_t>();
+    const std::uint64_t apart = variant == FileVariant::kGlb ? layers.size() : 0;
+    constexpr std::uint64_t kPadding = 3;
+    check_length(path, buffer.size() + apart + (apart > 0 ? kPadding : 0), apart + kPadding, "needs",
+                 options);
     if (variant == FileVariant::kGltf)
         return {write_gltf(path, asset, buffer, layers, options), mesh_bytes, layers.size()};
     write_glb(path, asset, buffer, layers, options.overwrite);

@@ -47,6 +47,9 @@ struct LevelPlace {
     std::string pointer;
 };
 
+/// A buffer of a glTF asset has at most this many bytes: many readers have signed 32-bit offsets.
+inline constexpr std::uint64_t kMaxBufferBytes = 0x7FFFFFFF;
+
 struct Asset {
     std::string version;  ///< of IMGMESH_pixel_map
     SourceInfo source;

@@ -20,8 +20,6 @@ namespace {
 using nlohmann::json;
 using tinygltf::Value;
 
-constexpr std::uint64_t kMaxBufferBytes = 0x7FFFFFFF;
-
 int add_view(tinygltf::Model& model, const ByteRange& range, int target) {
     tinygltf::BufferView view;
     view.buffer = 0;
@@ -233,10 +231,8 @@ NodePlace node_place(const SourceInfo& source, std::size_t k) {
 
 std::string json_from_asset(const Asset& asset) {
     if (asset.buffer_length > kMaxBufferBytes)
-        throw Error(
-            ErrorKind::kUnsupported,
-            cat("the asset's buffer would have ", asset.buffer_length, " bytes, at most ", kMaxBufferBytes,
-                asset.layers_name.empty() ? "; a .gltf keeps the pixel map apart" : ""));
+        throw Error(ErrorKind::kUnsupported, cat("the asset's buffer would have ", asset.buffer_length,
+                                                 " bytes, at most ", kMaxBufferBytes));
     tinygltf::Model model = gltf_model(asset);
     const int layers_view =
         asset.has_layers && asset.layers_name.empty() ? add_view(model, asset.layers, 0) : -1;

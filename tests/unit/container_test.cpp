@@ -403,3 +403,53 @@ TEST_CASE("container: the writer refuses parts that do not fit each other") {
     refused_texture([](Texture& t) { t.coords.pop_back(); });
     refused_texture([](Texture& t) { t.coords[1].pop_back(); });
 }
+
+TEST_CASE(
+    "containers: a .glb that is too long says so before a file appears, a .gltf takes the layers apart") {
+    const TemporaryFolder folder;
+    const MeshImage image = random_mesh_image(64, 48, 1, WeightPrecision::kFloat, false, 7);
+    const std::string glb = folder / "x.glb", gltf = folder / "x.gltf";
+    const WrittenContainer whole = write_container(glb, image);
+    const auto before = load(glb);
+    const auto failure = [](const auto& action) -> std::string {
+        try {
+            action();
+        } catch (const Error& error) {
+            CHECK(error.kind() == ErrorKind::kUnsupported);
+            return error.what();
+        }
+        return "";
+    };
+    ContainerOptions options;
+    options.max_buffer_bytes = whole.mesh_bytes + whole.layer_bytes / 2;
+    const std::string text = failure([&] { write_container(glb, image, options); });
+    CHECK(text.find(glb) != std::string::npos);
+    CHECK(text.find("a .gltf keeps the pixel maps") != std::string::npos);
+    CHECK(failure([&] { write_container(folder / "new.glb", image, options); }) != "");
+    CHECK(folder.count() == 1);
+    CHECK(load(glb) == before);
+    write_container(gltf, image, options);
+    CHECK_NOTHROW(read_container(gltf));
+    CHECK(validate_container(gltf).empty());
+    // Meshes are in the buffer in any case.
+    options.max_buffer_bytes = whole.mesh_bytes / 2;
+    for (const std::string& path : {glb, gltf})
+        CHECK(failure([&] { write_container(path, image, options); }).find("fewer vertices") !=
+              std::string::npos);
+}
+
+TEST_CASE("containers: what is known of the buffer's length before the work") {
+    ContainerOptions options;
+    CHECK(check_buffer("x.glb", {1 << 20, 10000}, options) == "");
+    CHECK(check_buffer("x.glb", {std::int64_t{1} << 30, 10000}, options).find("a .gltf keeps") !=
+          std::string::npos);
+    CHECK(check_buffer("x.gltf", {std::int64_t{1} << 30, 10000}, options) == "");
+    // Draco may take nothing; without it, a vertex has a position at least.
+    const ContainerPlan many{std::int64_t{1} << 28, std::int64_t{1} << 28};
+    options.layers = false;
+    CHECK(check_buffer("x.glb", many, options) == "");
+    options.draco = DracoMode::kOff;
+    for (const char* path : {"x.glb", "x.gltf"}) CHECK_THROWS_AS(check_buffer(path, many, options), Error);
+    options.meshopt = true;
+    CHECK(check_buffer("x.glb", many, options) == "");
+}
