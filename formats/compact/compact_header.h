@@ -32,7 +32,7 @@ struct CompactHeader : GridSize {
     int rows(std::size_t band) const;
 };
 
-/// The rows of a band: as many as many pixels take, since each band starts without neighbours above.
+/// Returns the rows of a band: so many that starting without neighbours above costs little.
 int band_rows_of(const GridSize& size);
 
 /// Appends the header of a stream.
