@@ -1,7 +1,7 @@
 #include "formats/compact/compact_header.h"
 
 #include <algorithm>
-#include <array>
+#include <limits>
 
 #include "formats/compact/compact_layers.h"
 #include "formats/files/byte_reader.h"
@@ -122,6 +122,10 @@ void put_part(Bytes& out, const CompactHeader& header) {
     for (const int number : {header.width, header.height, header.band_rows})
         put_number(out, as_index(number), 4);
     if (!header.topology.empty()) put_topology(out, header.topology);
+    for (const std::span<const std::uint8_t> band : header.bands)
+        if (band.size() > std::numeric_limits<std::uint32_t>::max())
+            throw Error(ErrorKind::kUnsupported,
+                        cat("a compact stream cannot hold rows of ", header.width, " such pixels"));
     put_number(out, header.tables.size(), 4);
     put_bytes(out, header.tables);
     for (const std::span<const std::uint8_t> band : header.bands) put_number(out, band.size(), 4);
