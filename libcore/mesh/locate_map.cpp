@@ -6,6 +6,8 @@
 #include <cstdlib>
 #include <limits>
 #include <span>
+#include <utility>
+#include <vector>
 
 #include "libcore/base/error.h"
 #include "libcore/base/parallel.h"
@@ -114,29 +116,29 @@ class Rows {
 class Inverse {
   public:
     Inverse(const BaseMesh& mesh, const PixelMap& map) : map_(map), rows_(mesh, map, map.precision) {
+        static_cast<GridSize&>(found_) = map;
+        found_.dx = parallel_vector<std::int16_t>(map.size());
+        found_.dy = parallel_vector<std::int16_t>(map.size());
         if (std::any_of(map.begin(), map.end(), [](const PixelCoord& c) { return c.face == kNone; })) {
-            inside_ = Mask(map, 1);
-            for (std::size_t i = 0; i < map.size(); ++i) inside_[i] = map[i].face != kNone;
+            found_.inside = Mask(map, 1);
+            for (std::size_t i = 0; i < map.size(); ++i) found_.inside[i] = map[i].face != kNone;
         }
     }
 
-    std::optional<Displacements> on_grid(int steps) {
-        Displacements d;
-        static_cast<GridSize&>(d) = map_;
-        d.steps = steps;
-        d.dx.resize(map_.size());
-        d.dy.resize(map_.size());
-        d.inside = inside_;
+    bool find(int steps) {
+        found_.steps = steps;
         std::atomic<bool> failed{false};
-        parallel_blocks(0, d.height, kGrainRows, [&](int first, int last) {
-            std::vector<PixelCoord> back(as_index(d.width));
-            Rows::Scratch scratch(d.width, map_.precision);
+        parallel_blocks(0, map_.height, kGrainRows, [&](int first, int last) {
+            if (failed) return;
+            std::vector<PixelCoord> back(as_index(map_.width));
+            Rows::Scratch scratch(map_.width, map_.precision);
             for (int y = first; y < last && !failed; ++y)
-                if (!find_row(d, y, scratch, back) || rows_.too_many_tries()) failed = true;
+                if (!find_row(found_, y, scratch, back) || rows_.too_many_tries()) failed = true;
         });
-        if (failed) return std::nullopt;
-        return d;
+        return !failed;
     }
+
+    Displacements found() && { return std::move(found_); }
 
   private:
     bool find_row(Displacements& d, int y, Rows::Scratch& scratch, std::span<PixelCoord> back) {
@@ -208,7 +210,7 @@ class Inverse {
 
     const PixelMap& map_;
     Rows rows_;
-    Mask inside_;
+    Displacements found_;
 };
 
 }  // namespace
@@ -250,9 +252,9 @@ std::optional<Displacements> displacements_of(const BaseMesh& mesh, const PixelM
     try {
         Inverse inverse(mesh, map);
         for (const int steps : {8, 16, 32})
-            if (std::optional<Displacements> found = inverse.on_grid(steps)) return found;
-    } catch (const Error&) {
-        // The mesh is one that locate_map() refuses.
+            if (inverse.find(steps)) return std::move(inverse).found();
+    } catch (const Error& e) {
+        if (e.kind() != ErrorKind::kUnsupported) throw;  // else a mesh that locate_map() refuses
     }
     return std::nullopt;
 }
