@@ -224,6 +224,19 @@ TEST_CASE("locate_map: faces as large as an image may be") {
     check_located(mesh, d, WeightPrecision::kFloat);
 }
 
+// The outermost bins hold all that is beyond the image, and faces are larger than bins.
+TEST_CASE("locate_map: positions beyond the image") {
+    const BaseMesh mesh = test::jittered_grid(-50, -40, 90, 70, 12, 12, 1);
+    Displacements d = random_displacements(40, 30, 16, 0, 1);
+    std::mt19937 random(1);
+    for (std::size_t i = 0; i < d.pixel_count(); ++i) {
+        d.dx[i] = static_cast<std::int16_t>(static_cast<int>(random() % 1600) - 800);
+        d.dy[i] = static_cast<std::int16_t>(static_cast<int>(random() % 1280) - 640);
+    }
+    const PixelMap map = check_located(mesh, d, WeightPrecision::kFloat);
+    CHECK(displacements_of(mesh, map) == d);
+}
+
 // Strips one pixel wide, pinches, holes, islands: pixels at rest are often on the boundary, and two vertices
 // at one place.
 TEST_CASE("locate_map: masked images") {
