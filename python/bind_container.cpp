@@ -4,6 +4,7 @@
 #include "formats/container/container.h"
 #include "formats/export/mesh_arrays.h"
 #include "libcore/base/error.h"
+#include "libcore/mesh/outer_edge.h"
 #include "python/bind.h"
 #include "python/image_value.h"
 #include "python/mesh_value.h"
@@ -147,15 +148,22 @@ MeshPointer read(const py::object& path, const std::optional<int>& threads) {
 }
 
 py::dict write(const MeshValue& mesh, const py::object& path, const std::optional<std::string>& draco,
-               bool overwrite, const std::optional<int>& threads) {
+               bool no_map, bool overwrite, const std::optional<int>& threads) {
     ContainerOptions options;
-    options.draco = word_value("draco", draco, draco_choices()).value_or(mesh.container.facts.draco);
+    options.draco = word_value("draco", draco, draco_choices())
+                        .value_or(no_map ? DracoMode::kOff : mesh.container.facts.draco);
+    options.layers = !no_map;
     options.overwrite = overwrite;
     options.metadata = mesh.container.metadata;
     options.texture = mesh.container.texture;
     const std::string name = path_text(path);
-    const WrittenContainer written =
-        without_gil(threads, [&] { return write_container(name, mesh.mesh_image(), options); });
+    const WrittenContainer written = without_gil(threads, [&] {
+        if (!no_map || !options.texture.picture.empty())
+            return write_container(name, mesh.mesh_image(), options);
+        MeshImage plain = mesh.mesh_image();
+        cover_whole_pixels(plain);
+        return write_container(name, plain, options);
+    });
     return py::dict(py::arg("files") = file_names(written.files), py::arg("mesh_bytes") = written.mesh_bytes,
                     py::arg("layer_bytes") = written.layer_bytes);
 }
@@ -176,13 +184,15 @@ Reads a container (.glb, .gltf) and checks all of it.
 Raises FileError if a file cannot be read, BadFileError for a file that is no sound container, UnsupportedError
 for one of a newer version.)";
 
-constexpr char kWrite[] = R"(write(path, *, draco=None, overwrite=True, threads=None) -> dict
+constexpr char kWrite[] = R"(write(path, *, draco=None, no_map=False, overwrite=True, threads=None) -> dict
 
 Writes the container and returns its files, mesh_bytes and layer_bytes, as facts of a mesh that is read has them; the name's extension (.glb, .gltf) decides the kind. The bytes are those that imgmesh-build
 writes with the same parameters. Draco chooses an order of vertices and faces of its own, so that numbers of
 vertices and faces change unless draco is 'none'.
 
-draco   edgebreaker, sequential or none; None: as the mesh was read, or edgebreaker
+draco   edgebreaker, sequential or none; None: as the mesh was read, or edgebreaker; with no_map none
+no_map  write the meshes alone, without pixel maps: a plain glTF asset for engines that imgmesh cannot read,
+        as imgmesh-convert --no-map does
 
 Raises ArgumentError for another extension, FileError if a file cannot be written, or exists and overwrite is
 False.)";
@@ -276,7 +286,7 @@ void bind_container(py::module_& module) {
         .def_property_readonly("facts", facts,
                                "The files of the container and their bytes. None for a mesh that was built.")
         .def("write", write, py::arg("path"), py::kw_only(), py::arg("draco") = py::none(),
-             py::arg("overwrite") = true, py::arg("threads") = py::none(), kWrite)
+             py::arg("no_map") = false, py::arg("overwrite") = true, py::arg("threads") = py::none(), kWrite)
         .def("__repr__", [](const MeshValue& m) {
             const Level& finest = m.mesh_image().levels.front();
             return cat("<imgmesh.Mesh of ", m.mesh_image().source.width, "x", m.mesh_image().source.height,

@@ -150,7 +150,13 @@ class Mesh(_Arrays):
     @property
     def facts(self) -> _Facts | None: ...
     def write(
-        self, path: _Path, *, draco: _Draco | None = None, overwrite: bool = True, threads: int | None = None
+        self,
+        path: _Path,
+        *,
+        draco: _Draco | None = None,
+        no_map: bool = False,
+        overwrite: bool = True,
+        threads: int | None = None,
     ) -> _Written: ...
     def reconstruct(
         self,

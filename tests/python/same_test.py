@@ -98,6 +98,18 @@ class Same(CliCase):
             mesh.write(self.folder / name, draco=option)
             self.assertEqual({p.name: p.read_bytes() for p in self.folder.glob(f"{name[0]}*")}, tool)
 
+    def test_lean_and_plain_meshes(self):
+        self.check(self.png(self.color), self.color, ("--mesh-precision", "compact", "--color-levels", "90"),
+                   mesh_precision="compact", color_levels=90)
+        self.check(self.png(self.color), self.color, ("--position-step", "1/4"), position_step="1/4")
+        for options, parameters in (((), {}), (("--draco", "edgebreaker"), {"draco": "edgebreaker"})):
+            self.run_ok("imgmesh-convert", "tool.glb", "-o", "plain.glb", "--no-map", "-q", "--overwrite", *options)
+            mesh = imgmesh.read(self.folder / "tool.glb")
+            self.assertEqual(self.write(mesh, "python.glb", no_map=True, **parameters),
+                             (self.folder / "plain.glb").read_bytes())
+        with self.assertRaisesRegex(imgmesh.BadFileError, "imgmesh-build without no-map"):
+            imgmesh.read(self.folder / "plain.glb")
+
     def test_a_container_that_is_read_and_written(self):
         self.png(self.soft)
         self.run_ok("imgmesh-build", "in.png", "-o", "a.glb", "-q", "--texture", "--draco", "none")
