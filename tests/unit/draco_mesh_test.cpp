@@ -26,8 +26,9 @@ TEST_CASE("draco: sequential returns the same mesh, edgebreaker the same faces, 
     std::mt19937 random(1);
     const std::array<std::array<int, 4>, 6> sizes = {
         {{1, 1, 1, 1}, {1, 40, 1, 9}, {30, 1, 7, 1}, {9, 7, 4, 3}, {200, 100, 60, 40}, {131000, 3, 2000, 1}}};
-    for (const auto [width, height, cells_x, cells_y] : sizes) {
-        INFO(width << "x" << height);
+    for (const auto& size : sizes) {
+        INFO(size[0] << "x" << size[1]);
+        const auto [width, height, cells_x, cells_y] = size;
         const StoredMesh mesh = stored_from_base(random_mesh(width, height, cells_x, cells_y, random));
         const auto decode = [&](DracoMode mode) {
             const auto bytes = encode_draco_mesh(mesh, mode).bytes;

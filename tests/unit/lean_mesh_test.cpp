@@ -76,11 +76,13 @@ TEST_CASE("colour levels: a rounded colour is one that a container keeps, bit fo
 
 TEST_CASE("rounded positions: faces keep their sides, the mesh its rectangle, vertices stay near") {
     std::mt19937 random(4);
-    for (const auto& [width, height, cells_x, cells_y] :
-         std::vector<std::array<int, 4>>{{60, 40, 8, 6}, {60, 40, 25, 18}, {1, 30, 1, 7}, {2, 2, 1, 1}})
+    struct Case {
+        int width, height, cells_x, cells_y;
+    };
+    for (const Case& c : {Case{60, 40, 8, 6}, {60, 40, 25, 18}, {1, 30, 1, 7}, {2, 2, 1, 1}})
         for (const float step : {1.0f / 16, 0.25f, 0.5f, 1.0f}) {
-            INFO(width << "x" << height << " step " << step);
-            const BaseMesh mesh = random_mesh(width, height, cells_x, cells_y, random);
+            INFO(c.width << "x" << c.height << " step " << step);
+            const BaseMesh mesh = random_mesh(c.width, c.height, c.cells_x, c.cells_y, random);
             BaseMesh rounded = mesh;
             const std::size_t fine = round_positions(rounded, step);
             std::size_t off = 0;
