@@ -6,6 +6,7 @@
 #include "libcore/image/feature_space.h"
 #include "libcore/mesh/outer_edge.h"
 #include "libcore/pipeline/build_source.h"
+#include "libcore/pipeline/lean_mesh.h"
 #include "libcore/pipeline/targets.h"
 #include "python/bind.h"
 #include "python/build_arguments.h"
@@ -152,6 +153,10 @@ MeshPointer build(const py::object& source, const py::kwargs& given) {
         if (!clipped.empty()) add_warning(clipped);
         if (r.texture) {
             extend_to_outer_edge(result.mesh_image);
+            if (forget_position_steps(result.report))
+                add_warning(
+                    "texture stretches the mesh to the pixels' outer edge, which leaves positions on "
+                    "1/32 pixel");
             texture.coords = texture_coords(result.mesh_image);
         }
         mesh->container.mesh_image = std::move(result.mesh_image);

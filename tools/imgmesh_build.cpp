@@ -7,6 +7,7 @@
 #include "libcore/base/stopwatch.h"
 #include "libcore/mesh/outer_edge.h"
 #include "libcore/pipeline/build_source.h"
+#include "libcore/pipeline/lean_mesh.h"
 #include "libcore/pipeline/targets.h"
 #include "tools/build_memory.h"
 #include "tools/build_options.h"
@@ -117,8 +118,13 @@ Report build_one(const BuildOptions& given, Context& context) {
     stage.lap();
     if (o.no_map)
         cover_whole_pixels(result.mesh_image);
-    else if (o.texture.wanted)
+    else if (o.texture.wanted) {
         extend_to_outer_edge(result.mesh_image);
+        if (forget_position_steps(result.report))
+            add_warning(
+                "--texture stretches the mesh to the pixels' outer edge, which leaves positions on 1/32 "
+                "pixel");
+    }
     if (o.texture.wanted) container.texture.coords = texture_coords(result.mesh_image);
     const WrittenContainer files = write_container(o.output, result.mesh_image, container);
     const double write_seconds = stage.lap();

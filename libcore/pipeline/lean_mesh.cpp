@@ -79,6 +79,16 @@ int round_colors(const BuildParams& params, BaseMesh& mesh, const FeatureImage& 
     return count;
 }
 
+bool forget_position_steps(BuildReport& report) {
+    bool any = false;
+    for (LevelReport& level : report.levels) {
+        any |= level.position_step > double{kPositionStep};
+        level.position_step = double{kPositionStep};
+        level.fine_vertices = 0;
+    }
+    return any;
+}
+
 void make_compact(MeshImage& mesh_image, bool keep_positions) {
     const ColorLevels levels(kCompactLevels);
     const SourceInfo& source = mesh_image.source;

@@ -8,6 +8,7 @@
 #include "libcore/mesh/base_mesh.h"
 #include "libcore/mesh/mesh_image.h"
 #include "libcore/mesh/pixel_map.h"
+#include "libcore/pipeline/build.h"
 #include "libcore/pipeline/build_params.h"
 
 namespace imgmesh {
@@ -31,6 +32,10 @@ double compact_step(std::int64_t pixels, std::size_t vertices);
 int round_colors(const BuildParams& params, BaseMesh& mesh, const FeatureImage& feature,
                  const FeatureSpace& space, const PixelMap& map, const PixelMap& trivial,
                  double gouraud_share, bool keep_colors);
+
+/// Says in the report that positions lie on kPositionStep alone, after they have been moved. Returns whether
+/// some were on a coarser step.
+bool forget_position_steps(BuildReport& report);
 
 /// Makes the meshes of a finished mesh image compact: colours, unless HDR, get kCompactLevels, and positions
 /// lie on compact_step(). With `keep_positions` they stay, as a pixel map needs whose pixels would move

@@ -106,6 +106,13 @@ class Lean(CliCase):
             self.assertEqual(result.returncode, 4)
             self.assertIn("imgmesh-build without no-map", result.stdout)
 
+    def test_a_texture_leaves_positions_fine(self):
+        result = self.run_tool("imgmesh-build", "p.png", "-o", "c.glb", "--texture", "--mesh-precision", "compact", "--json")
+        self.assertIn("1/32", result.stderr)
+        report = json.loads(result.stdout)["images"][0]
+        self.assertNotIn("position_step", report)
+        self.assertIn("color_levels", report)
+
     def test_wrong_use(self):
         for options, words in ((["--mesh-precision", "compact", "--map", "tracked"], ("--mesh-precision", "--map")),
                                (["--position-step", "1/4", "--map", "tracked"], ("--position-step", "--map")),
