@@ -4,75 +4,87 @@
 #include <cstring>
 #include <utility>
 
-#include "formats/compact/band_pixel.h"
+#include "formats/compact/known_chunk.h"
 #include "libcore/base/index.h"
 
 namespace imgmesh::compact {
 namespace {
 
-// The contexts of a component by place_of().
-constexpr auto kContextOf = [] {
-    std::array<std::uint8_t, kClasses * kEnergies> contexts{};
-    for (int place = 0; place < kClasses * kEnergies; ++place)
-        contexts[static_cast<std::size_t>(place)] =
-            static_cast<std::uint8_t>(place / kEnergies * kLevels + level_of(place % kEnergies));
-    return contexts;
-}();
-
-// Tells the numbers of known values, and writes down their tokens.
-template <bool kMasked>
-struct TokenSource {
-    BandTokens& band;
-    const std::int16_t* values[2];
+// Gives pixels outside the values that the decoder will give them. The numbers of residuals are no matter.
+struct OutsideSource {
+    const Chunk& chunk;
     const std::uint8_t* inside;
-    BandTokens::Token* out;
-    std::uint32_t* counts;  // [component][class][level][token]
 
     template <int kComponent>
-    IMGMESH_INLINE int code(int predicted, int energy, int x, std::int16_t& value) {
-        if (kMasked && !inside[x]) {
-            value = value_of(predicted, 0);
-            return 0;
-        }
-        value = values[kComponent][x];
-        const auto residual = static_cast<std::int16_t>(value - whole_of(predicted));
-        const int number = number_of(turned(residual, has_negative_rest(predicted))),
-                  context = kContextOf.data()[place_of(predicted, energy)];
-        int token = number;
-        if (number >= kPlainTokens) [[unlikely]] {
-            std::size_t range = kTokenFirst.size() - 1;
-            while (kTokenFirst[range] > number) --range;
-            band.bits.push_back(static_cast<std::uint16_t>(number - kTokenFirst[range]));
-            token = kPlainTokens + static_cast<int>(range);
-        }
-        ++counts[((kComponent * kClasses * kLevels) + context) * kTokens + token];
-        *out++ = {static_cast<std::uint8_t>(context), static_cast<std::uint8_t>(token)};
-        return number;
+    IMGMESH_INLINE int code(int predicted, int, int i, std::int16_t& value) {
+        value = inside[i] ? chunk.value.data()[kComponent].data()[i] : value_of(predicted, 0);
+        return 0;
     }
 };
 
-template <bool kMasked>
+// The first number of each token's range, 0 for plain tokens.
+constexpr auto kFirstOf = [] {
+    std::array<std::uint16_t, kTokens> first{};
+    for (std::size_t k = 0; k < kTokenFirst.size(); ++k)
+        first[kPlainTokens + k] = static_cast<std::uint16_t>(kTokenFirst[k]);
+    return first;
+}();
+
+// Writes down what pixels are coded as.
+struct TokenWriter {
+    BandTokens& band;
+    std::uint16_t* out;
+    std::uint32_t* counts;  // [component][class][level][token]
+
+    // `inside` may be null.
+    void put(const ChunkTokens& chunk, int count, const std::uint8_t* inside) {
+        std::uint16_t bits[2 * Chunk::kPixels + 1], *next = bits;
+        const auto put_one = [&](std::size_t k, int i) {
+            const std::uint16_t token = chunk.tokens.data()[k].data()[i];
+            ++counts[k * (kClasses * kLevels * kTokens) + token];
+            *out++ = token;
+            // Without a branch, for nobody can predict it.
+            *next = static_cast<std::uint16_t>(chunk.numbers.data()[k].data()[i] -
+                                               kFirstOf.data()[token % kTokens]);
+            next += token % kTokens >= kPlainTokens;
+        };
+        for (int i = 0; i < count; ++i) {
+            if (inside && !inside[i]) continue;
+            put_one(0, i);
+            put_one(1, i);
+        }
+        band.bits.insert(band.bits.end(), bits, next);
+    }
+};
+
 void fill_tokens(const Band& in, const std::array<Taps, 2>& taps, BandTokens& band) {
     BandRows rows(in.width, taps);
-    TokenSource<kMasked> source{
-        band, {in.dx.data(), in.dy.data()}, in.inside.data(), band.tokens.data(), &band.counts[0][0][0][0]};
+    ChunkTokens found;
+    TokenWriter writer{band, band.tokens.data(), &band.counts[0][0][0][0]};
+    std::size_t first = 0;
     for (int y = 0; y < in.rows; ++y) {
         rows.next_row();
         Lane lane(rows, taps);
         for (int x = 0; x < in.width; x += Chunk::kPixels) {
             const int count = std::min(Chunk::kPixels, in.width - x);
             rows.begin_chunk(x, count);
-            TokenSource<kMasked> copy = source;  // which the loop's stores cannot change
-            Lane lane_copy = lane;
-            for (int i = 0; i < count; ++i) code_pixel(lane_copy, i, copy);
-            lane = lane_copy;
-            source.out = copy.out;
+            std::copy_n(in.dx.data() + first, count, rows.chunk.value[0].data());
+            std::copy_n(in.dy.data() + first, count, rows.chunk.value[1].data());
+            const std::uint8_t* inside = nullptr;
+            if (!in.inside.empty() &&
+                std::count(in.inside.data() + first, in.inside.data() + first + count, 0)) {
+                inside = in.inside.data() + first;
+                Lane copy = lane;
+                OutsideSource source{rows.chunk, inside};
+                for (int i = 0; i < count; ++i) code_pixel(copy, i, source);
+            }
+            find_tokens(lane, count, found);
+            writer.put(found, count, inside);
             rows.end_chunk(x, count);
-            for (const std::int16_t*& values : source.values) values += count;
-            if (kMasked) source.inside += count;
+            first += as_index(count);
         }
     }
-    band.tokens.resize(static_cast<std::size_t>(source.out - band.tokens.data()));
+    band.tokens.resize(static_cast<std::size_t>(writer.out - band.tokens.data()));
 }
 
 // For each frequency the number by which division is multiplication (Encoder::put).
@@ -114,10 +126,7 @@ struct Encoder {
 BandTokens band_tokens(const Band& in, const std::array<Taps, 2>& taps) {
     BandTokens band;
     band.tokens.resize(2 * in.dx.size());
-    if (in.inside.empty())
-        fill_tokens<false>(in, taps, band);
-    else
-        fill_tokens<true>(in, taps, band);
+    fill_tokens(in, taps, band);
     return band;
 }
 
@@ -134,14 +143,13 @@ void put_band(std::vector<std::uint8_t>& out, const BandTokens& band, const Band
     std::uint16_t* at = words.data() + words.size();
     Encoder x, y;
     const std::uint16_t* bits = band.bits.data() + band.bits.size();
-    const auto put = [&](Encoder& encoder, BandTokens::Token token, const Slots* of) {
-        if (token.token >= kPlainTokens) [[unlikely]]
-            encoder.put_bits(*--bits, kTokenBits[as_index(token.token - kPlainTokens)], at);
-        encoder.put(of[token.context * kTokens + token.token], at);
+    const auto put = [&](Encoder& encoder, std::uint16_t token, const Slots* of) {
+        if (token % kTokens >= kPlainTokens) [[unlikely]]
+            encoder.put_bits(*--bits, kTokenBits[as_index(token % kTokens - kPlainTokens)], at);
+        encoder.put(of[token], at);
     };
     const Slots *slots_x = slots.data(), *slots_y = slots_x + slots.size() / 2;
-    for (const BandTokens::Token* token = band.tokens.data() + band.tokens.size();
-         token != band.tokens.data();) {
+    for (const std::uint16_t* token = band.tokens.data() + band.tokens.size(); token != band.tokens.data();) {
         token -= 2;
         put(y, token[1], slots_y);
         put(x, token[0], slots_x);

@@ -19,12 +19,8 @@ struct Band {
 
 /// A band as tokens, in the order of decoding: of each pixel inside that of dx, then that of dy.
 struct BandTokens {
-    struct Token {
-        std::uint8_t context;  ///< class * kLevels + level
-        std::uint8_t token;
-    };
-    std::vector<Token> tokens;
-    std::vector<std::uint16_t> bits;  ///< those that follow the tokens from kPlainTokens on
+    std::vector<std::uint16_t> tokens;  ///< context * kTokens + token
+    std::vector<std::uint16_t> bits;    ///< those that follow the tokens from kPlainTokens on
     TokenCounts counts{};
 };
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "libcore/base/index.h"
+#include "libcore/base/simd.h"
 
 namespace imgmesh::compact {
 namespace {
@@ -33,6 +34,52 @@ std::array<double, kTaps> solve(System& m) {
     return solution;
 }
 
+using Double4 = double __attribute__((vector_size(32)));
+IMGMESH_INLINE Double4 load4(const double* from) {
+    Double4 v;
+    __builtin_memcpy(&v, from, sizeof v);
+    return v;
+}
+IMGMESH_INLINE void store4(double* to, Double4 v) {
+    __builtin_memcpy(to, &v, sizeof v);
+}
+
+// Adds the squares of the rows, weighted. A row of the system is summed over all of the sample while it is in
+// registers.
+IMGMESH_INLINE void add_squares(const std::vector<Row>& sample, const std::vector<double>& weight,
+                                System& m) {
+    static_assert(sizeof(Row) == 3 * sizeof(Double4));
+    for (std::size_t i = 0; i < kTaps; ++i) {
+        double* to = m.data()[i].data();
+        Double4 a = load4(to), b = load4(to + 4), c = load4(to + 8);
+        for (std::size_t s = 0; s < sample.size(); ++s) {
+            const double* row = sample.data()[s].data();
+            const double weighted = weight.data()[s] * row[i];
+            a += weighted * load4(row);
+            b += weighted * load4(row + 4);
+            c += weighted * load4(row + 8);
+        }
+        store4(to, a);
+        store4(to + 4, b);
+        store4(to + 8, c);
+    }
+}
+
+#if defined(__x86_64__)
+__attribute__((target("avx2"))) void add_squares_avx2(const std::vector<Row>& sample,
+                                                      const std::vector<double>& weight, System& m) {
+    add_squares(sample, weight, m);
+}
+const bool kAvx2 = has_avx2();
+#endif
+
+void add_weighted(const std::vector<Row>& sample, const std::vector<double>& weight, System& m) {
+#if defined(__x86_64__)
+    if (kAvx2) return add_squares_avx2(sample, weight, m);
+#endif
+    add_squares(sample, weight, m);
+}
+
 }  // namespace
 
 Taps fit_taps(std::span<const std::int16_t> values, int width, int height) {
@@ -44,6 +91,7 @@ Taps fit_taps(std::span<const std::int16_t> values, int width, int height) {
     // An odd step, so that the sample is not some columns only.
     const std::size_t step = (values.size() / kSample) | 1;
     std::vector<Row> sample;
+    sample.reserve(values.size() / step + 1);
     for (std::size_t i = 2 * as_index(width); i < values.size(); i += step) {
         const std::size_t x = i % as_index(width);
         if (x < 2 || x + 2 >= as_index(width)) continue;
@@ -53,6 +101,7 @@ Taps fit_taps(std::span<const std::int16_t> values, int width, int height) {
         sample.push_back(row);
     }
     if (sample.size() < kFewest) return kDefault;
+    std::vector<double> weight(sample.size());
     std::array<double, kTaps> taps{};
     for (std::size_t k = 0; k < kTaps; ++k) taps[k] = kDefault[k] / 256.0;
     for (int round = 0; round < kRounds; ++round) {
@@ -62,16 +111,12 @@ Taps fit_taps(std::span<const std::int16_t> values, int width, int height) {
             m[i][i] = 1;
             m[i][kTaps] = taps[i];
         }
-        for (const Row& row : sample) {
-            double residual = row[kTaps];
-            for (std::size_t k = 0; k < kTaps; ++k) residual -= taps[k] * row[k];
-            const double weight = 1 / (std::abs(residual) + 0.7);
-            for (std::size_t i = 0; i < kTaps; ++i) {
-                const double weighted = weight * row[i];
-                double* sums = m.data()[i].data();
-                for (std::size_t j = 0; j < row.size(); ++j) sums[j] += weighted * row.data()[j];
-            }
+        for (std::size_t s = 0; s < sample.size(); ++s) {
+            double residual = sample[s][kTaps];
+            for (std::size_t k = 0; k < kTaps; ++k) residual -= taps[k] * sample.data()[s].data()[k];
+            weight[s] = 1 / (std::abs(residual) + 0.7);
         }
+        add_weighted(sample, weight, m);
         taps = solve(m);
     }
     Taps rounded{};

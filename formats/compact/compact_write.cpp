@@ -37,7 +37,10 @@ void check_part(const CompactView& part) {
 int common_shift(const Displacements& map) {
     unsigned bits = 0;
     for (const std::vector<std::int16_t>* d : {&map.dx, &map.dy})
-        for (const std::int16_t value : *d) bits |= static_cast<unsigned>(value);
+        for (const std::int16_t value : *d) {
+            bits |= static_cast<unsigned>(value);
+            if ((bits & 1) != 0) return 0;
+        }
     int shift = 0;
     while ((map.steps >> shift) > kCoarsest && ((bits >> shift) & 1) == 0) ++shift;
     return shift;
