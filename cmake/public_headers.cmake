@@ -18,6 +18,7 @@ set(IMGMESH_PUBLIC_HEADERS
   libcore/mesh/base_mesh.h
   libcore/mesh/mesh_image.h
   libcore/mesh/outer_edge.h
+  libcore/mesh/displacements.h
   libcore/mesh/pixel_map.h
 
   libcore/simplify/metric.h
@@ -71,6 +72,7 @@ set(IMGMESH_PUBLIC_HEADERS
   formats/findings/limits.h
   formats/findings/place.h
   formats/gltf/draco_mode.h
+  formats/gltf/layer_layout.h
   formats/gltf/region_gltf.h
   formats/picture/image_io.h
   formats/picture/texture_file.h)

@@ -37,8 +37,13 @@ void check_contradictions(const CLI::App& app, const BuildParams& p) {
     if (map_kind(p) == MapKind::kTracked && rounds > 0)
         refuse(map, typed_rounds(app, rounds), "a tracked map follows the collapse alone");
     if (map_kind(p) == MapKind::kTracked && (p.position_step || p.mesh_precision == MeshPrecision::kCompact))
-        refuse(map, typed(app, {"--position-step", "--mesh-precision"}),
+        refuse(map, typed(app, {"--position-step", "--mesh-precision", "--preset"}),
                "a tracked map follows the collapse to where its vertices are");
+    if (map_kind(p) == MapKind::kTracked && given(app, "--map-step"))
+        refuse(map, "--map-step", "a tracked map puts pixels anywhere");
+    if (map_kind(p) != MapKind::kRelaxed && given(app, "--map-rate"))
+        refuse(typed(app, {"--map", "--projection-color-weight"}), "--map-rate",
+               "only the relaxed map weighs bits against colour");
     if (p.values && p.color_levels) refuse("--values", "--color-levels", "values have no colours");
     if (p.values && given(app, "--texture"))
         refuse("--values", "--texture", "values are no colours that a texture could show");
@@ -76,8 +81,8 @@ void check_no_map(const CLI::App& app, const BuildParams& p) {
     if (p.stop.rms) refuse(typed(app, {"--rms"}), map, "that error is the one through the pixel map");
     if (p.max_cluster)
         refuse(typed(app, {"--max-cluster"}), map, "the pixels of a face are those of the pixel map");
-    for (const char* option :
-         {"--map", "--projection-color-weight", "--map-smoothness", "--bary", "--visits"})
+    for (const char* option : {"--map", "--projection-color-weight", "--map-smoothness", "--map-step",
+                               "--map-rate", "--bary", "--visits"})
         if (given(app, option)) refuse(typed(app, {option}), map, "it is about the pixel map");
 }
 

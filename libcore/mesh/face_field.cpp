@@ -1,6 +1,7 @@
 #include "libcore/mesh/face_field.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "libcore/base/parallel.h"
 
@@ -21,6 +22,8 @@ std::vector<FaceField> face_fields(const BaseMesh& mesh) {
             FaceField& field = fields[i];
             const Vec2f &pa = mesh.position[a], ab = mesh.position[b] - pa, ac = mesh.position[c] - pa;
             const double det = double(ab.x()) * ac.y() - double(ab.y()) * ac.x();
+            field.longest =
+                std::sqrt(std::max({ab.squaredNorm(), ac.squaredNorm(), (ac - ab).squaredNorm()}));
             field.ax = pa.x();
             field.ay = pa.y();
             field.ux = static_cast<float>(ac.y() / det);

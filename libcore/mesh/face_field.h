@@ -14,6 +14,7 @@ struct alignas(64) FaceField {
     float ax, ay;              ///< corner a [pixels]
     float ux, uy, vx, vy;      ///< gradients of the weights [1 / pixel]
     float f[3], fx[3], fy[3];  ///< colour at a, and its gradient
+    float longest;             ///< side [pixels]
 
     float u(float x, float y) const { return ux * (x - ax) + uy * (y - ay); }
     float v(float x, float y) const { return vx * (x - ax) + vy * (y - ay); }

@@ -9,8 +9,8 @@
 #include "libcore/mesh/trivial_map.h"
 #include "libcore/mesh/weight_grid.h"
 #include "libcore/param/fit_colors.h"
-#include "libcore/param/quantize_map.h"
 #include "libcore/param/relax.h"
+#include "libcore/param/stored_map.h"
 
 namespace imgmesh {
 namespace {
@@ -30,15 +30,6 @@ void set_unrounded(const PixelEmbedding& pixels, const std::vector<FaceField>& f
                 map.at(x, y) = {face, fields[face].u(p.x(), p.y()), fields[face].v(p.x(), p.y())};
             }
     });
-}
-
-PixelMap stored(const BaseMesh& mesh, const PixelEmbedding& pixels, const std::vector<FaceField>& fields,
-                const std::vector<Face>& neighbors, std::optional<WeightPrecision> wanted) {
-    for (const WeightPrecision precision : {WeightPrecision::kHalf, WeightPrecision::kFloat})
-        if (!wanted || *wanted == precision)
-            if (auto map = quantize_map(mesh, pixels, fields, neighbors, precision)) return *std::move(map);
-    throw Error(ErrorKind::kUnsupported,
-                "weights of half precision are too coarse for faces this large, those of float are not");
 }
 
 void round_colors(BaseMesh& mesh, const FeatureSpace& space) {
@@ -92,17 +83,18 @@ PixelMap fit_map(BaseMesh& mesh, const FeatureImage& feature, const FitParams& p
     const int rounds = params.color_weight > 0 && feature.width > 1 && feature.height > 1 ? params.rounds : 0;
     PixelMap between;
     if (rounds > 1) between = PixelMap(pixels.width, pixels.height, parallel_copy(trivial.values));
+    const RelaxParams moves{static_cast<float>(1 / params.color_weight), params.steps,
+                            static_cast<float>(params.rate), params.sweeps};
     for (int round = 0; round < rounds; ++round) {
         if (progress) progress(double(round) / params.rounds, "map");
         const std::vector<FaceField> fields = face_fields(mesh);
-        relax(pixels, fields, neighbors, feature, static_cast<float>(1 / params.color_weight), params.sweeps,
-              auxiliary_fields(mesh, fields));
+        relax(pixels, mesh, fields, neighbors, feature, moves);
         if (round + 1 == rounds) break;
         set_unrounded(pixels, fields, between);
         colors.fit(between);
     }
     between = {};
-    PixelMap map = stored(mesh, pixels, face_fields(mesh), neighbors, params.bary);
+    PixelMap map = stored_map(mesh, displacements(pixels, params.steps), params.bary);
     colors.fit(map);
     colors.round();
     return map;

@@ -8,6 +8,7 @@
 #include "libcore/image/image.h"
 #include "libcore/image/mask.h"
 #include "libcore/mesh/base_mesh.h"
+#include "libcore/mesh/displacements.h"
 #include "libcore/mesh/pixel_map.h"
 
 namespace imgmesh {
@@ -15,10 +16,12 @@ namespace imgmesh {
 struct FitParams {
     double color_weight = 1.0 / 20;  ///< of colour against smoothness [px^2 / feature^2]; 0: the trivial map
     std::optional<WeightPrecision> bary;  ///< none: half where the map stays a bijection with it, else float
-    int rounds = 4;                       ///< of relaxation, colours refitted after each
-    int sweeps = 4;                       ///< of relaxation a round
-    FeatureSpace space;                   ///< of the image
-    bool keep_colors = false;             ///< keep the mesh's features, but for rounding
+    int steps = kUsualSteps;              ///< of the grid of positions in a pixel: 8, 16 or 32
+    double rate = 0;             ///< what a bit of a displacement costs [feature^2]: more makes a compact stream shorter; >= 0
+    int rounds = 4;              ///< of relaxation, colours refitted after each
+    int sweeps = 4;              ///< of relaxation a round
+    FeatureSpace space;          ///< of the image
+    bool keep_colors = false;    ///< keep the mesh's features, but for rounding
     double gouraud_share = 0.1;  ///< weight of the drawing without the map in the fit of colours, 0 to 1
 };
 

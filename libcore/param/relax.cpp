@@ -17,103 +17,42 @@
 #include "libcore/base/parallel_vector.h"
 #include "libcore/base/simd.h"
 #include "libcore/mesh/mask_fans.h"
+#include "libcore/param/relax_step.h"
 
 namespace imgmesh {
 namespace {
 
-// A step assumes that the mesh's colour is linear, which holds only inside one face, so a step is at most
-// half a pixel. Where it would fold the grid, shorter ones are tried.
-constexpr float kLongestStep = 0.5f;
+// Where a step would fold the grid, shorter ones are tried.
 constexpr int kHalvings = 2;
 
 // Rows of a block: enough work for the cost of a hand-over, few enough for all threads.
 constexpr int kSweptRows = 16;
 constexpr int kCopiedRows = 64;
 
-// A pixel that slides along a boundary lies on an edge of a face, up to the rounding of its weights.
-constexpr float kWeightSlack = 1e-4f;
+// Rounding to half weights moves a pixel by up to 2/3 of a side / 2048, and changes the areas of triangles of
+// usual shape by four times that [px^2 / px]. Above half of the area at rest too little could move.
+constexpr float kAreaPerSide = 8.0f / 3 / 2048, kMostLeastArea = 0.5f;
+
+// Displacements up to here [pixels], so that distances between neighbours stay below 2^11 steps: products of
+// two of them are then exact in floats, and so is every test of an area. Colours move pixels by a few pixels.
+constexpr float kFarthest = 31;
 
 // The eight pixels around one, from the east over the south. Even indices are straight neighbours.
 constexpr int kStepX[8] = {1, 1, 0, -1, -1, -1, 0, 1};
 constexpr int kStepY[8] = {0, 1, 1, 1, 0, -1, -1, -1};
 
-// The formulas below take one pixel (T = float) or eight (T = Float8).
-
-// Twice the area of the triangle p, a, b, positive in the grid's own orientation.
-template <typename T>
-IMGMESH_INLINE T area2(T px, T py, T ax, T ay, T bx, T by) {
-    return (ax - px) * (by - py) - (ay - py) * (bx - px);
-}
-
-// The lesser of two; `a` if b is NaN.
-template <typename T>
-IMGMESH_INLINE T lesser(T a, T b) {
-    return b < a ? b : a;
-}
-// `low` if x is NaN.
-template <typename T>
-IMGMESH_INLINE T clamped(T x, float low, float high) {
-    const T floor = T{} + low, ceiling = T{} + high;
-    x = x > floor ? x : floor;
-    return x < ceiling ? x : ceiling;
-}
-
-// The Gauss-Newton step at (px, py): it makes the face's features there the pixel's, and pulls towards (tx,
-// ty).
-template <typename T>
-struct NewtonStep {
-    float mu;
-    T gxx = {}, gxy = {}, gyy = {}, bx, by;
-
-    IMGMESH_INLINE NewtonStep(T px, T py, T tx, T ty, float smoothness)
-        : mu(smoothness), bx(mu * (tx - px)), by(mu * (ty - py)) {}
-
-    // Adds a feature with gradient (gx, gy) of which the face has e too much.
-    IMGMESH_INLINE void add(T gx, T gy, T e) {
-        gxx += gx * gx;
-        gxy += gx * gy;
-        gyy += gy * gy;
-        bx -= gx * e;
-        by -= gy * e;
-    }
-    // Adds the first features: f, fx and fy are those of a FaceField, (dx, dy) counts from its corner a.
-    IMGMESH_INLINE void add_features(const T* f, const T* fx, const T* fy, const T* color, int features, T dx,
-                                     T dy) {
-        for (int c = 0; c < features; ++c) add(fx[c], fy[c], f[c] + fx[c] * dx + fy[c] * dy - color[c]);
-    }
-    IMGMESH_INLINE void solve(T& sx, T& sy) const {
-        // Sums of terms that are never negative. (In J'J + mu I as one matrix, with J'J steep and singular,
-        // only rounding would be left.)
-        T minor = gxx * gyy - gxy * gxy;
-        minor = minor > T{} ? minor : T{};
-        const T inverse = 1 / (mu * (mu + gxx + gyy) + minor);
-        sx = clamped(((gyy + mu) * bx - gxy * by) * inverse, -kLongestStep, kLongestStep);
-        sy = clamped(((gxx + mu) * by - gxy * bx) * inverse, -kLongestStep, kLongestStep);
-    }
-};
-
-// Returns the least of the twelve triangles at (x, y) with other corners among the eight neighbours.
-template <typename T>
-IMGMESH_INLINE T least_area(T x, T y, const T* nx, const T* ny) {
-    T least = T{} + std::numeric_limits<float>::max();
-    for (int k = 0; k < 8; ++k)
-        least = lesser(least, area2(x, y, nx[k], ny[k], nx[(k + 1) % 8], ny[(k + 1) % 8]));
-    for (int k = 0; k < 8; k += 2)
-        least = lesser(least, area2(x, y, nx[k], ny[k], nx[(k + 2) % 8], ny[(k + 2) % 8]));
-    return least;
-}
-
 // Eight FaceFields side by side.
 struct EightFields {
     Float8 ax, ay, ux, uy, vx, vy;
     Float8 f[3], fx[3], fy[3];
+    Float8 longest;
 
-    // Each is read as a whole; its last four bytes are no member and are ignored.
+    // Each is read as a whole.
     IMGMESH_INLINE explicit EightFields(const FaceField* const (&fields)[8]) {
         static_assert(sizeof(FaceField) == 2 * sizeof(Float8) && offsetof(FaceField, ay) == 4 &&
                       offsetof(FaceField, ux) == 8 && offsetof(FaceField, vy) == 20 &&
                       offsetof(FaceField, f) == 24 && offsetof(FaceField, fx) == 36 &&
-                      offsetof(FaceField, fy) == 48);
+                      offsetof(FaceField, fy) == 48 && offsetof(FaceField, longest) == 60);
         Float8 front[8], back[8];
         for (int l = 0; l < 8; ++l) {
             const auto* bytes = reinterpret_cast<const std::byte*>(fields[l]);
@@ -128,28 +67,45 @@ struct EightFields {
             fx[c] = back[1 + c];
             fy[c] = back[4 + c];
         }
+        longest = back[7];
     }
 };
 
 struct Sweep {
     PixelEmbedding& pixels;
+    const BaseMesh& mesh;
     const std::vector<FaceField>& fields;
     const std::vector<Face>& neighbors;
     const FeatureImage& feature;
-    float mu;
     const AuxiliaryFields& auxiliary;
+    float mu, rate, steps, least;
+
+    // The least area of triangles around a pixel of a face: the larger the face, the more weights of half
+    // precision change areas.
+    template <typename T>
+    IMGMESH_INLINE T least_in(T longest_side) const {
+        return clamped(longest_side * kAreaPerSide, least, kMostLeastArea);
+    }
+
+    // The nearest displacement on the grid.
+    template <typename T>
+    IMGMESH_INLINE T on_grid(T displacement) const {
+        return clamped(rounded(displacement * steps) / steps, -kFarthest, kFarthest);
+    }
 
     void move_pixel(int x, int y) const {
         const int w = pixels.width, h = pixels.height;
         const std::size_t index = pixels.index(x, y);
         if (pixels.outside(index)) return;
         // Pixels that do not exist, or are outside, are NaN, which is never the lesser.
-        float nx[8], ny[8], mean_x = 0, mean_y = 0, count = 0;
+        float ndx[8], ndy[8], nx[8], ny[8], mean_x = 0, mean_y = 0, count = 0;
         for (int k = 0; k < 8; ++k) {
             const int i = x + kStepX[k], j = y + kStepY[k];
             const bool inside = pixels.contains(i, j);
-            const float dx = inside ? pixels.dx[pixels.index(i, j)] : std::numeric_limits<float>::quiet_NaN();
-            const float dy = inside ? pixels.dy[pixels.index(i, j)] : std::numeric_limits<float>::quiet_NaN();
+            const float dx = ndx[k] =
+                inside ? pixels.dx[pixels.index(i, j)] : std::numeric_limits<float>::quiet_NaN();
+            const float dy = ndy[k] =
+                inside ? pixels.dy[pixels.index(i, j)] : std::numeric_limits<float>::quiet_NaN();
             nx[k] = static_cast<float>(i) + dx;
             ny[k] = static_cast<float>(j) + dy;
             if (k % 2 != 0 || std::isnan(dx)) continue;
@@ -170,16 +126,29 @@ struct Sweep {
         for (std::size_t c = 0; c < auxiliary.features; ++c, f += 3)
             step.add_features(f, f + 1, f + 2, color + 3 + c, 1, from_ax, from_ay);
         step.solve(sx, sy);
+        const float own_x = pixels.dx[index], own_y = pixels.dy[index];
+        if (rate > 0 && pixels.is_free(x, y)) make_cheap(step, own_x, own_y, ndx, ndy, sx, sy);
         if (pixels.pinned_x(x, y)) sx = 0;
         if (pixels.pinned_y(x, y)) sy = 0;
         for (int half = 0; half <= kHalvings; ++half, sx *= 0.5f, sy *= 0.5f) {
-            const float qx = clamped(px + sx, 0, static_cast<float>(w - 1));
-            const float qy = clamped(py + sy, 0, static_cast<float>(h - 1));
-            if (!(least_area(qx, qy, nx, ny) >= kLeastMovingArea)) continue;
+            const float qx = clamped(rest_x + on_grid(own_x + sx), 0, static_cast<float>(w - 1));
+            const float qy = clamped(rest_y + on_grid(own_y + sy), 0, static_cast<float>(h - 1));
+            if (!(least_area(qx, qy, nx, ny) >= least_in(field.longest))) continue;
             const Id face = locate_face({qx, qy}, pixels.face[index], fields, neighbors);
-            if (may_lie_in(face, qx, qy)) place(index, qx - rest_x, qy - rest_y, face);
+            if (may_lie_in(face, {qx, qy})) place(index, qx - rest_x, qy - rest_y, face);
             return;
         }
+    }
+
+    // Changes the step (sx, sy) to the best place into one to the cheapest.
+    template <typename T>
+    IMGMESH_INLINE void make_cheap(const NewtonStep<T>& step, T own_x, T own_y, const T* ndx, const T* ndy,
+                                   T& sx, T& sy) const {
+        T x = (own_x + sx) * steps, y = (own_y + sy) * steps;
+        take_cheapest(step, AroundPixel<T>(own_x, ndx, steps), AroundPixel<T>(own_y, ndy, steps), steps, rate,
+                      x, y);
+        sx = x / steps - own_x;
+        sy = y / steps - own_y;
     }
 
     void place(std::size_t index, float dx, float dy, Id face) const {
@@ -188,11 +157,12 @@ struct Sweep {
         pixels.face[index] = face;
     }
 
-    // Whether locating (x, y) ended there and not at a boundary in between. A rectangle has none between.
-    bool may_lie_in(Id face, float x, float y) const {
+    // Whether locating p ended there and not at a boundary in between. A rectangle has none between.
+    bool may_lie_in(Id face, const Vec2f& p) const {
         if (pixels.freedom.empty()) return true;
-        const float u = fields[face].u(x, y), v = fields[face].v(x, y);
-        return std::min({u, v, 1 - u - v}) >= -kWeightSlack;
+        const Vec2f &a = mesh.position[mesh.faces[face][0]], &b = mesh.position[mesh.faces[face][1]],
+                    &c = mesh.position[mesh.faces[face][2]];
+        return std::min({signed_area2(a, b, p), signed_area2(b, c, p), signed_area2(c, a, p)}) >= 0;
     }
 
     // Does what move_pixel() does for (x, y), (x + 2, y), ... (x + 14, y), none of them on a side or a
@@ -209,29 +179,32 @@ struct Sweep {
         const Float8 color[3] = {load8(colors[0]), load8(colors[1]), load8(colors[2])};
         const Float8 rest_x = static_cast<float>(x) + Float8{0, 2, 4, 6, 8, 10, 12, 14};
         const float rest_y = static_cast<float>(y);
-        Float8 nx[8], ny[8], mean_x = {}, mean_y = {};
+        Float8 ndx[8], ndy[8], nx[8], ny[8], mean_x = {}, mean_y = {};
         for (int k = 0; k < 8; ++k) {
             const std::size_t n = pixels.index(x + kStepX[k], y + kStepY[k]);
-            const Float8 dx = load8_every_other(&pixels.dx[n]), dy = load8_every_other(&pixels.dy[n]);
+            const Float8 dx = ndx[k] = load8_every_other(&pixels.dx[n]);
+            const Float8 dy = ndy[k] = load8_every_other(&pixels.dy[n]);
             nx[k] = rest_x + static_cast<float>(kStepX[k]) + dx;
             ny[k] = static_cast<float>(y + kStepY[k]) + dy;
             if (k % 2 != 0) continue;
             mean_x += dx;
             mean_y += dy;
         }
-        const Float8 px = rest_x + load8_every_other(&pixels.dx[index]);
-        const Float8 py = rest_y + load8_every_other(&pixels.dy[index]);
+        const Float8 own_x = load8_every_other(&pixels.dx[index]), px = rest_x + own_x;
+        const Float8 own_y = load8_every_other(&pixels.dy[index]), py = rest_y + own_y;
         Float8 sx, sy;
         NewtonStep<Float8> step(px, py, rest_x + mean_x / 4, rest_y + mean_y / 4, mu);
         step.add_features(field.f, field.fx, field.fy, color, 3, px - field.ax, py - field.ay);
         step.solve(sx, sy);
+        if (rate > 0) make_cheap(step, own_x, own_y, ndx, ndy, sx, sy);
         const float right = static_cast<float>(pixels.width - 1),
                     bottom = static_cast<float>(pixels.height - 1);
         Float8 to_x = px, to_y = py;
         Int8 moved = {};
         for (int half = 0; half <= kHalvings; ++half, sx *= 0.5f, sy *= 0.5f) {
-            const Float8 qx = clamped(px + sx, 0, right), qy = clamped(py + sy, 0, bottom);
-            const Int8 take = (least_area(qx, qy, nx, ny) >= kLeastMovingArea) & ~moved;
+            const Float8 qx = clamped(rest_x + on_grid(own_x + sx), 0, right),
+                         qy = clamped(rest_y + on_grid(own_y + sy), 0, bottom);
+            const Int8 take = (least_area(qx, qy, nx, ny) >= least_in(field.longest)) & ~moved;
             to_x = take ? qx : to_x;
             to_y = take ? qy : to_y;
             moved |= take;
@@ -249,7 +222,7 @@ struct Sweep {
             Id face = pixels.face[i];
             if (least_weight[l] < 0) {
                 face = locate_face({to_x[l], to_y[l]}, face, fields, neighbors);
-                if (!may_lie_in(face, to_x[l], to_y[l])) continue;
+                if (!may_lie_in(face, {to_x[l], to_y[l]})) continue;
             }
             place(i, dx[l], dy[l], face);
         }
@@ -317,16 +290,45 @@ PixelEmbedding resting_pixels(const PixelMap& trivial, const Mask& mask) {
     return pixels;
 }
 
-void relax(PixelEmbedding& pixels, const std::vector<FaceField>& fields, const std::vector<Face>& neighbors,
-           const FeatureImage& feature, float smoothness, int sweeps, const AuxiliaryFields& auxiliary) {
+Displacements displacements(const PixelEmbedding& pixels, int steps) {
+    Displacements out{pixels,
+                      steps,
+                      parallel_vector<std::int16_t>(pixels.pixel_count()),
+                      parallel_vector<std::int16_t>(pixels.pixel_count()),
+                      {}};
+    if (!pixels.freedom.empty()) out.inside = Mask(pixels);
+    const auto scale = static_cast<float>(steps);
+    parallel_blocks(0, pixels.height, kCopiedRows, [&](int first, int last) {
+        for (std::size_t i = pixels.row_begin(first); i < as_index(last) * as_index(pixels.width); ++i) {
+            if (pixels.outside(i)) continue;
+            if (!out.inside.empty()) out.inside[i] = 1;
+            out.dx[i] = static_cast<std::int16_t>(pixels.dx[i] * scale);
+            out.dy[i] = static_cast<std::int16_t>(pixels.dy[i] * scale);
+        }
+    });
+    return out;
+}
+
+void relax(PixelEmbedding& pixels, const BaseMesh& mesh, const std::vector<FaceField>& fields,
+           const std::vector<Face>& neighbors, const FeatureImage& feature, const RelaxParams& params) {
+    const AuxiliaryFields auxiliary = auxiliary_fields(mesh, fields);
     assert(as_int(auxiliary.features) == std::max(0, feature.channels - 3));
-    const Sweep sweep{pixels, fields, neighbors, feature, smoothness, auxiliary};
+    const Sweep sweep{pixels,
+                      mesh,
+                      fields,
+                      neighbors,
+                      feature,
+                      auxiliary,
+                      params.smoothness,
+                      params.rate,
+                      static_cast<float>(params.steps),
+                      least_moving_area(params.steps)};
     auto move_row = &Sweep::move_row_portably;
 #if defined(__x86_64__)
     if (has_avx2()) move_row = &Sweep::move_row_avx2;
 #endif
     const int h = pixels.height;
-    for (int n = 0; n < sweeps; ++n)
+    for (int n = 0; n < params.sweeps; ++n)
         for (int parity = 0; parity < 4; ++parity)
             parallel_blocks(0, (h + 1) / 2, kSweptRows, [&](int first, int last) {
                 for (int row = first; row < last; ++row)

@@ -7,6 +7,8 @@
 #include "libcore/image/image.h"
 #include "libcore/image/mask.h"
 #include "libcore/mesh/adjacency.h"
+#include "libcore/mesh/base_mesh.h"
+#include "libcore/mesh/displacements.h"
 #include "libcore/mesh/face_field.h"
 #include "libcore/mesh/pixel_map.h"
 
@@ -26,6 +28,10 @@ struct PixelEmbedding : GridSize {
     std::vector<std::uint8_t> freedom =
         {};  ///< of a masked image's pixels, Freedom bits; empty without a mask
 
+    /// Whether nothing but its neighbours limits the moves of an inner pixel.
+    bool is_free(int x, int y) const {
+        return freedom.empty() ? !pinned_x(x, y) && !pinned_y(x, y) : freedom[index(x, y)] & kFree;
+    }
     bool outside(std::size_t pixel) const { return face[pixel] == kNone; }
     bool pinned_x(int x, int y) const {
         return freedom.empty() ? x == 0 || x == width - 1 : freedom[index(x, y)] & kPinnedX;
@@ -45,22 +51,39 @@ struct PixelEmbedding : GridSize {
 /// or pinches, and in strips one pixel wide, they rest. So the map takes the dense mesh onto itself.
 PixelEmbedding resting_pixels(const PixelMap& trivial, const Mask& mask = {});
 
-/// The least twice-area that a pixel triangle keeps during moves [px^2]; at rest it is 1.
-inline constexpr float kLeastMovingArea = 0.05f;
+/// The least twice-area that a pixel triangle keeps during moves, on a grid of `steps` in a pixel [px^2]; at
+/// rest it is 1. It is more than what weights of half precision change in faces of usual size; on the
+/// coarsest grid two units, as four would cost error.
+constexpr float least_moving_area(int steps) {
+    return steps > 8 ? 0.05f : 0.03f;
+}
 
-/// Takes `sweeps` of Gauss-Newton steps on the sum of |c(P) - c|^2 + mu |P - t|^2. c(P) is the base mesh's
-/// colour at P, c the pixel's, and t the pixel displaced like the mean of its four neighbours. A step is at
-/// most half a pixel. It is halved until all four triangles (both diagonals) of each 2x2 cell around the
-/// pixel keep kLeastMovingArea, so the map stays a bijection. Pixels of the image's sides slide along them,
-/// corners rest. In a masked image `pixels.freedom` decides that, triangles with a pixel outside do not
-/// count, and a pixel that would leave the mesh waits.
+struct RelaxParams {
+    float smoothness = 20;    ///< mu: of the grid of pixels against colour [feature^2 / px^2]; > 0
+    int steps = kUsualSteps;  ///< of the grid of positions in a pixel: 8, 16 or 32
+    float rate = 0;           ///< what a bit of a stored displacement costs [feature^2]; 0: nothing
+    int sweeps = 4;
+};
+
+/// Takes Gauss-Newton steps on the sum of |c(P) - c|^2 + mu |P - t|^2. c(P) is the base mesh's colour at P, c
+/// the pixel's, and t the pixel displaced like the mean of its four neighbours. A step is at most half a
+/// pixel and ends on the grid of positions, where all arithmetic on them is exact. It is halved until all
+/// four triangles (both diagonals) of each 2x2 cell around the pixel keep least_moving_area(), so the map
+/// stays a bijection. Pixels of the image's sides slide along them, corners rest. In a masked image
+/// `pixels.freedom` decides that, triangles with a pixel outside do not count, and a pixel that would leave
+/// the mesh waits.
 ///
+/// With a rate, a free pixel goes to the cheapest of a few places near the best one. A place also costs the
+/// bits that a median predictor leaves of it and of the neighbours that are predicted from it.
+///
+/// mesh       as is for `fields`; `pixels` lies on it, on the grid of `params.steps`
 /// feature    the image, size of `pixels`; both sides at least 2
-/// auxiliary  auxiliary_fields() if it has more than three features
-/// smoothness mu [feature^2 / px^2], > 0
 /// Pixels of one parity of (x, y) move at once and do not depend on each other, so the result is the same for
 /// any number of threads.
-void relax(PixelEmbedding& pixels, const std::vector<FaceField>& fields, const std::vector<Face>& neighbors,
-           const FeatureImage& feature, float smoothness, int sweeps, const AuxiliaryFields& auxiliary = {});
+void relax(PixelEmbedding& pixels, const BaseMesh& mesh, const std::vector<FaceField>& fields,
+           const std::vector<Face>& neighbors, const FeatureImage& feature, const RelaxParams& params);
+
+/// Returns where the pixels are, as whole numbers of the grid on which relax() has put them.
+Displacements displacements(const PixelEmbedding& pixels, int steps);
 
 }  // namespace imgmesh

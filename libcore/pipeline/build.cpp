@@ -156,6 +156,8 @@ struct Pipeline {
         FitParams fit;
         fit.color_weight = map_color_weight(params);
         fit.bary = params.bary;
+        fit.steps = params.map_steps;
+        fit.rate = params.map_rate;
         fit.space = space;
         fit.keep_colors = params.quadric_colors || params.objective == Objective::kRgb;
         const bool left_out = params.map_is_left_out && !tracked;
@@ -189,6 +191,8 @@ struct Pipeline {
         fit.color_weight = map_color_weight(params);
         fit.space = space;
         fit.rounds = 1;
+        fit.steps = params.map_steps;
+        fit.rate = params.map_rate;
         fit.bary = WeightPrecision::kFloat;
         const PixelMap map = fit_map(collapsed.mesh, feature, fit, {}, mask);
         const double rms = map_rms(collapsed.mesh, map, feature);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "libcore/image/feature_space.h"
+#include "libcore/mesh/displacements.h"
 #include "libcore/mesh/pixel_map.h"
 #include "libcore/refine/refine_params.h"
 #include "libcore/simplify/simplify_params.h"
@@ -83,6 +84,8 @@ struct BuildParams {
     /// flattened rings. 0 is the trivial map and excludes the two others, which need more; none: what
     /// FitParams or TrackParams have.
     std::optional<double> projection_color_weight;
+    int map_steps = kUsualSteps;  ///< of the grid of a relaxed or trivial map in a pixel: 8, 16 or 32
+    double map_rate = 0;          ///< relaxed: what a bit of a displacement costs [feature^2]; >= 0
     bool visits = false;  ///< count how often the collapse down to the finest level touches each pixel
     std::optional<WeightPrecision> bary;      ///< none: half where the map stays a bijection, else float
     std::optional<std::int64_t> max_cluster;  ///< no face with more pixels than this; >= 3

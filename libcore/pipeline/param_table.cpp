@@ -33,6 +33,10 @@ constexpr ParamListing kCompact = {
     "where compact", [](const BuildParams& p) { return p.mesh_precision == MeshPrecision::kCompact; }};
 constexpr ParamListing kVisits = {"where given", [](const BuildParams& p) { return p.visits; }};
 
+constexpr ParamListing kOnGrid = {"unless the map is tracked",
+                                  [](const BuildParams& p) { return map_kind(p) != MapKind::kTracked; }};
+constexpr ParamListing kRate = {"where above 0", [](const BuildParams& p) { return p.map_rate > 0; }};
+
 constexpr ParamListing kAsWeight = {"as projection-color-weight", [](const BuildParams&) { return false; }};
 
 // The weight of colour in the map by its reciprocal, as decision 2 has it. The weight alone has a value.
@@ -214,6 +218,16 @@ std::vector<Param> make_table() {
              cat(1 / FitParams().color_weight, ", for a tracked map ", 1 / TrackParams().color_weight),
          .listed = kAsWeight,
          .excludes = {"projection-color-weight"}},
+        {.name = "map-step",
+         .group = map,
+         .kind = words<int, int>(&B::map_steps, {{"1/32", 32}, {"1/16", 16}, {"1/8", 8}}),
+         .help = "Grid on which pixels lie on the mesh, in pixels; a coarser one takes fewer bytes",
+         .listed = kOnGrid},
+        {.name = "map-rate",
+         .group = map,
+         .kind = number({0}, &B::map_rate),
+         .help = "What a bit of the pixel map costs against squared error; more takes fewer bytes",
+         .listed = kRate},
         {.name = "bary",
          .group = map,
          .kind = words<std::optional<WeightPrecision>, WeightPrecision>(

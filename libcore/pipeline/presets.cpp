@@ -22,6 +22,14 @@ BuildParams best() {
     return params;
 }
 
+BuildParams small() {
+    BuildParams params;
+    params.map_steps = 8;
+    params.map_rate = 0.45;
+    params.mesh_precision = MeshPrecision::kCompact;
+    return params;
+}
+
 BuildParams fem() {
     BuildParams params;
     params.geometry_weight = 1;
@@ -42,6 +50,7 @@ const std::vector<Preset>& presets() {
         {"fast", "the shortest time, without refinement", fast()},
         {"default", "a low error through the pixel map, with triangles of good shape", {}},
         {"best", "the lowest error, whatever the shape of the triangles; slow", best()},
+        {"small", "the fewest bytes, for a few percent more error through the pixel map", small()},
         {"fem", "no triangle of bad shape, for numerical simulation", fem()},
     };
     return all;

@@ -113,6 +113,7 @@ class _Written(TypedDict):
 class _Facts(TypedDict):
     version: str
     draco: str
+    layers: str
     files: list[str]
     total_bytes: int
     mesh_bytes: int
@@ -154,6 +155,7 @@ class Mesh(_Arrays):
         path: _Path,
         *,
         draco: _Draco | None = None,
+        layers: Literal["exr", "compact"] | None = None,
         no_map: bool = False,
         overwrite: bool = True,
         threads: int | None = None,
@@ -263,7 +265,7 @@ class Comparison:
 def build(
     image: _ImageLike,
     *,
-    preset: Literal["fast", "default", "best", "fem"] | None = None,
+    preset: Literal["fast", "default", "best", "small", "fem"] | None = None,
     mask: _ImageLike | None = None,
     alpha: Literal["auto", "keep", "cut", "ignore"] | None = "auto",
     alpha_threshold: float | None = None,
@@ -304,6 +306,8 @@ def build(
     map: Literal["relaxed", "tracked", "trivial"] | None = None,
     projection_color_weight: float | None = None,
     map_smoothness: float | None = None,
+    map_step: Literal["1/32", "1/16", "1/8"] | None = None,
+    map_rate: float | None = None,
     bary: Literal["half", "float"] | None = None,
     visits: bool | None = None,
     mesh_precision: Literal["exact", "compact"] | None = None,

@@ -60,11 +60,13 @@ struct Fitted {
     PixelMap map;
 };
 
-Fitted fitted(const FeatureImage& feature, std::int64_t vertices, const FeatureSpace& space) {
+Fitted fitted(const FeatureImage& feature, std::int64_t vertices, const FeatureSpace& space,
+              int steps = kUsualSteps) {
     Fitted out;
     out.mesh = simplify(grid_mesh(feature), plain_params(), SimplifyTarget{.vertices = vertices}).mesh;
     FitParams params;
     params.space = space;
+    params.steps = steps;
     out.map = fit_map(out.mesh, feature, params);
     return out;
 }
@@ -119,7 +121,7 @@ TEST_CASE("channels: the same channel sixteen times counts as one of four times 
     FeatureImage large = one, many = zeros(40, 30, 16);
     for (float& x : large.data) x *= 4;
     for (std::size_t i = 0; i < many.pixel_count(); ++i) std::fill_n(many.pixel(i), 16, one.pixel(i)[0]);
-    const Fitted a = fitted(large, 60, auxiliary_space(1)), b = fitted(many, 60, auxiliary_space(16));
+    const Fitted a = fitted(large, 60, auxiliary_space(1), 32), b = fitted(many, 60, auxiliary_space(16), 32);
     CHECK(map_rms(a.mesh, a.map, large) == doctest::Approx(map_rms(b.mesh, b.map, many)).epsilon(0.05));
 }
 
