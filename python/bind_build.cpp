@@ -162,6 +162,9 @@ MeshPointer build(const py::object& source, const py::kwargs& given) {
         mesh->container.mesh_image = std::move(result.mesh_image);
         mesh->container.metadata = read->metadata;
         mesh->container.facts.draco = DracoMode::kEdgebreaker;
+        // As in imgmesh-build: a rate counts the bits of compact layers.
+        if (plan.params.map_rate > 0 && map_kind(plan.params) == MapKind::kRelaxed && !r.texture)
+            mesh->container.facts.layout = LayerLayout::kCompact;
         mesh->report = std::move(result.report);
         return true;
     });

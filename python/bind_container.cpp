@@ -137,6 +137,7 @@ py::object facts(const MeshValue& mesh) {
     const ContainerFacts& f = mesh.container.facts;
     if (f.files.empty()) return py::none();
     return py::dict(py::arg("version") = f.version, py::arg("draco") = name_of(draco_choices(), f.draco),
+                    py::arg("layers") = name_of(layer_choices(), f.layout),
                     py::arg("files") = file_names(f.files), py::arg("total_bytes") = f.total_bytes,
                     py::arg("mesh_bytes") = f.mesh_bytes, py::arg("layer_bytes") = f.layer_bytes,
                     py::arg("texture_bytes") = f.texture_bytes);
@@ -148,11 +149,14 @@ MeshPointer read(const py::object& path, const std::optional<int>& threads) {
 }
 
 py::dict write(const MeshValue& mesh, const py::object& path, const std::optional<std::string>& draco,
-               bool no_map, bool overwrite, const std::optional<int>& threads) {
+               const std::optional<std::string>& layers, bool no_map, bool overwrite,
+               const std::optional<int>& threads) {
     ContainerOptions options;
     options.draco = word_value("draco", draco, draco_choices())
                         .value_or(no_map ? DracoMode::kOff : mesh.container.facts.draco);
-    options.layers = !no_map;
+    const std::optional<LayerLayout> layout = word_value("layers", layers, layer_choices());
+    if (no_map && layout) throw Error(ErrorKind::kBadArgument, "layers and no_map: there are no layers then");
+    options.layers = no_map ? LayerLayout::kOff : layout.value_or(mesh.container.facts.layout);
     options.overwrite = overwrite;
     options.metadata = mesh.container.metadata;
     options.texture = mesh.container.texture;
@@ -184,13 +188,15 @@ Reads a container (.glb, .gltf) and checks all of it.
 Raises FileError if a file cannot be read, BadFileError for a file that is no sound container, UnsupportedError
 for one of a newer version.)";
 
-constexpr char kWrite[] = R"(write(path, *, draco=None, no_map=False, overwrite=True, threads=None) -> dict
+constexpr char kWrite[] =
+    R"(write(path, *, draco=None, layers=None, no_map=False, overwrite=True, threads=None) -> dict
 
 Writes the container and returns its files, mesh_bytes and layer_bytes, as facts of a mesh that is read has them; the name's extension (.glb, .gltf) decides the kind. The bytes are those that imgmesh-build
 writes with the same parameters. Draco chooses an order of vertices and faces of its own, so that numbers of
 vertices and faces change unless draco is 'none'.
 
 draco   edgebreaker, sequential or none; None: as the mesh was read, or edgebreaker; with no_map none
+layers  exr or compact, a sixth of the bytes, for maps on a grid; None: as the mesh was read, or as imgmesh-build
 no_map  write the meshes alone, without pixel maps: a plain glTF asset for engines that imgmesh cannot read,
         as imgmesh-convert --no-map does
 
@@ -286,7 +292,8 @@ void bind_container(py::module_& module) {
         .def_property_readonly("facts", facts,
                                "The files of the container and their bytes. None for a mesh that was built.")
         .def("write", write, py::arg("path"), py::kw_only(), py::arg("draco") = py::none(),
-             py::arg("no_map") = false, py::arg("overwrite") = true, py::arg("threads") = py::none(), kWrite)
+             py::arg("layers") = py::none(), py::arg("no_map") = false, py::arg("overwrite") = true,
+             py::arg("threads") = py::none(), kWrite)
         .def("__repr__", [](const MeshValue& m) {
             const Level& finest = m.mesh_image().levels.front();
             return cat("<imgmesh.Mesh of ", m.mesh_image().source.width, "x", m.mesh_image().source.height,

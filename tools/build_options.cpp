@@ -96,6 +96,22 @@ void add_params(CLI::App& app, BuildOptions& o) {
         for (const std::string& other : param->excludes) exclude(app, option, {"--" + other});
 }
 
+// Returns how the maps are stored. Throws Error(kBadArgument) where they are to be compact and cannot.
+LayerLayout layers_of(const BuildOptions& o) {
+    if (o.no_map) return LayerLayout::kOff;
+    const bool tracked = map_kind(o.params) == MapKind::kTracked, texture = o.texture.wanted.has_value();
+    if (o.compression.layers == LayerLayout::kCompact && (tracked || texture))
+        throw Error(ErrorKind::kBadArgument,
+                    tracked
+                        ? "--layers compact and --map tracked: a tracked map puts pixels anywhere, and "
+                          "compact layers need them on a grid"
+                        : "--layers compact and --texture: the meshes of a texture are stretched, so that "
+                          "pixels leave the grid that compact layers need");
+    // A rate counts the bits of compact layers.
+    const bool counted = o.params.map_rate > 0 && !tracked && !texture;
+    return o.compression.layers.value_or(counted ? LayerLayout::kCompact : LayerLayout::kExr);
+}
+
 }  // namespace
 
 void add_build_options(CLI::App& app, BuildOptions& o) {
@@ -138,7 +154,8 @@ void add_build_options(CLI::App& app, BuildOptions& o) {
                  "Write the meshes alone, without pixel maps: a plain glTF asset for engines, that imgmesh "
                  "cannot read. Colours are then fitted to what engines draw"),
              "Container");
-    add_compression_options(app, o.compression, "edgebreaker; with --no-map none");
+    add_compression_options(app, o.compression, "edgebreaker; with --no-map none",
+                            "compact with --map-rate or the preset small, else exr; exr with a texture");
     add_texture_options(app, o.texture, "Put the image on the meshes, for engines and viewers", false);
     add_strict_option(app, o.strict);
     after_parsing(app, [&] {
@@ -154,6 +171,7 @@ void add_build_options(CLI::App& app, BuildOptions& o) {
                 "--values and --alpha keep: alpha is a mask beside values, or with --channels one of them");
         check_contradictions(app, o.params);
         check_compression(o.compression, !o.no_map);
+        o.layers = layers_of(o);
         if (!o.no_map) return;
         check_no_map(app, o.params);
         o.params = without_map(o.params);

@@ -20,6 +20,7 @@ struct BuildOptions {
     BuildParams preset;
     std::vector<std::function<void(BuildParams&)>> given;  ///< the options that count more than the preset
     CompressionOptions compression;
+    LayerLayout layers = LayerLayout::kExr;  ///< kOff with `no_map`
     bool no_map = false;
     ReadImageOptions read;
     AlphaParams alpha;

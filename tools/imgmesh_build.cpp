@@ -66,7 +66,7 @@ void check_options(const BuildOptions& o) {
         throw Error(ErrorKind::kBadArgument,
                     cat("-o ", o.output, ": expected a name in .glb or .gltf, or a folder",
                         other_tool("imgmesh-build", o.output)));
-    if (!o.mask.empty()) check_distinct({o.mask}, container_files(o.output));
+    if (!o.mask.empty()) check_distinct({o.mask}, container_files(o.output, o.layers));
 }
 
 Report build_one(const BuildOptions& given, Context& context) {
@@ -94,7 +94,7 @@ Report build_one(const BuildOptions& given, Context& context) {
         add_warning(
             "--mesh-precision compact: meshes without compression take the same bytes; --compression draco "
             "makes them smaller");
-    container.layers = !o.no_map;
+    container.layers = o.layers;
     const std::string doubt = check_buffer(o.output, container_plan(plan.params, image, mask), container);
     if (!doubt.empty()) warnings.push_back(doubt);
     const double read_seconds = stage.lap();

@@ -64,7 +64,8 @@ struct Options {
 
 void add_options(CLI::App& app, Options& o) {
     const std::string container = "Container", level = "Level";
-    add_compression_options(app, o.compression, "as in the input; with --no-map none");
+    add_compression_options(app, o.compression, "as in the input; with --no-map none",
+                            "as in the input; exr with a new texture");
     in_group(
         add_value(app, "--levels", "LIST",
                   [&o](const std::string& text) {
@@ -148,7 +149,12 @@ void check_options(const Options& o) {
     only_for(o.compression.method.has_value(), "--compression", container, "container");
     only_for(o.no_map, "--no-map", container, "container");
     only_for(o.precision == MeshPrecision::kCompact, "--mesh-precision", container, "container");
+    only_for(o.compression.layers.has_value(), "--layers", container, "container");
     check_compression(o.compression, !o.no_map && !o.outline_tolerance);
+    if (o.compression.layers == LayerLayout::kCompact && o.texture.wanted.value_or(false))
+        throw Error(ErrorKind::kBadArgument,
+                    "--layers compact and --texture: the meshes of a texture are stretched, so that pixels "
+                    "leave the grid that compact layers need");
     only_for(o.texture.wanted.has_value(), "--texture", container || obj, "container or .obj");
     if (container && o.level)
         throw Error(ErrorKind::kBadArgument, cat("--level: ", o.output, " keeps all levels; see --levels"));
@@ -235,9 +241,9 @@ Texture chosen_texture(const Options& o, MeshImage& m, Texture kept, Context& co
 // Makes the meshes compact as far as their map and their compression allow, and says where they do not.
 void compact(const Options& o, MeshImage& m, ContainerOptions& options, std::vector<std::string>& warnings) {
     const bool own_places = !options.texture.picture.empty() && options.texture.coords == texture_coords(m);
-    make_compact(m, options.layers);
+    make_compact(m, options.layers != LayerLayout::kOff);
     if (own_places) options.texture.coords = texture_coords(m);
-    if (options.layers)
+    if (options.layers != LayerLayout::kOff)
         warnings.push_back(cat(o.input,
                                ": --mesh-precision compact: positions stay, because the pixel map lies on "
                                "them; imgmesh-build --mesh-precision compact makes them coarser as well"));
@@ -259,6 +265,14 @@ void check_places(const Options& o, const MeshImage& m) {
                     "along into containers and .obj"));
 }
 
+// Returns how the pixel maps are stored; `kept` is how they are. With a new texture meshes are stretched, and
+// pixels leave their grid.
+LayerLayout chosen_layers(const Options& o, LayerLayout kept) {
+    if (o.no_map || o.outline_tolerance) return LayerLayout::kOff;
+    const bool stretched = o.texture.wanted.value_or(false);
+    return o.compression.layers.value_or(stretched ? LayerLayout::kExr : kept);
+}
+
 Report convert_one(const Options& given, Context& context) {
     Options o = given;
     const bool obj = lower_extension(o.output) == ".obj";
@@ -268,9 +282,10 @@ Report convert_one(const Options& given, Context& context) {
     Container container = read_container(o.input, container_limits(o.limits, context.max_memory));
     MeshImage& m = container.mesh_image;
     check_places(o, m);
+    const LayerLayout layers = chosen_layers(o, container.facts.layout);
     check_distinct(container.facts.files, {o.output});
     if (is_container(o.output) && o.texture.wanted.value_or(false) && !o.image.empty())
-        check_distinct({o.image}, container_files(o.output));
+        check_distinct({o.image}, container_files(o.output, layers));
     int level = o.level.value_or(0);
     WrittenContainer written;
     std::vector<std::string>& files = written.files;
@@ -285,8 +300,9 @@ Report convert_one(const Options& given, Context& context) {
         keep_levels(o, m, options.texture);
         options.overwrite = context.overwrite;
         options.keep = container.facts.files;
-        options.layers = !o.no_map && !o.outline_tolerance;
-        compress(options, o.compression, options.layers ? container.facts.draco : DracoMode::kOff);
+        options.layers = layers;
+        compress(options, o.compression,
+                 layers != LayerLayout::kOff ? container.facts.draco : DracoMode::kOff);
         if (o.outline_tolerance) {
             if (options.texture.picture.empty())
                 throw Error(ErrorKind::kBadArgument,
@@ -324,12 +340,13 @@ Report convert_one(const Options& given, Context& context) {
                      {"level", is_container(o.output) ? 0 : o.level.value_or(0)},
                      {"vertices", first.mesh.vertex_count()},
                      {"faces", first.mesh.faces.size()},
-                     {"layers", is_container(o.output) && options.layers},
+                     {"layers", is_container(o.output) && layers != LayerLayout::kOff},
                      {"texture", !options.texture.picture.empty()},
                      {"bytes", size_of_files(files)}};
     if (is_container(o.output)) {
         report["mesh_bytes"] = written.mesh_bytes;
         report["layer_bytes"] = written.layer_bytes;
+        if (layers != LayerLayout::kOff) report["layer_layout"] = name_of(layer_choices(), layers);
     }
     if (files.size() > 1) report["outputs"] = files;
     return report;

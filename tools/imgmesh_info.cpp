@@ -99,6 +99,7 @@ Report facts_report(const Container& container) {
             {"has_mask", m.source.has_mask},
             {"has_visits", !m.visits.empty()},
             {"draco", name_of(draco_choices(), facts.draco)},
+            {"layers", name_of(layer_choices(), facts.layout)},
             {"bytes",
              {{"total", facts.total_bytes},
               {"meshes", facts.mesh_bytes},
@@ -229,7 +230,8 @@ void print(const Report& report, std::ostream& out) {
     table.add("size", cat(report["width"], " x ", report["height"], " pixels"));
     table.add("channels", cat(channels, ", ", text("sample_type"), ", ", text("color_space"),
                               report["has_light"] ? ", HDR" : "", report["has_mask"] ? ", with a mask" : ""));
-    table.add("container", cat("version ", text("version"), ", Draco ", text("draco")));
+    table.add("container",
+              cat("version ", text("version"), ", Draco ", text("draco"), ", layers ", text("layers")));
     table.add("file", cat(bytes("total"), ": meshes ", bytes("meshes"), ", layers ", bytes("layers"),
                           ", other ", bytes("other")));
     if (report["bytes"]["texture"] > 0) table.add("texture", bytes("texture"));

@@ -1,4 +1,4 @@
-// The container: a glTF asset (.glb or .gltf) with the base meshes and an EXR with the pixel maps; see
+// The container: a glTF asset (.glb or .gltf) with the base meshes and layers with the pixel maps; see
 // docs/format.md.
 #pragma once
 
@@ -9,6 +9,7 @@
 #include "formats/exr/exr_metadata.h"
 #include "formats/findings/limits.h"
 #include "formats/gltf/draco_mode.h"
+#include "formats/gltf/layer_layout.h"
 #include "libcore/mesh/mesh_image.h"
 
 namespace imgmesh {
@@ -30,9 +31,11 @@ struct ContainerOptions {
     bool overwrite = true;  ///< replace the file at the path; other files are never replaced
     /// Files that stay although the .gltf that is replaced refers to them, such as those just read.
     std::vector<std::string> keep = {};
-    bool layers = true;    ///< false: without pixel maps, a plain glTF asset that read_container() refuses
-    bool meshopt = false;  ///< EXT_meshopt_compression instead of Draco; only without layers
-    Texture texture = {};  ///< with the coordinates of all vertices of all levels
+    /// kOff: a plain glTF asset that read_container() refuses. kCompact is for maps on a grid, as
+    /// build_mesh_image() makes them unless they are tracked.
+    LayerLayout layers = LayerLayout::kExr;
+    bool meshopt = false;       ///< EXT_meshopt_compression instead of Draco; only without layers
+    Texture texture = {};       ///< with the coordinates of all vertices of all levels
     ExrMetadata metadata = {};  ///< of the source, if it is an EXR; without an exr_metadata_fault()
     /// Of the buffer, which holds the meshes and in a .glb the pixel maps as well; at most 2^31 - 1.
     std::uint64_t max_buffer_bytes = 0x7FFFFFFF;
@@ -53,7 +56,7 @@ std::string check_buffer(const std::string& path, const ContainerPlan& plan, con
 struct WrittenContainer {
     std::vector<std::string> files;  ///< of the container, itself first
     std::uint64_t mesh_bytes = 0;    ///< the meshes, as compressed
-    std::uint64_t layer_bytes = 0;   ///< the EXR; 0 without layers
+    std::uint64_t layer_bytes = 0;   ///< the pixel maps; 0 without layers
 };
 
 /// Writes `mesh_image`; the extension of `path` (.glb or .gltf) decides the file variant.
@@ -70,10 +73,10 @@ struct WrittenContainer {
 WrittenContainer write_container(const std::string& path, const MeshImage& mesh_image,
                                  const ContainerOptions& options = {});
 
-/// The files that write_container() writes for `path`, itself first. A .gltf has a .bin and a .exr as sidecar
-/// files; if other files have these names already, they get names with a hash. Throws Error(kBadArgument) for
-/// another extension.
-std::vector<std::string> container_files(const std::string& path);
+/// The files that write_container() writes for `path`, itself first. A .gltf has a .bin and, with layers, a
+/// .exr or .imgmap as sidecar files; if other files have these names already, they get names with a hash.
+/// Throws Error(kBadArgument) for another extension.
+std::vector<std::string> container_files(const std::string& path, LayerLayout layers = LayerLayout::kExr);
 
 /// Facts about the files that a MeshImage does not hold.
 struct ContainerFacts {
@@ -82,7 +85,8 @@ struct ContainerFacts {
     std::vector<std::string> files;  ///< as read, the named one first
     std::uint64_t total_bytes = 0;   ///< all files together
     std::uint64_t mesh_bytes = 0;    ///< meshes as stored, compressed
-    std::uint64_t layer_bytes = 0;   ///< the EXR
+    LayerLayout layout = LayerLayout::kExr;
+    std::uint64_t layer_bytes = 0;  ///< the pixel maps
     std::uint64_t texture_bytes = 0;
 };
 

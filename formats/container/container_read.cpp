@@ -4,8 +4,8 @@
 #include <span>
 
 #include "formats/container/container.h"
+#include "formats/container/layers.h"
 #include "formats/container/validate.h"
-#include "formats/exr/exr_layers.h"
 #include "formats/files/atomic_file.h"
 #include "formats/files/image_signature.h"
 #include "formats/files/one_line.h"
@@ -85,14 +85,14 @@ BaseMesh load_level(const AssetLevel& level, const SourceInfo& source, View buff
     return base;
 }
 
-std::vector<LayerPart> load_layers(const Asset& asset, View bytes, Findings& findings) {
+StoredLayers load_layers(const Asset& asset, View bytes, Findings& findings) {
     ExpectedLayers expected{asset.source.width, asset.source.height, {}, {}, asset.source.has_mask};
     for (std::size_t k = 0; k < asset.levels.size(); ++k) {
         const AssetLevel& level = asset.levels[k];
         expected.parts.push_back(level_name(k));
         expected.faces.push_back(level.is_sound ? level.faces : kNone);
     }
-    return decode_exr_layers(bytes, expected, findings);
+    return {asset.layout, bytes, expected, findings};
 }
 
 void add_level_facts(const Asset& asset, View buffer, ContainerFacts& facts) {
@@ -101,8 +101,8 @@ void add_level_facts(const Asset& asset, View buffer, ContainerFacts& facts) {
 }
 
 // Returns all levels whose meshes and parts can be checked.
-void read_levels(const Asset& asset, View buffer, std::vector<LayerPart>& parts, Findings& findings,
-                 MeshImage& image, std::vector<std::vector<Vec2f>>& coords) {
+void read_levels(const Asset& asset, View buffer, StoredLayers& layers, Findings& findings, MeshImage& image,
+                 std::vector<std::vector<Vec2f>>& coords) {
     for (std::size_t k = 0; k < asset.levels.size(); ++k) {
         const AssetLevel& level = asset.levels[k];
         BaseMesh mesh;
@@ -111,13 +111,16 @@ void read_levels(const Asset& asset, View buffer, std::vector<LayerPart>& parts,
             findings.attempt(asset.places[k].pointer, [&] {
                 mesh = load_level(level, asset.source, buffer, findings, coords.back());
             });
-        if (k >= parts.size()) continue;
-        image.levels.push_back({std::move(mesh), std::move(parts[k].map), level.error});
-        if (level.is_sound && !parts[k].topology.empty() && parts[k].topology != level.topology)
+        if (k >= layers.size()) continue;
+        const bool other_mesh =
+            level.is_sound && !layers.topology(k).empty() && layers.topology(k) != level.topology;
+        if (other_mesh)
             findings.add("layers.topology",
-                         cat(parts[k].name, " was made for a mesh of hash ", parts[k].topology,
+                         cat(layers.name(k), " was made for a mesh of hash ", layers.topology(k),
                              ", the mesh has ", level.topology),
-                         at_part(parts[k].name));
+                         at_part(layers.name(k)));
+        PixelMap map = other_mesh ? PixelMap() : layers.take_map(k, mesh, findings);
+        image.levels.push_back({std::move(mesh), std::move(map), level.error});
     }
 }
 
@@ -175,21 +178,22 @@ Container read(const std::string& path, const ContainerLimits& limits, Findings&
     container.facts.version = asset.version;
     container.facts.files = files.names();
     container.facts.total_bytes = files.total();
+    container.facts.layout = asset.layout;
     container.facts.layer_bytes = layers.size();
     // Pixels come first: their number bounds what the meshes may claim. So a validator does not decode meshes
     // either if the layers are not read; earlier findings say why.
-    std::vector<LayerPart> parts;
+    StoredLayers maps;
     if (!asset.has_levels || !asset.has_layers || !(is_whole || !asset.layers_name.empty())) return container;
     if (!findings.attempt(cat("/extensions/", kPixelMap, "/layers"),
-                          [&] { parts = load_layers(asset, layers, findings); }))
+                          [&] { maps = load_layers(asset, layers, findings); }))
         return container;
     if (!is_whole) return container;
     MeshImage& image = container.mesh_image;
-    read_levels(asset, buffer, parts, findings, image, container.texture.coords);
+    read_levels(asset, buffer, maps, findings, image, container.texture.coords);
     if (findings.errors() > 0) return container;
     read_texture(asset, buffer, findings, container);
     add_level_facts(asset, buffer, container.facts);
-    image.visits = std::move(parts[0].visits);
+    image.visits = maps.take_visits();
     container.metadata = std::move(asset.metadata);
     image.source = std::move(asset.source);
     image.generator = std::move(asset.generator);

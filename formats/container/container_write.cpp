@@ -7,8 +7,8 @@
 #include <span>
 
 #include "formats/container/container.h"
+#include "formats/container/layers.h"
 #include "formats/container/sidecar_file.h"
-#include "formats/exr/exr_layers.h"
 #include "formats/files/atomic_file.h"
 #include "formats/files/extension.h"
 #include "formats/gltf/glb.h"
@@ -19,7 +19,7 @@
 namespace imgmesh {
 namespace {
 
-constexpr const char* kVersion = "1.0";
+constexpr const char* kVersion = "1.1";
 
 void check_writable(const MeshImage& image, const Texture& texture) {
     const SourceInfo& source = image.source;
@@ -42,11 +42,23 @@ void check_writable(const MeshImage& image, const Texture& texture) {
         throw Error(ErrorKind::kInternal, "cannot store the mesh image: its parts do not fit each other");
 }
 
-// Stores the mesh of `level` in `buffer`. Draco's coder changes it: for the mesh that a reader will get,
-// `map` is then a rewritten copy of the level's. `coords` are those of its texture; empty if there is none.
+// What a reader gets of a level whose mesh Draco's coder has changed.
+struct StoredLevel {
+    BaseMesh mesh;  // positions and faces alone
+    PixelMap map;
+};
+
+BaseMesh shape_of(const StoredMesh& mesh) {
+    BaseMesh shape{0, {}, {}, mesh.faces};
+    for (const auto& [x, y, z] : mesh.position) shape.position.emplace_back(x, -y);
+    return shape;
+}
+
+// Stores the mesh of `level` in `buffer`. Draco's coder changes it: `stored` is then what a reader will get.
+// `coords` are those of its texture; empty if there is none.
 AssetLevel store_level(const Level& level, const StoredLayout& layout, std::span<const Vec2f> coords,
                        DracoMode mode, MeshoptWriter* meshopt, std::vector<std::uint8_t>& buffer,
-                       PixelMap& map) {
+                       StoredLevel& stored) {
     StoredMesh mesh = stored_from_base(level.mesh, layout);
     for (const Vec2f& c : coords) mesh.texcoord.push_back({c.x(), c.y()});
     AssetLevel out;
@@ -66,9 +78,10 @@ AssetLevel store_level(const Level& level, const StoredLayout& layout, std::span
         DracoMesh draco = encode_draco_mesh(mesh, mode);
         out.is_draco = true;
         out.draco = append_values(buffer, draco.bytes);
-        map = level.map;
-        remap_pixels(match_faces(mesh, draco.decoded), map);
+        stored.map = level.map;
+        remap_pixels(match_faces(mesh, draco.decoded), stored.map);
         mesh = std::move(draco.decoded);
+        stored.mesh = shape_of(mesh);
     }
     out.vertices = mesh.position.size();
     out.faces = mesh.faces.size();
@@ -128,20 +141,20 @@ std::vector<std::string> write_gltf(const std::string& path, Asset& asset,
     std::optional<SignalBlocker> switch_over;
     AtomicFile gltf(path, options.overwrite);
     SidecarFile bin(path, ".bin", buffer);
-    std::optional<SidecarFile> exr;
-    if (asset.has_layers) exr.emplace(path, ".exr", layers);
+    std::optional<SidecarFile> maps;
+    if (asset.has_layers) maps.emplace(path, sidecar_extension(asset.layout), layers);
     asset.buffer_name = bin.name();
-    if (exr) asset.layers_name = exr->name();
+    if (maps) asset.layers_name = maps->name();
     asset.buffer_length = buffer.size();
     const std::string json = json_from_asset(asset);
     gltf.write({reinterpret_cast<const std::uint8_t*>(json.data()), json.size()});
     switch_over.emplace();
     bin.place();
-    if (exr) exr->place();
+    if (maps) maps->place();
     gltf.place();  // at once, among whatever files: its companions are in their place
     gltf.keep();
     bin.keep();
-    if (exr) exr->keep();
+    if (maps) maps->keep();
     for (const std::string& file : old_files) {
         const std::string name = std::filesystem::path(file).filename().string();
         std::error_code error;  // a file left behind does no harm
@@ -171,23 +184,26 @@ std::vector<std::vector<Vec2f>> texture_coords(const MeshImage& mesh_image) {
     return coords;
 }
 
-std::vector<std::string> container_files(const std::string& path) {
+std::vector<std::string> container_files(const std::string& path, LayerLayout layers) {
     if (variant_of(path) == FileVariant::kGlb) return {path};
     const std::string stem = std::filesystem::path(path).replace_extension().string();
-    return {path, stem + ".bin", stem + ".exr"};
+    if (layers == LayerLayout::kOff) return {path, stem + ".bin"};
+    return {path, stem + ".bin", stem + sidecar_extension(layers)};
 }
 
 std::string check_buffer(const std::string& path, const ContainerPlan& plan,
                          const ContainerOptions& options) {
     // A position and a channel. How far Draco and deflate go depends on the image: a flat one takes nothing.
-    constexpr std::uint64_t kVertexBytes = 12 + 4, kUsualPixelBytes = 3;
+    constexpr std::uint64_t kVertexBytes = 12 + 4;
+    const double usual_pixel_bytes = options.layers == LayerLayout::kCompact ? 0.5 : 3;
     const bool plain = options.draco == DracoMode::kOff && !options.meshopt;
     const std::uint64_t least = options.texture.picture.size() +
                                 (plain ? kVertexBytes * static_cast<std::uint64_t>(plan.vertices) : 0);
-    const bool has_maps = variant_of(path) == FileVariant::kGlb && options.layers;
+    const bool has_maps = variant_of(path) == FileVariant::kGlb && options.layers != LayerLayout::kOff;
     check_length(path, least, 0, "will need at least", options);
     const std::uint64_t usual =
-        least + (has_maps ? kUsualPixelBytes * static_cast<std::uint64_t>(plan.pixels) : 0);
+        least +
+        (has_maps ? static_cast<std::uint64_t>(usual_pixel_bytes * static_cast<double>(plan.pixels)) : 0);
     if (usual <= options.max_buffer_bytes) return "";
     return cat(path, ": will probably be too long for a .glb: about ", usual, " bytes, at most ",
                options.max_buffer_bytes, "; a .gltf keeps the pixel maps in a file of any size");
@@ -196,7 +212,8 @@ std::string check_buffer(const std::string& path, const ContainerPlan& plan,
 WrittenContainer write_container(const std::string& path, const MeshImage& mesh_image,
                                  const ContainerOptions& options) {
     const FileVariant variant = variant_of(path);
-    if (options.meshopt && options.layers)
+    const bool with_layers = options.layers != LayerLayout::kOff;
+    if (options.meshopt && with_layers)
         throw Error(ErrorKind::kInternal, "a container with pixel maps cannot have meshopt compression");
     check_writable(mesh_image, options.texture);
     const SourceInfo& source = mesh_image.source;
@@ -209,35 +226,36 @@ WrittenContainer write_container(const std::string& path, const MeshImage& mesh_
     asset.generator = mesh_image.generator;
     asset.parameters = mesh_image.parameters;
     std::vector<std::uint8_t> buffer;
-    std::vector<LayerView> parts;
-    std::deque<PixelMap> rewritten;
+    std::vector<LayerSource> parts;
+    std::deque<StoredLevel> rewritten;
     const Texture& texture = options.texture;
     const DracoMode draco = options.meshopt ? DracoMode::kOff : options.draco;
     MeshoptWriter meshopt(buffer);
     for (const Level& level : mesh_image.levels) {
         std::span<const Vec2f> coords;
         if (!texture.picture.empty()) coords = texture.coords[asset.levels.size()];
-        PixelMap& map = rewritten.emplace_back();
+        StoredLevel& stored = rewritten.emplace_back();
         asset.levels.push_back(store_level(level, layout_of(asset.source), coords, draco,
-                                           options.meshopt ? &meshopt : nullptr, buffer, map));
-        parts.push_back({level_name(parts.size()),
-                         draco == DracoMode::kOff ? &level.map : &map,
-                         {},
-                         asset.levels.back().topology});
+                                           options.meshopt ? &meshopt : nullptr, buffer, stored));
+        const bool changed = draco != DracoMode::kOff;
+        parts.push_back(
+            {{level_name(parts.size()), changed ? &stored.map : &level.map, {}, asset.levels.back().topology},
+             changed ? &stored.mesh : &level.mesh});
     }
     asset.meshopt = meshopt.views();
     asset.fallback_length = meshopt.fallback_length();
     std::uint64_t mesh_bytes = 0;
     for (const AssetLevel& level : asset.levels) mesh_bytes += stored_bytes(level);
     if (options.meshopt) mesh_bytes = buffer.size();  // and not those of the fallback
-    parts.front().visits = mesh_image.visits;
+    parts.front().view.visits = mesh_image.visits;
     if (!texture.picture.empty()) {
         asset.texture_type = picture_type(texture.picture);
         asset.texture = append_values(buffer, texture.picture);
     }
-    asset.has_layers = options.layers;
+    asset.has_layers = with_layers;
+    if (with_layers) asset.layout = options.layers;
     const std::vector<std::uint8_t> layers =
-        options.layers ? encode_exr_layers(parts) : std::vector<std::uint8_t>();
+        with_layers ? encode_layers(options.layers, parts) : std::vector<std::uint8_t>();
     const std::uint64_t apart = variant == FileVariant::kGlb ? layers.size() : 0;
     constexpr std::uint64_t kPadding = 3;
     check_length(path, buffer.size() + apart + (apart > 0 ? kPadding : 0), apart + kPadding, "needs",

@@ -35,7 +35,9 @@ bool has_content(const fs::path& path, std::span<const std::uint8_t> bytes) {
 // Returns whether a SidecarFile of `path` could have that name.
 bool is_sidecar_name(const fs::path& path, const fs::path& name) {
     const std::string stem = path.stem().string(), found = name.stem().string();
-    if (name.extension() != ".bin" && name.extension() != ".exr") return false;
+    if (name.extension() != ".bin" && name.extension() != sidecar_extension(LayerLayout::kExr) &&
+        name.extension() != sidecar_extension(LayerLayout::kCompact))
+        return false;
     if (found == stem) return true;
     return found.size() == stem.size() + 1 + kHashDigits && found.starts_with(stem + "-") &&
            found.find_first_not_of("0123456789abcdef", stem.size() + 1) == std::string::npos;

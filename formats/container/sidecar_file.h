@@ -11,8 +11,9 @@
 
 namespace imgmesh {
 
-/// A .bin or .exr of the container `path`, a .gltf. It is named x.bin, or x-HASH.bin by its content if
-/// another file has that name, so it replaces nothing. An existing file with the same content is used again.
+/// A .bin, .exr or .imgmap of the container `path`, a .gltf. It is named x.bin, or x-HASH.bin by its content
+/// if another file has that name, so it replaces nothing. An existing file with the same content is used
+/// again.
 class SidecarFile {
   public:
     /// Writes the content under a temporary name, for those who may read `path`. Throws Error(kIo).

@@ -11,6 +11,7 @@
 #include "formats/findings/limits.h"
 #include "formats/gltf/byte_range.h"
 #include "formats/gltf/draco_mesh.h"
+#include "formats/gltf/layer_layout.h"
 #include "formats/gltf/meshopt_views.h"
 #include "libcore/mesh/mesh_image.h"
 
@@ -58,9 +59,10 @@ struct Asset {
     std::vector<BuildParameter> parameters;  ///< comes back sorted by name
     std::vector<AssetLevel> levels;          ///< 0 is the finest
     std::uint64_t buffer_length = 0;
-    std::string buffer_name;  ///< the sidecar file; empty for a .glb's binary chunk
-    ByteRange layers;         ///< the EXR in the buffer, if `layers_name` is empty
-    std::string layers_name;  ///< or its sidecar file
+    std::string buffer_name;                 ///< the sidecar file; empty for a .glb's binary chunk
+    LayerLayout layout = LayerLayout::kExr;  ///< of the layers
+    ByteRange layers;                        ///< these in the buffer, if `layers_name` is empty
+    std::string layers_name;                 ///< or their sidecar file
 
     ByteRange texture;         ///< the image on the meshes, in the buffer
     std::string texture_type;  ///< its mimeType; empty for no texture
@@ -75,7 +77,7 @@ struct Asset {
     // has_layers is false.
     bool has_size = true;    ///< of the image
     bool has_levels = true;  ///< their number is known
-    bool has_layers = true;  ///< the place of the EXR is known
+    bool has_layers = true;  ///< the place of the layers is known
     bool has_buffer = true;  ///< likewise
 };
 

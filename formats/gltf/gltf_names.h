@@ -13,7 +13,6 @@ inline constexpr const char* kHiddenColor = "_COLOR";
 inline constexpr const char* kTexcoord = "TEXCOORD_0";
 /// The attribute of linear RGB in HDR meshes.
 inline constexpr const char* kHdr = "_LIGHT";
-inline constexpr const char* kLayersMimeType = "image/x-exr";
 inline constexpr const char* kGenerator = "generator";
 /// In the order of SampleType.
 inline constexpr const char* kSampleTypes[] = {"uint8", "uint16", "half", "float"};

@@ -287,8 +287,14 @@ void read_levels(const json& document, const tinygltf::Model& model, const Conta
 }
 
 void read_layers_member(const json& layers, const tinygltf::Model& model, Asset& asset) {
-    if (string_member(layers, "mimeType", "ext.member") != kLayersMimeType)
-        refuse("ext.value", cat("the layers are not of type ", kLayersMimeType), at_pointer("mimeType"));
+    const std::string type = string_member(layers, "mimeType", "ext.member");
+    constexpr auto kExr = LayerLayout::kExr, kCompact = LayerLayout::kCompact;
+    if (type != media_type(kExr) && type != media_type(kCompact))
+        refuse("ext.value",
+               cat("the layers are of type ", type, ", expected ", media_type(kExr), " or ",
+                   media_type(kCompact)),
+               at_pointer("mimeType"));
+    asset.layout = type == media_type(kExr) ? kExr : kCompact;
     if (layers.contains("uri") == layers.contains("bufferView"))
         refuse("ext.layers", "the layers have not either a uri or a bufferView");
     if (layers.contains("uri"))

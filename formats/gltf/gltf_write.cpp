@@ -187,7 +187,7 @@ json root_extension(const Asset& asset, int layers_view) {
         std::visit([&](const auto& v) { member = v; }, value);
     }
     build[kGenerator] = asset.generator;
-    json layers = {{"mimeType", kLayersMimeType}};
+    json layers = {{"mimeType", media_type(asset.layout)}};
     if (asset.layers_name.empty())
         layers["bufferView"] = layers_view;
     else

@@ -17,7 +17,7 @@ struct FitParams {
     double color_weight = 1.0 / 20;  ///< of colour against smoothness [px^2 / feature^2]; 0: the trivial map
     std::optional<WeightPrecision> bary;  ///< none: half where the map stays a bijection with it, else float
     int steps = kUsualSteps;              ///< of the grid of positions in a pixel: 8, 16 or 32
-    double rate = 0;             ///< what a bit of a displacement costs [feature^2]: more makes a compact stream shorter; >= 0
+    double rate = 0;             ///< cost of a bit of a displacement [feature^2], for a shorter stream; >= 0
     int rounds = 4;              ///< of relaxation, colours refitted after each
     int sweeps = 4;              ///< of relaxation a round
     FeatureSpace space;          ///< of the image

@@ -85,7 +85,7 @@ void write_with_channels(const std::filesystem::path& folder, const std::string&
 // Meshes without pixel maps, compressed for engines without Draco.
 void write_plain(const std::filesystem::path& folder, const std::string& name, const MeshImage& image) {
     ContainerOptions options;
-    options.layers = false;
+    options.layers = LayerLayout::kOff;
     options.meshopt = true;
     write_container((folder / (name + ".glb")).string(), image, options);
     options.texture = {red_png(), texture_coords(image)};

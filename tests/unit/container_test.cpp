@@ -130,7 +130,7 @@ TEST_CASE(
                     const Container back = read_container(path);
                     check_same(image, back.mesh_image);
                     CHECK(back.facts.draco == mode);
-                    CHECK(back.facts.version == "1.0");
+                    CHECK(back.facts.version == "1.1");
                     std::uint64_t size = 0;
                     for (const char* part : {".glb", ".gltf", ".bin", ".exr"}) {
                         const fs::path file = fs::path(path).replace_extension(part);
@@ -446,7 +446,7 @@ TEST_CASE("containers: what is known of the buffer's length before the work") {
     CHECK(check_buffer("x.gltf", {std::int64_t{1} << 30, 10000}, options) == "");
     // Draco may take nothing; without it, a vertex has a position at least.
     const ContainerPlan many{std::int64_t{1} << 28, std::int64_t{1} << 28};
-    options.layers = false;
+    options.layers = LayerLayout::kOff;
     CHECK(check_buffer("x.glb", many, options) == "");
     options.draco = DracoMode::kOff;
     for (const char* path : {"x.glb", "x.gltf"}) CHECK_THROWS_AS(check_buffer(path, many, options), Error);

@@ -23,6 +23,10 @@ Choices<DracoMode> draco_choices() {
             {"none", DracoMode::kOff}};
 }
 
+Choices<LayerLayout> layer_choices() {
+    return {{"exr", LayerLayout::kExr}, {"compact", LayerLayout::kCompact}};
+}
+
 Choices<SampleType> sample_type_choices() {
     return {{"uint8", SampleType::kUint8},
             {"uint16", SampleType::kUint16},

@@ -16,6 +16,7 @@ namespace imgmesh {
 Choices<ColorSpace> color_space_choices();
 Choices<WeightPrecision> bary_choices();
 Choices<DracoMode> draco_choices();
+Choices<LayerLayout> layer_choices();  ///< without kOff
 Choices<SampleType> sample_type_choices();
 Choices<DrawMode> draw_mode_choices();
 Choices<DistanceRule> distance_choices();
