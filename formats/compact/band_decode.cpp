@@ -24,36 +24,49 @@ struct TokenReader {
 
     template <int kComponent>
     IMGMESH_INLINE int code(int predicted, int energy, int x, std::int16_t& value) {
-        const int number = kMasked && !inside[x] ? 0 : next_number<kComponent>(place_of(predicted, energy));
-        value = value_of(predicted, number);
-        return number;
+        int residual = 0, size = 0;
+        if (!kMasked || inside[x]) next_residual<kComponent>(place_of(predicted, energy), residual, size);
+        value = value_of(predicted, residual);
+        return size;
     }
 
     template <int kComponent>
-    IMGMESH_INLINE int next_number(int place) {
+    IMGMESH_INLINE void next_residual(int place, int& residual, int& size) {
         std::uint32_t s = state[kComponent];
         const std::size_t table = table_of[kComponent * kClasses * kEnergies + place];
         constexpr std::uint32_t kSlotMask = (1u << kFrequencyBits) - 1;
         const std::uint32_t slot = tables[table].data()[s & kSlotMask];
-        const std::uint32_t frequency = (slot >> DecodeTables::kFrequencyShift) & (2 * kSlotMask + 1);
-        s = refilled(frequency * (s >> kFrequencyBits) + (slot & kSlotMask));
-        int number = static_cast<int>(slot >> DecodeTables::kTokenShift);
-        if (number >= kPlainTokens) [[unlikely]] {
-            const auto range = static_cast<std::size_t>(number - kPlainTokens);
+        const std::uint32_t frequency = static_cast<std::uint16_t>(slot);
+        s = refilled(frequency * (s >> kFrequencyBits) + ((slot >> DecodeTables::kPlaceShift) & kSlotMask));
+        residual = static_cast<std::int32_t>(slot) >> DecodeTables::kResidualShift;
+        size = std::abs(residual);
+        if (residual >= DecodeTables::kFirstRange) [[unlikely]] {
+            const auto range = static_cast<std::size_t>(residual - DecodeTables::kFirstRange);
             const int count = kTokenBits[range];
-            number = kTokenFirst[range] + static_cast<int>(s & ((1u << count) - 1));
+            residual = residual_of(kTokenFirst[range] + static_cast<int>(s & ((1u << count) - 1)));
+            size = std::min(std::abs(residual), kMaxMagnitude);
             s = refilled(s >> count);
         }
         state[kComponent] = s;
-        return number;
     }
 
     // Without a branch, for nobody can predict it.
     IMGMESH_INLINE std::uint32_t refilled(std::uint32_t s) {
-        const std::uint32_t low = s < kLowest;
-        s = (s << (low * kWordBits)) | (*words & (0u - low));
-        words += low;
+        const std::uint32_t more = s << kWordBits | *words;
+#if defined(__x86_64__)
+        // GCC makes a branch of what is said otherwise, or twice the instructions.
+        std::uint64_t taken = 0;
+        asm("cmp %[lowest], %[s]\n\tcmovb %[more], %[s]\n\tadc $0, %[taken]"
+            : [s] "+r"(s), [taken] "+r"(taken)
+            : [more] "r"(more), [lowest] "i"(kLowest)
+            : "cc");
+        words += taken;
         return s;
+#else
+        const std::uint32_t low = s < kLowest;
+        words += low;
+        return s ^ ((s ^ more) & (0u - low));
+#endif
     }
 };
 
@@ -191,10 +204,13 @@ DecodeTables::DecodeTables(const BandTables& from) : taps(from.taps), tables(fro
                     from.table_of[component][rest_class][as_index(level_of(energy))];
     for (std::size_t table = 0; table < tables.size(); ++table) {
         std::uint32_t* slot = tables[table].data();
-        for (std::uint32_t token = 0; token < kTokens; ++token) {
-            const std::uint32_t frequency = from.tables[table][token].frequency;
+        for (int token = 0; token < kTokens; ++token) {
+            const std::uint32_t frequency = from.tables[table][as_index(token)].frequency;
+            const int residual =
+                token < kPlainTokens ? residual_of(token) : kFirstRange + token - kPlainTokens;
             for (std::uint32_t i = 0; i < frequency; ++i)
-                *slot++ = token << kTokenShift | frequency << kFrequencyShift | i;
+                *slot++ =
+                    static_cast<std::uint32_t>(residual) << kResidualShift | i << kPlaceShift | frequency;
         }
     }
 }

@@ -16,8 +16,10 @@ struct DecodeTables {
     std::array<Taps, 2> taps;
     /// The table of a context: [component][class][energy].
     std::array<std::array<std::array<std::uint8_t, kEnergies>, kClasses>, 2> table_of;
-    /// For each slot of a table its token, the token's frequency and the slot's place among the token's.
-    static constexpr int kTokenShift = 2 * kFrequencyBits + 1, kFrequencyShift = kFrequencyBits;
+    /// For each slot of a table, from the lowest bits on: its token's frequency, the slot's place among the
+    /// token's, and the residual of a plain token (signed) or kFirstRange + token - kPlainTokens.
+    static constexpr int kPlaceShift = 16, kResidualShift = kPlaceShift + kFrequencyBits;
+    static constexpr int kFirstRange = magnitude_of(kPlainTokens - 1) + 1;
     using TableSlots = std::array<std::uint32_t, 1 << kFrequencyBits>;
     std::vector<TableSlots> tables;
 };

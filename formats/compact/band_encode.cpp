@@ -10,7 +10,7 @@
 namespace imgmesh::compact {
 namespace {
 
-// Gives pixels outside the values that the decoder will give them. The numbers of residuals are no matter.
+// Gives pixels outside the values that the decoder will give them. The magnitudes of residuals are no matter.
 struct OutsideSource {
     const Chunk& chunk;
     const std::uint8_t* inside;

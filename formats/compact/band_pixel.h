@@ -56,42 +56,45 @@ struct Lane {
         const ComponentLane& lane = kComponent == 0 ? x : y;
         return chunk->energy.data()[kComponent].data()[i] + 4 * lane.size_w + 2 * lane.size_ww;
     }
-    /// Notes a pixel's value, the number of its residual and its residual without the slope.
+    /// Notes a pixel's value, the magnitude of its residual and its residual without the slope.
     template <std::size_t kComponent>
-    IMGMESH_INLINE void note(int i, std::int16_t value, int number, int plain) {
+    IMGMESH_INLINE void note(int i, std::int16_t value, int size, int plain) {
         ComponentLane& lane = kComponent == 0 ? x : y;
         lane.ww = lane.w;
         lane.w = value;
         lane.size_ww = lane.size_w;
-        lane.size_w = std::min(magnitude_of(number), kMaxMagnitude);
+        lane.size_w = size;
         chunk->value.data()[kComponent].data()[i] = value;
         chunk->plain.data()[kComponent].data()[i] = static_cast<std::int16_t>(plain);
-        chunk->size.data()[kComponent].data()[i] = static_cast<std::uint16_t>(lane.size_w);
+        chunk->size.data()[kComponent].data()[i] = static_cast<std::uint16_t>(size);
     }
 };
 
-/// Returns the value that a prediction and the number of its residual give. Displacements are numbers of 16
-/// bits, and sums of them wrap.
-IMGMESH_INLINE std::int16_t value_of(int predicted, int number) {
-    return static_cast<std::int16_t>(whole_of(predicted) + residual_of(number, has_negative_rest(predicted)));
+/// Returns the value that a prediction and a residual give, which is turned where the prediction has a
+/// negative rest: what lies on the rest's side is likelier. Displacements are numbers of 16 bits, and sums of
+/// them wrap.
+IMGMESH_INLINE std::int16_t value_of(int predicted, int residual) {
+    // With the bits of the whole number turned first and last, little is left to do when the residual is
+    // known.
+    const int turn = -static_cast<int>(has_negative_rest(predicted));
+    return static_cast<std::int16_t>(((whole_of(predicted) ^ turn) + residual) ^ turn);
 }
 
-/// Codes pixel i of the chunk. source.code<COMPONENT>(predicted, energy, i, value) tells the number of a
-/// component's residual, which is turned where the prediction has a negative rest: what lies on the rest's
-/// side is likelier. It sets the value to value_of() both.
+/// Codes pixel i of the chunk. source.code<COMPONENT>(predicted, energy, i, value) tells the magnitude of a
+/// component's residual, kMaxMagnitude at most, and sets the value.
 template <typename Source>
 IMGMESH_INLINE void code_pixel(Lane& lane, int i, Source& source) {
     std::int16_t value = 0;
     const int predicted_x = lane.predicted<0>(i), energy_y = lane.energy<1>(i),
-              number_x = source.template code<0>(predicted_x, lane.energy<0>(i) + (energy_y >> 3), i, value);
-    lane.note<0>(i, value, number_x, value - whole_of(predicted_x));
+              size_x = source.template code<0>(predicted_x, lane.energy<0>(i) + (energy_y >> 3), i, value);
+    lane.note<0>(i, value, size_x, value - whole_of(predicted_x));
 
     // dx's residual, with the rest, says by the slope of the rows above what dy's will be.
     const std::int64_t exact_x = std::int64_t{value} * (1 << kTapBits) - predicted_x;
     const int plain_y = lane.predicted<1>(i),
               predicted_y = plain_y + static_cast<int>((lane.chunk->slope.data()[i] * exact_x) >> kSlopeBits),
-              number_y = source.template code<1>(predicted_y, energy_y + 2 * lane.x.size_w, i, value);
-    lane.note<1>(i, value, number_y, value - whole_of(plain_y));
+              size_y = source.template code<1>(predicted_y, energy_y + 2 * lane.x.size_w, i, value);
+    lane.note<1>(i, value, size_y, value - whole_of(plain_y));
 }
 
 }  // namespace imgmesh::compact
