@@ -3,7 +3,7 @@
 
 read_container.py IN OUT.png [--level K] [--exposure E] [--expect PICTURE [--min-psnr DB]] [--channel NAME --within LOW HIGH]
 
-IN is a .glb or .gltf written with --draco none. With --expect the result is compared, and the exit code is 1 below
+IN is a .glb or .gltf written with --draco none, with layers as EXR or compact. With --expect the result is compared, and the exit code is 1 below
 DB (default 45) decibels. --exposure multiplies the light before it is drawn. --channel prints the least and the
 largest value of a channel beside the colour; the exit code is 1 where they are not LOW to HIGH.
 """
@@ -21,12 +21,16 @@ import numpy as np
 import OpenImageIO as oiio
 from PIL import Image
 
+import compact_stream
+import locate_map
+
 EXTENSION = "IMGMESH_pixel_map"
+COMPACT = "application/x-imgmesh-map"
 NO_FACE = 0xFFFFFFFF
 
 
 def read_gltf(path):
-    """The document, the buffer's bytes and the EXR's bytes."""
+    """The document, the buffer's bytes and the layers' bytes."""
     data = path.read_bytes()
     binary = b""
     if data[:4] == b"glTF":
@@ -76,7 +80,7 @@ def channel_attributes(names):
 
 
 def read_mesh(document, binary, node):
-    """Faces (F, 3), linear colours (V, 3), and the other channels' values (V) by their names."""
+    """Faces (F, 3), positions (V, 2) with y down, linear colours (V, 3), other channels' values (V) by their names."""
     (primitive,) = document["meshes"][node["mesh"]]["primitives"]
     if "KHR_draco_mesh_compression" in primitive.get("extensions", {}):
         sys.exit("the mesh is Draco-compressed; write it with --draco none")
@@ -93,10 +97,19 @@ def read_mesh(document, binary, node):
     topology = hashlib.sha256(indices.tobytes() + positions.tobytes()).hexdigest()
     if topology != node["extensions"][EXTENSION]["topology"]:
         sys.exit("the topology hash does not match")
-    return indices.reshape(-1, 3), colors, channels
+    return indices.reshape(-1, 3), positions[:, :2] * (1, -1), colors, channels
 
 
-def read_layers(exr, part):
+def read_compact(stream, part, topology, faces, positions):
+    """The same as read_exr(): faces and weights follow from the displacements and the mesh."""
+    stored = compact_stream.decode(stream)[part]
+    if stored["topology"] not in ("", topology):
+        sys.exit("the layers were made for another mesh")
+    n = 2048 if stored["half"] else 2**24
+    return locate_map.pixel_map(faces, positions, stored["dx"], stored["dy"], stored["steps"], stored["inside"], n)
+
+
+def read_exr(exr, part, topology):
     """face.id (H, W) as integers, u and v (H, W). A channel is read alone: as one type all would become floats."""
     with tempfile.NamedTemporaryFile(suffix=".exr") as file:
         file.write(exr)
@@ -106,6 +119,9 @@ def read_layers(exr, part):
         while image.seek_subimage(index, 0):
             spec = image.spec()
             if spec.getattribute("oiio:subimagename") == part or spec.getattribute("name") == part:
+                if spec.getattribute("imgmesh:topology") not in (None, topology):
+                    sys.exit("the layers were made for another mesh")
+
                 def channel(name, kind):
                     c = spec.channelnames.index(name)
                     return image.read_image(index, 0, c, c + 1, kind)[:, :, 0]
@@ -150,11 +166,15 @@ def srgb_from_linear(rgb):
 
 def reconstruct(path, level, exposure=1.0):
     """The image as (H, W, 3) bytes, where it has faces (H, W), and the other channels (H, W) by their names."""
-    document, binary, exr = read_gltf(path)
+    document, binary, layers = read_gltf(path)
     part = f"lod{level}"
     node = next(n for n in document["nodes"] if n["extensions"][EXTENSION]["part"] == part)
-    faces, colors, channels = read_mesh(document, binary, node)
-    face, u, v = read_layers(exr, part)
+    faces, positions, colors, channels = read_mesh(document, binary, node)
+    topology = node["extensions"][EXTENSION]["topology"]
+    if document["extensions"][EXTENSION]["layers"]["mimeType"] == COMPACT:
+        face, u, v = read_compact(layers, part, topology, faces, positions)
+    else:
+        face, u, v = read_exr(layers, part, topology)
     inside = face != NO_FACE
     corners = luv_from_linear(colors)[faces[np.where(inside, face, 0)]]
     u, v = u.astype(float), v.astype(float)
