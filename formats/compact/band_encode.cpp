@@ -97,27 +97,38 @@ constexpr auto kReciprocal = [] {
 
 // A state of rANS that takes tokens from the last to the first, and writes words from the last to the first.
 struct Encoder {
-    std::uint32_t state = kLowest;
+    std::uint64_t state = kLowest;  // of 32 bits
 
     IMGMESH_INLINE void put(Slots slots, std::uint16_t*& words) {
-        const std::uint32_t frequency = slots.frequency;
-        put_word(state >= std::uint64_t{frequency} << (2 * kWordBits - kFrequencyBits), words);
+        const std::uint64_t frequency = slots.frequency;
+        put_word(frequency << (2 * kWordBits - kFrequencyBits), words);
         // floor((2^64 - 1) / f) (s + 1) / 2^64 is less than (s + 1) / f, by so little that its whole part is
         // that of s / f.
-        const auto quotient = static_cast<std::uint32_t>(
-            (static_cast<unsigned __int128>(kReciprocal.data()[frequency]) * (std::uint64_t{state} + 1)) >>
-            64);
-        state = (quotient << kFrequencyBits) + (state - quotient * frequency) + slots.first;
+        const auto quotient = static_cast<std::uint64_t>(
+            (static_cast<unsigned __int128>(kReciprocal.data()[frequency]) * (state + 1)) >> 64);
+        state += quotient * ((1 << kFrequencyBits) - frequency) + slots.first;
     }
     void put_bits(unsigned value, int count, std::uint16_t*& words) {
-        put_word(state >= std::uint64_t{1} << (2 * kWordBits - count), words);
+        put_word(std::uint64_t{1} << (2 * kWordBits - count), words);
         state = (state << count) | value;
     }
-    // Without a branch, for nobody can predict it.
-    IMGMESH_INLINE void put_word(bool wanted, std::uint16_t*& words) {
+    // Writes a word if the state is not below `limit`. Without a branch, for nobody can predict it.
+    IMGMESH_INLINE void put_word(std::uint64_t limit, std::uint16_t*& words) {
         words[-1] = static_cast<std::uint16_t>(state);
-        words -= wanted;
-        state >>= wanted * kWordBits;
+#if defined(__x86_64__)
+        // As for the decoder, GCC needs more instructions.
+        const std::uint64_t high = state >> kWordBits;
+        std::uint64_t put = 0;
+        asm("cmp %[limit], %[state]\n\tcmovae %[high], %[state]\n\tsbb $-1, %[put]"
+            : [state] "+r"(state), [put] "+r"(put)
+            : [high] "r"(high), [limit] "r"(limit)
+            : "cc");
+        words -= put;
+#else
+        const bool put = state >= limit;
+        words -= put;
+        state >>= put * kWordBits;
+#endif
     }
 };
 
@@ -155,7 +166,7 @@ void put_band(std::vector<std::uint8_t>& out, const BandTokens& band, const Band
         put(x, token[0], slots_x);
     }
     for (Encoder* encoder : {&y, &x})
-        for (int word = 0; word < 2; ++word) encoder->put_word(true, at);
+        for (int word = 0; word < 2; ++word) encoder->put_word(0, at);
     const auto count = static_cast<std::size_t>(words.data() + words.size() - at);
     const std::size_t before = out.size();
     out.resize(before + 2 * count);
