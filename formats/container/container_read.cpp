@@ -107,10 +107,13 @@ void read_levels(const Asset& asset, View buffer, StoredLayers& layers, Findings
         const AssetLevel& level = asset.levels[k];
         BaseMesh mesh;
         coords.emplace_back();
+        const std::size_t before = findings.errors();
         if (level.is_sound)
             findings.attempt(asset.places[k].pointer, [&] {
                 mesh = load_level(level, asset.source, buffer, findings, coords.back());
             });
+        // A validator goes on: no pixel is to be found on a mesh whose faces point anywhere.
+        if (findings.errors() > before) mesh = {};
         if (k >= layers.size()) continue;
         const bool other_mesh =
             level.is_sound && !layers.topology(k).empty() && layers.topology(k) != level.topology;

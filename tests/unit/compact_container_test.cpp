@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <fstream>
 #include <random>
 
 #include "formats/container/container.h"
@@ -108,6 +109,17 @@ TEST_CASE("compact container: a map off the grid has no compact form, and nothin
     CHECK_THROWS_WITH_AS(write_container(path, image, with(LayerLayout::kCompact, DracoMode::kEdgebreaker)),
                          doctest::Contains("lod1 has no compact form"), Error);
     CHECK(std::filesystem::is_empty(std::filesystem::path(path).parent_path()));
+}
+
+TEST_CASE("compact container: a validator looks for no pixels on a broken mesh") {
+    const TemporaryFolder folder;
+    const std::string path = folder / "a.gltf", mesh = folder / "a.bin";
+    write_container(path, image_on_grid(40, 30, 1, false, WeightPrecision::kHalf, 5),
+                    with(LayerLayout::kCompact, DracoMode::kOff));
+    std::fstream(mesh, std::ios::in | std::ios::out | std::ios::binary).write("\xff\xff\xff\x7f", 4);
+    std::vector<std::string> codes;
+    for (const Issue& issue : validate_container(path)) codes.emplace_back(issue.finding->code);
+    CHECK(codes == std::vector<std::string>{"mesh.topology", "mesh.index"});
 }
 
 TEST_CASE("compact container: the files of a .gltf follow the layout when it is written again") {
