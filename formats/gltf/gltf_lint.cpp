@@ -231,7 +231,7 @@ void lint_foreign(const json& document, const Asset& asset, Findings& findings) 
             return !child(images[i], name).is_null() && child(images[i], name) == child(layers, name);
         };
         if (same("mimeType") || same("uri") || same("bufferView"))
-            findings.add("gltf.image", cat("image ", i, " is the EXR"), at_pointer(cat("/images/", i)));
+            findings.add("gltf.image", cat("image ", i, " holds the layers"), at_pointer(cat("/images/", i)));
     }
     if (!asset.buffer_name.empty() && asset.buffer_name == asset.layers_name)
         findings.add("uri.same", cat("buffer and layers are both in ", asset.buffer_name),
