@@ -17,10 +17,14 @@ struct Case {
     std::function<void(const std::filesystem::path&)> after;  ///< done to the folder
 };
 
-/// Those of the files, the JSON and the extension; those of meshes and layers.
+/// Those of the files, the JSON and the extension; those of meshes and of layers as an EXR.
 std::map<std::string, Case> json_cases();
 std::map<std::string, Case> data_cases();
 
+/// Those of compact layers, by a code and, after a +, which of its cases it is.
+std::map<std::string, Case> compact_cases();
+
+/// One for each code.
 inline std::map<std::string, Case> all_cases() {
     std::map<std::string, Case> cases = json_cases();
     cases.merge(data_cases());

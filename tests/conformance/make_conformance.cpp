@@ -1,6 +1,6 @@
 // make-conformance FOLDER: for each code of kFindings a container in FOLDER/CODE that has this finding and no
-// other, and containers without any in FOLDER/valid-*. Where an option is needed to see it, it stands in
-// FOLDER/CODE/options. A code without a case here is an error.
+// other, in FOLDER/CODE+NAME further ones of a code, and containers without any in FOLDER/valid-*. Where an
+// option is needed to see it, it stands in FOLDER/CODE/options. A code without a case here is an error.
 #include <fstream>
 #include <iostream>
 #include <map>
@@ -45,6 +45,18 @@ int run(const fs::path& out) {
             for (const bool glb : {false, true})
                 Sample(levels, mode)
                     .write(out / cat("valid-", name, "-", levels, glb ? "-glb" : "-gltf"), glb);
+    for (const auto& [name, c] : compact_cases()) write_case(c, out / name);
+    for (const bool glb : {false, true}) {
+        Sample compact(3, DracoMode::kEdgebreaker);
+        compact.asset.layout = LayerLayout::kCompact;
+        compact.asset.source.has_mask = true;
+        for (LayerPart& part : compact.parts) part.map[4] = {};
+        compact.parts[0].visits.assign(9, 2);
+        compact.write(out / cat("valid-compact", glb ? "-glb" : "-gltf"), glb);
+    }
+    Sample old;
+    old.asset.version = "1.0";
+    old.write(out / "valid-version-1.0", false);
     Sample masked;
     masked.asset.source.has_mask = true;
     masked.parts[0].map[4] = {};

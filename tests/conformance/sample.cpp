@@ -48,6 +48,23 @@ AssetLevel store(const StoredMesh& mesh, DracoMode mode, double error, Bytes& bu
     return level;
 }
 
+Bytes encode_compact(const std::vector<LayerPart>& parts, const std::function<void(CompactPart&)>& edit) {
+    std::vector<CompactPart> all;
+    for (const LayerPart& part : parts) {
+        const std::size_t pixels = part.map.size();
+        CompactPart compact{part.name, {}, part.map.precision, part.visits, part.topology};
+        compact.map = {{part.map.width, part.map.height},
+                       8,
+                       std::vector<std::int16_t>(pixels),
+                       std::vector<std::int16_t>(pixels),
+                       Mask(part.map)};
+        for (std::size_t i = 0; i < pixels; ++i) compact.map.inside[i] = part.map[i].face != kNone;
+        if (edit) edit(compact);
+        all.push_back(compact);
+    }
+    return encode_compact_layers(all);
+}
+
 }  // namespace
 
 void write_bytes(const std::filesystem::path& path, const Bytes& bytes) {
@@ -101,7 +118,7 @@ Bytes Exr::bytes() const {
 }
 
 Sample::Sample(int levels, DracoMode mode) {
-    asset.version = "1.0";
+    asset.version = "1.1";
     asset.generator = "imgmesh-conformance 1";
     asset.source.width = asset.source.height = kSide;
     for (int k = 0; k < levels; ++k) {
@@ -137,23 +154,25 @@ void Sample::write(const std::filesystem::path& folder, bool glb) const {
         a.texture_type = "image/png";
         a.texture = append_values(buffer, texture);
     }
-    Bytes exr_bytes;
-    if (edit_exr) {
+    Bytes layer_bytes;
+    if (a.layout == LayerLayout::kCompact) {
+        layer_bytes = encode_compact(layers, edit_compact);
+    } else if (edit_exr) {
         Exr exr(kSide, kSide, a.levels[0].topology);
         edit_exr(exr);
-        exr_bytes = exr.bytes();
+        layer_bytes = exr.bytes();
     } else {
-        exr_bytes = encode_exr_layers(layers);
+        layer_bytes = encode_exr_layers(layers);
     }
-    if (edit_layers) edit_layers(exr_bytes);
+    if (edit_layers) edit_layers(layer_bytes);
     if (edit_bin) edit_bin(buffer);
     a.buffer_length = buffer.size();
     if (glb) {
-        a.layers = append_values(buffer, exr_bytes);
+        a.layers = append_values(buffer, layer_bytes);
         a.buffer_length = buffer.size();
     } else {
         a.buffer_name = "x.bin";
-        a.layers_name = "x.exr";
+        a.layers_name = std::string("x") + sidecar_extension(a.layout);
     }
     json document = json::parse(json_from_asset(a));
     if (edit_json) edit_json(document);
@@ -167,7 +186,7 @@ void Sample::write(const std::filesystem::path& folder, bool glb) const {
     }
     write_bytes(folder / "x.gltf", {text.begin(), text.end()});
     write_bytes(folder / "x.bin", buffer);
-    write_bytes(folder / "x.exr", exr_bytes);
+    write_bytes(folder / a.layers_name, layer_bytes);
 }
 
 }  // namespace imgmesh::conformance

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "formats/compact/compact_layers.h"
 #include "formats/container/container.h"
 #include "formats/exr/exr_layers.h"
 #include "formats/gltf/gltf_asset.h"
@@ -32,7 +33,8 @@ struct Exr {
     Bytes bytes() const;
 };
 
-/// An image of 3 x 3 pixels, all in face 0 or 1 of a square of two faces, on each of `levels` levels.
+/// An image of 3 x 3 pixels, all in face 0 or 1 of a square of two faces, on each of `levels` levels. With
+/// compact layers all pixels lie where they are in the image.
 struct Sample {
     Asset asset;
     std::vector<StoredMesh> meshes;
@@ -40,14 +42,15 @@ struct Sample {
     std::vector<DracoMode> modes;
     Bytes texture;  ///< empty for none
     // What is done to the result before it is written.
-    std::function<void(Exr&)> edit_exr;  ///< of one level; its EXR is written by OpenEXR then
+    std::function<void(Exr&)> edit_exr;              ///< of one level; its EXR is written by OpenEXR then
+    std::function<void(CompactPart&)> edit_compact;  ///< of each level; for asset.layout kCompact
     std::function<void(json&)> edit_json;
     std::function<void(std::string&)> edit_text;
     std::function<void(Bytes&)> edit_bin, edit_layers, edit_glb;
 
     Sample(int levels = 1, DracoMode mode = DracoMode::kOff);
     void add_texture();
-    /// x.gltf, x.bin and x.exr, or x.glb, in a folder that is made.
+    /// x.gltf, x.bin and x.exr or x.imgmap, or x.glb, in a folder that is made.
     void write(const std::filesystem::path& folder, bool glb) const;
 };
 
