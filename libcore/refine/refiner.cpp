@@ -214,11 +214,14 @@ bool Refiner::move_vertex(Id v) {
     if (step.norm() > limit) step *= limit / step.norm();
     Placement placement;
     constexpr int kHalvings = 3;
-    Vec2f last = vertex_.position[v];
+    // A side of the mesh need not be on the grid of new positions: that of a strip is half a pixel out.
+    const Vec2f from = vertex_.position[v];
+    const std::uint8_t fixed = vertex_.fixed[v];
+    Vec2f last = from;
     for (int half = 0; half <= kHalvings; ++half, step *= 0.5f) {
-        const Vec2f p(snapped(vertex_.position[v].x() + step.x()),
-                      snapped(vertex_.position[v].y() + step.y()));
-        if (p == vertex_.position[v] || p == last) break;
+        const Vec2f p(fixed == RefineVertices::kFixedX ? from.x() : snapped(from.x() + step.x()),
+                      fixed == RefineVertices::kFixedY ? from.y() : snapped(from.y() + step.y()));
+        if (p == from || p == last) break;
         last = p;
         if (place(ring, p, vertex_.color[v], before.least_q, placement) && better(placement.cost, before)) {
             set(ring, v, placement);

@@ -68,6 +68,15 @@ class Lean(CliCase):
             self.assertEqual([level["flipped_pixel_triangles"] for level in report["levels"]], [0] * len(report["levels"]))
             self.run_ok("imgmesh-info", "c.glb", "--validate")
 
+    def test_a_strip_keeps_its_sides(self):
+        """They are half a pixel out, between the positions of whole pixels."""
+        wave = 0.5 + 0.4 * numpy.sin(numpy.arange(59)[None, :, None] / 3)
+        picture_files.png(self.folder / "wide.png", wave)
+        picture_files.png(self.folder / "high.png", wave.transpose(1, 0, 2))
+        for picture in ("wide.png", "high.png"):
+            self.run_ok("imgmesh-build", picture, "-o", "c.glb", "--density", "20", "--position-step", "1", "-q")
+            self.run_ok("imgmesh-info", "c.glb", "--validate", "--warnings-as-errors")
+
     def test_what_has_no_colour_levels(self):
         picture_files.write_float(self.folder / "hdr.exr", 4 * picture_files.noise(40, 30))
         report = self.build("hdr.exr", "--density", "5", "--mesh-precision", "compact", output="c.glb")
