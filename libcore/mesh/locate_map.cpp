@@ -143,8 +143,7 @@ class Inverse {
   private:
     bool find_row(Displacements& d, int y, Rows::Scratch& scratch, std::span<PixelCoord> back) {
         const auto row = map_.row(y);
-        for (int x = 0; x < d.width; ++x)
-            if (row[as_index(x)].face != kNone && !set(d, x, y, nearest(d.steps, x, y))) return false;
+        if (!set_nearest(d, y)) return false;
         const auto comes_back = [&] {
             return rows_.locate(d, y, scratch, back) == d.width &&
                    std::equal(back.begin(), back.end(), row.begin());
@@ -155,21 +154,55 @@ class Inverse {
         return comes_back();
     }
 
-    // Returns the grid point nearest to where the map has the pixel, as a displacement.
+    // Finds grid points of a map with so many steps.
+    struct Rounding {
+        Rounding(int steps, int weight_bits)
+            : bits(weight_bits),
+              shift(bits + (steps == 8    ? 2
+                            : steps == 16 ? 1
+                                          : 0)),
+              half((std::int64_t{1} << shift) / 2),
+              one(static_cast<float>(1 << bits)) {}
+
+        // Returns the grid point nearest to where the map has the pixel, as a displacement.
+        IMGMESH_INLINE GridPoint nearest(const ExactFace& face, const PixelCoord& coord, int x, int y) const {
+            const auto b = static_cast<std::int64_t>(coord.u * one),
+                       c = static_cast<std::int64_t>(coord.v * one);
+            const auto rounded = [&](std::int32_t from, std::int32_t to_b, std::int32_t to_c) {
+                return static_cast<std::int32_t>(
+                    ((std::int64_t{from} << bits) + b * to_b + c * to_c + half) >> shift);
+            };
+            // The gradients are turned sides: b - a is (-cy, cx), and c - a is (by, -bx).
+            return {rounded(face.a.x - x * kPixelUnits, -face.cy, face.by),
+                    rounded(face.a.y - y * kPixelUnits, face.cx, -face.bx)};
+        }
+
+        int bits, shift;
+        std::int64_t half;
+        float one;
+    };
+
     GridPoint nearest(int steps, int x, int y) const {
         const PixelCoord& coord = map_.at(x, y);
-        const ExactFace& face = rows_.bins().face(coord.face);
-        const int bits = rows_.bits(), shift = bits + (steps == 8 ? 2 : steps == 16 ? 1 : 0);
-        const auto one = static_cast<float>(1 << bits);
-        const auto b = static_cast<std::int64_t>(coord.u * one), c = static_cast<std::int64_t>(coord.v * one);
-        const std::int64_t half = (std::int64_t{1} << shift) / 2;
-        const auto rounded = [&](std::int32_t from, std::int32_t to_b, std::int32_t to_c) {
-            return static_cast<std::int32_t>(((std::int64_t{from} << bits) + b * to_b + c * to_c + half) >>
-                                             shift);
-        };
-        // The gradients are turned sides: b - a is (-cy, cx), and c - a is (by, -bx).
-        return {rounded(face.a.x - x * kPixelUnits, -face.cy, face.by),
-                rounded(face.a.y - y * kPixelUnits, face.cx, -face.bx)};
+        return Rounding(steps, rows_.bits()).nearest(rows_.bins().face(coord.face), coord, x, y);
+    }
+
+    // Sets a row. Returns whether all displacements have 16 bits.
+    bool set_nearest(Displacements& d, int y) const {
+        const Rounding rounding(d.steps, rows_.bits());
+        const PixelCoord* row = map_.row(y).data();
+        std::int16_t *dx = d.dx.data() + d.row_begin(y), *dy = d.dy.data() + d.row_begin(y);
+        const FaceBins& bins = rows_.bins();
+        const int width = d.width;
+        bool fit = true;
+        for (int x = 0; x < width; ++x) {
+            if (row[x].face == kNone) continue;
+            const GridPoint by = rounding.nearest(bins.face(row[x].face), row[x], x, y);
+            dx[x] = static_cast<std::int16_t>(by.x);
+            dy[x] = static_cast<std::int16_t>(by.y);
+            fit &= (dx[x] == by.x) & (dy[x] == by.y);
+        }
+        return fit;
     }
 
     static bool set(Displacements& d, int x, int y, GridPoint by) {
