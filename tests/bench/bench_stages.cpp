@@ -136,6 +136,15 @@ std::vector<StageRow> measure_stages(const std::string& path, const std::string&
     });
     const Container read = bench.stage("read", [&] { return read_container(container); });
     check_same(mesh_image, read.mesh_image, feature);
+    const std::string compact = (std::filesystem::path(folder) / "compact.glb").string();
+    bench.stage("write compact", [&] {
+        ContainerOptions options;
+        options.layers = LayerLayout::kCompact;
+        write_container(compact, mesh_image, options);
+        return 0;
+    });
+    const Container again = bench.stage("read compact", [&] { return read_container(compact); });
+    check_same(mesh_image, again.mesh_image, feature);
     const Image drawn = bench.stage("reconstruct", [&] { return draw(read.mesh_image, 0, {}); });
     bench.rms(map_rms(read.mesh_image.levels[0].mesh, read.mesh_image.levels[0].map, feature));
     bench.stage("encode picture", [&] {
