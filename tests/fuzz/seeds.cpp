@@ -7,8 +7,10 @@
 #include "formats/files/atomic_file.h"
 #include "formats/picture/color/icc_profile.h"
 #include "formats/picture/image_io.h"
+#include "libcore/mesh/locate_map.h"
 #include "tests/fuzz/small_seeds.h"
 #include "tests/fuzz/targets.h"
+#include "tests/support/grid_mesh_image.h"
 #include "tests/support/random_mesh_image.h"
 #include "tests/support/small_pictures.h"
 #include "tests/support/temporary_folder.h"
@@ -79,6 +81,40 @@ std::vector<Bytes> containers() {
     return all;
 }
 
+// With compact layers, whose pixels lie all over the mesh.
+std::vector<Bytes> compact_containers() {
+    std::vector<Bytes> all;
+    const TemporaryFolder folder;
+    constexpr int kWidth = 17, kHeight = 11, kSteps = 8;
+    for (const DracoMode mode : {DracoMode::kEdgebreaker, DracoMode::kOff})
+        for (const bool mask : {false, true}) {
+            MeshImage image = test::grid_mesh_image(kWidth, kHeight, 4, 3, 5);
+            Displacements places{{kWidth, kHeight}, kSteps, {}, {}, {}};
+            places.inside = Mask(places);
+            std::mt19937 random(3);
+            const auto moved = [&](int pixel, int side) {
+                const int to = pixel * kSteps + static_cast<int>(random() % 41) - 20;
+                return static_cast<std::int16_t>(std::clamp(to, 0, (side - 1) * kSteps) - pixel * kSteps);
+            };
+            for (int y = 0; y < kHeight; ++y)
+                for (int x = 0; x < kWidth; ++x) {
+                    const bool inside = !mask || (x + y) % 3 > 0;
+                    places.dx.push_back(inside ? moved(x, kWidth) : std::int16_t{0});
+                    places.dy.push_back(inside ? moved(y, kHeight) : std::int16_t{0});
+                    places.inside[places.inside.index(x, y)] = inside;
+                }
+            Level& level = image.levels[0];
+            level.map = locate_map(level.mesh, places, WeightPrecision::kHalf).map;
+            image.source.has_mask = mask;
+            if (mask) image.visits.assign(level.map.size(), 3);
+            ContainerOptions options{mode, true};
+            options.layers = LayerLayout::kCompact;
+            write_container(folder / "x.glb", image, options);
+            all.push_back(read_file(folder / "x.glb", 1 << 24));
+        }
+    return all;
+}
+
 Bytes text(std::string_view content) {
     return {content.begin(), content.end()};
 }
@@ -87,8 +123,11 @@ Bytes text(std::string_view content) {
 
 std::vector<Bytes> seeds(Target target) {
     switch (target) {
-        case Target::kContainer:
-            return containers();
+        case Target::kContainer: {
+            std::vector<Bytes> all = containers();
+            for (Bytes& file : compact_containers()) all.push_back(std::move(file));
+            return all;
+        }
         case Target::kPng:
             return noise_images(".png", {1, 2, 3, 4});
         case Target::kJpeg:
