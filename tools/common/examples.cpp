@@ -38,6 +38,8 @@ constexpr Example kCompare[] = {
 
 constexpr Example kConvert[] = {
     {"imgmesh-convert photo.glb -o photo.gltf", "JSON with the binary files beside it"},
+    {"imgmesh-convert photo.glb -o compact.glb --layers compact",
+     "The same pixel map in a sixth of the bytes; --layers exr goes back"},
     {"imgmesh-convert photo.glb -o small.glb --levels 1 --no-map",
      "The mesh of one level without its pixel map, for engines and viewers"},
     {"imgmesh-convert photo.glb -o photo.svg --shading gradient", "The mesh as a vector drawing"},
