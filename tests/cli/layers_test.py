@@ -50,5 +50,47 @@ class OldContainer(CliCase):
                           "older version")
 
 
+class Sidecar(CliCase):
+    """A .gltf with compact layers, whose sidecar file is not what it must be."""
+
+    def setUp(self):
+        super().setUp()
+        picture_files.png(self.folder / "p.png", picture_files.noise(40, 30, seed=4))
+        self.build("p.png", "--layers", "compact", output="c.gltf")
+
+    def refused(self, code, *words):
+        self.assert_error("imgmesh-info", ["c.gltf"], code, *words)
+        self.assert_error("imgmesh-reconstruct", ["c.gltf", "-o", "x.png"], code, *words)
+        self.assert_error("imgmesh-convert", ["c.gltf", "-o", "x.glb", "--layers", "exr"], code, *words)
+
+    def test_is_the_third_file(self):
+        self.assertEqual(sorted(self.files()), ["c.bin", "c.gltf", "c.imgmap", "p.png"])
+        facts = self.report("imgmesh-info", "c.gltf")
+        self.assertEqual((facts["layers"], facts["bytes"]["layers"]),
+                         ("compact", (self.folder / "c.imgmap").stat().st_size))
+
+    def test_missing(self):
+        (self.folder / "c.imgmap").unlink()
+        self.refused(3, "c.imgmap")
+
+    def test_cut_off(self):
+        stream = (self.folder / "c.imgmap").read_bytes()
+        (self.folder / "c.imgmap").write_bytes(stream[:-100])
+        self.refused(4, "layers.header", "ends too early")
+        (self.folder / "c.imgmap").write_bytes(b"")
+        self.refused(4, "layers.magic")
+
+    def test_of_another_image(self):
+        picture_files.png(self.folder / "q.png", picture_files.noise(40, 30, seed=5))
+        self.build("q.png", "--layers", "compact", output="d.gltf")
+        shutil.copy(self.folder / "d.imgmap", self.folder / "c.imgmap")
+        self.refused(4, "layers.topology")
+
+    def test_an_exr_instead(self):
+        self.run_ok("imgmesh-convert", "c.gltf", "-o", "e.gltf", "--layers", "exr")
+        shutil.copy(self.folder / "e.exr", self.folder / "c.imgmap")
+        self.refused(4, "layers.magic")
+
+
 if __name__ == "__main__":
     main()
