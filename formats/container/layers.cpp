@@ -20,7 +20,7 @@ std::vector<std::uint8_t> encode_compact(const std::vector<LayerSource>& levels)
             throw Error(ErrorKind::kUnsupported,
                         cat("the pixel map of ", view.name,
                             " has no compact form, as its pixels do not lie on a grid: it was tracked, bent "
-                            "or stretched for a texture, or is of an older version"));
+                            "or stretched for a texture, or is of an older version; an EXR holds it"));
         places.push_back(*std::move(found));
         parts.push_back({view.name, &places.back(), view.map->precision, view.visits, view.topology});
     }

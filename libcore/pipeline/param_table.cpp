@@ -225,7 +225,7 @@ std::vector<Param> make_table() {
          .listed = kOnGrid},
         {.name = "map-rate",
          .group = map,
-         .kind = number({0}, &B::map_rate),
+         .kind = number({0, 1e30}, &B::map_rate),  // far below the largest float, by which it is weighed
          .help = "What a bit of the pixel map costs against squared error; more takes fewer bytes",
          .listed = kRate},
         {.name = "bary",
