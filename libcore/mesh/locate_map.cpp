@@ -25,8 +25,8 @@ constexpr int kGrainRows = 16;
 constexpr std::int64_t kMostTries = 64, kFreeTries = 1 << 22;
 
 // Of a map in 1/2048, positions in large faces are known to less than the grid: so many grid points around
-// are tried, in either direction.
-constexpr int kFarthestSteps = 4;
+// are tried, in either direction, and along the longest side.
+constexpr std::int64_t kFarthestSteps = 4, kFarthestAlong = 64;
 
 // Where a pixel is on the mesh, if a step is that many units.
 GridPoint position(const Displacements& d, int units, int x, int y) {
@@ -45,6 +45,13 @@ class Rows {
     const FaceBins& bins() const { return bins_; }
     int bits() const { return bits_; }
     bool too_many_tries() const { return tries_ > most_tries_; }
+    // The face that holds p; kNone if there is none.
+    Id find(GridPoint p) {
+        std::int64_t tries = 0;
+        const Id id = bins_.find(p, tries);
+        tries_ += tries;
+        return id;
+    }
 
     // What a thread needs for rows one after the other.
     struct Scratch {
@@ -211,35 +218,51 @@ class Inverse {
         return d.dx[d.index(x, y)] == by.x && d.dy[d.index(x, y)] == by.y;
     }
 
-    // Whether the pixel's own face gives its weights back.
-    bool fits(const Displacements& d, int x, int y) const {
+    // Whether the pixel's own face gives its weights back, and not another one on whose edge it is too.
+    bool fits(const Displacements& d, int x, int y) {
         const PixelCoord& coord = map_.at(x, y);
         const ExactFace& face = rows_.bins().face(coord.face);
-        const SideAreas areas = face.at(position(d, kPixelUnits / d.steps, x, y));
-        return face.area > 0 && areas.hold() && face.weights(coord.face, areas, rows_.bits()) == coord;
+        const GridPoint p = position(d, kPixelUnits / d.steps, x, y);
+        const SideAreas areas = face.at(p);
+        return face.area > 0 && areas.hold() && face.weights(coord.face, areas, rows_.bits()) == coord &&
+               (areas.hold_strictly() || rows_.find(p) == coord.face);
     }
 
     // Tries the grid points around the nearest one.
-    bool search(Displacements& d, int x, int y) const {
+    bool search(Displacements& d, int x, int y) {
         // Weights are off by less than a step each and by 0 together, so a position by less than a step of
         // the longest side.
         const ExactFace& face = rows_.bins().face(map_.at(x, y).face);
-        const std::int64_t side =
-            std::max({std::abs(face.bx), std::abs(face.by), std::abs(face.cx), std::abs(face.cy),
-                      std::abs(face.bx + face.cx), std::abs(face.by + face.cy)});
-        const std::int64_t in_steps = side * d.steps / kPixelUnits;
+        GridPoint side{0, 0};
+        for (const GridPoint& other : {GridPoint{face.by, -face.bx}, GridPoint{-face.cy, face.cx},
+                                       GridPoint{face.by + face.cy, -face.bx - face.cx}})
+            if (extent(other) > extent(side)) side = other;
+        const std::int64_t in_steps = std::int64_t{extent(side)} * d.steps / kPixelUnits;
         if (2 * in_steps < std::int64_t{1} << rows_.bits()) return false;
-        const int reach =
-            static_cast<int>(std::min<std::int64_t>(kFarthestSteps, (in_steps >> rows_.bits()) + 1));
+        const std::int64_t reach = (in_steps >> rows_.bits()) + 1;
         const GridPoint middle = nearest(d.steps, x, y);
-        for (int ring = 1; ring <= reach; ++ring)
+        const auto at = [&](int ox, int oy) {
+            return set(d, x, y, {middle.x + ox, middle.y + oy}) && fits(d, x, y);
+        };
+        const int rings = static_cast<int>(std::min(reach, kFarthestSteps));
+        for (int ring = 1; ring <= rings; ++ring)
             for (int oy = -ring; oy <= ring; ++oy)
                 for (int ox = -ring; ox <= ring; ++ox)
-                    if (std::max(std::abs(ox), std::abs(oy)) == ring &&
-                        set(d, x, y, {middle.x + ox, middle.y + oy}) && fits(d, x, y))
-                        return true;
+                    if (std::max(std::abs(ox), std::abs(oy)) == ring && at(ox, oy)) return true;
+        // Farther away they are in a narrow strip along the side.
+        const bool flat = std::abs(side.x) >= std::abs(side.y);
+        const int along = static_cast<int>(std::min(reach, kFarthestAlong));
+        for (int k = rings + 1; k <= along; ++k)
+            for (const int way : {k, -k}) {
+                const double across = flat ? double(side.y) / side.x * way : double(side.x) / side.y * way;
+                for (int off = -1; off <= 1; ++off) {
+                    const int beside = static_cast<int>(std::lround(across)) + off;
+                    if (flat ? at(way, beside) : at(beside, way)) return true;
+                }
+            }
         return false;
     }
+    static std::int32_t extent(GridPoint side) { return std::max(std::abs(side.x), std::abs(side.y)); }
 
     const PixelMap& map_;
     Rows rows_;

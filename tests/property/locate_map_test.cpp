@@ -387,3 +387,15 @@ TEST_CASE("displacements_of: a displacement of more than 16 bits takes coarser s
     CHECK(near->dy[0] == 2250 * 8);
     CHECK(!displacements_of(mesh, map_at(0.5f)));  // 4500
 }
+
+// Places with the same weights in 1/2048 are then far apart along the faces, and rare across them.
+TEST_CASE("displacements_of: long and thin faces with weights in halves") {
+    const BaseMesh mesh = test::jittered_grid(0, 0, 2400, 60, 2, 6, 1);
+    for (const int steps : {8, 16, 32}) {
+        const PixelMap map =
+            locate_map(mesh, random_displacements(2401, 61, steps, 1.5, 1), WeightPrecision::kHalf).map;
+        const auto back = displacements_of(mesh, map);
+        REQUIRE(back.has_value());
+        CHECK(locate_map(mesh, *back, WeightPrecision::kHalf).map.values == map.values);
+    }
+}
