@@ -283,6 +283,12 @@ Report convert_one(const Options& given, Context& context) {
     MeshImage& m = container.mesh_image;
     check_places(o, m);
     const LayerLayout layers = chosen_layers(o, container.facts.layout);
+    if (is_container(o.output) && layers == LayerLayout::kExr && !o.compression.layers &&
+        container.facts.layout == LayerLayout::kCompact)
+        context.warnings.push_back(cat(o.input,
+                                       ": the texture's meshes are stretched, so that pixels leave the "
+                                       "grid of compact layers, and ",
+                                       o.output, " has an EXR"));
     check_distinct(container.facts.files, {o.output});
     if (is_container(o.output) && o.texture.wanted.value_or(false) && !o.image.empty())
         check_distinct({o.image}, container_files(o.output, layers));

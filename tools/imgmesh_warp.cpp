@@ -215,6 +215,10 @@ Report warp_one(const Options& o, Context& context) {
         warped.generator = context.generator;
         ContainerOptions options;
         options.draco = container.facts.draco;
+        if (container.facts.layout == LayerLayout::kCompact)
+            context.warnings.push_back(cat(o.input,
+                                           ": the edit moves pixels off the grid of compact layers, so ",
+                                           o.output, " has an EXR"));
         options.overwrite = context.overwrite;
         options.metadata = container.metadata;
         options.texture = container.texture;  // moves along: vertices keep their texture coordinates

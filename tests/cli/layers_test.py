@@ -50,6 +50,21 @@ class OldContainer(CliCase):
                           "older version")
 
 
+class OffTheGrid(CliCase):
+    """What takes pixels off the grid of compact layers writes an EXR, and says so."""
+
+    def test_a_warning_tells_of_the_exr(self):
+        picture_files.png(self.folder / "p.png", picture_files.noise(40, 30, seed=4))
+        self.build("p.png", "--layers", "compact", output="c.glb")
+        for tool, options in (("imgmesh-convert", ["--texture"]), ("imgmesh-warp", ["--handle", "20,15:1,0"])):
+            report = self.report(tool, "c.glb", "-o", "out.glb", *options)
+            self.assertEqual(len(report["warnings"]), 1, report["warnings"])
+            self.assertTrue(report["warnings"][0].endswith("out.glb has an EXR"), report["warnings"])
+            self.assertEqual(self.report("imgmesh-info", "out.glb")["layers"], "exr")
+        self.assertEqual(self.report("imgmesh-convert", "c.glb", "-o", "d.glb").get("warnings", []), [])
+        self.assert_error("imgmesh-convert", ["c.glb", "-o", "e.glb", "--texture", "--layers", "compact"], 2, "grid")
+
+
 class Sidecar(CliCase):
     """A .gltf with compact layers, whose sidecar file is not what it must be."""
 
