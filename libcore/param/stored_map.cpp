@@ -51,6 +51,36 @@ bool keeps_areas(const BaseMesh& mesh, const PixelMap& map) {
     return kept;
 }
 
+// Whether the map has displacements, and they fold no triangle. In halves, positions in large faces are known
+// to less than the grid, so these need not be the displacements of which the map was made.
+bool unfolds(const BaseMesh& mesh, const PixelMap& map) {
+    const std::optional<Displacements> found = displacements_of(mesh, map);
+    if (!found) return false;
+    const Displacements& d = *found;
+    struct Point {
+        std::int64_t x, y;
+        bool inside;
+    };
+    const auto at = [&](int x, int y) {
+        const std::size_t i = d.index(x, y);
+        return Point{std::int64_t{x} * d.steps + d.dx[i], std::int64_t{y} * d.steps + d.dy[i],
+                     d.inside.contains(i)};
+    };
+    const auto folds = [](const Point& a, const Point& b, const Point& c) {
+        return a.inside && b.inside && c.inside && (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x) <= 0;
+    };
+    std::atomic<bool> folded = false;
+    parallel_blocks(0, d.height - 1, kGrainRows, [&](int first, int last) {
+        for (int y = first; y < last && !folded; ++y)
+            for (int x = 0; x + 1 < d.width; ++x) {
+                const Point tl = at(x, y), tr = at(x + 1, y), bl = at(x, y + 1), br = at(x + 1, y + 1);
+                if (folds(tl, tr, br) || folds(tl, br, bl) || folds(tl, tr, bl) || folds(tr, br, bl))
+                    folded = true;
+            }
+    });
+    return !folded;
+}
+
 }  // namespace
 
 PixelMap stored_map(const BaseMesh& mesh, const Displacements& places,
@@ -62,7 +92,7 @@ PixelMap stored_map(const BaseMesh& mesh, const Displacements& places,
     };
     if (wanted != WeightPrecision::kFloat) {
         PixelMap map = with(WeightPrecision::kHalf);
-        if (keeps_areas(mesh, map)) return map;
+        if (keeps_areas(mesh, map) && (wanted || unfolds(mesh, map))) return map;
         if (wanted)
             throw Error(
                 ErrorKind::kUnsupported,

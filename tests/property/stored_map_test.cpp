@@ -1,7 +1,10 @@
 // What must hold for the weights that a container holds of a map on a grid, of any image.
 #include <doctest/doctest.h>
 
+#include <random>
+
 #include "libcore/base/error.h"
+#include "libcore/mesh/grid_area.h"
 #include "libcore/mesh/locate_map.h"
 #include "libcore/mesh/trivial_map.h"
 #include "libcore/metrics/metrics.h"
@@ -69,6 +72,47 @@ TEST_CASE("stored map: no triangle of any relaxed map folds, on any grid, and di
                     CHECK(locate_map(s.mesh, *back, map.precision).map == map);
                 }
             }
+}
+
+TEST_CASE("stored map: what displacements come back fold no triangle either") {
+    const auto folds = [](const Displacements& d) {
+        const auto at = [&](int x, int y) {
+            const std::size_t i = d.index(x, y);
+            return Vec2d(x * d.steps + d.dx[i], y * d.steps + d.dy[i]);
+        };
+        const auto folded = [](const Vec2d& a, const Vec2d& b, const Vec2d& c) {
+            return !(grid_area2(a, b, c) > 0);
+        };
+        int count = 0;
+        for (int y = 0; y < 2; ++y)
+            for (int x = 0; x < 2; ++x) {
+                const Vec2d tl = at(x, y), tr = at(x + 1, y), bl = at(x, y + 1), br = at(x + 1, y + 1);
+                count += folded(tl, tr, br) + folded(tl, br, bl) + folded(tl, tr, bl) + folded(tr, br, bl);
+            }
+        return count;
+    };
+    std::mt19937 random(1);
+    int halves = 0;
+    for (int i = 0; i < 20000; ++i) {
+        Scene s = crowded(60 + i % 200);
+        // On a finer grid: some steps apart, anywhere in the middle.
+        s.places.steps = 32;
+        const int side = 60 + i % 200;
+        for (int k = 0; k < 9; ++k) {
+            const int x = k % 3, y = k / 3, jitter = 7;
+            s.places.dx[as_index(k)] =
+                static_cast<std::int16_t>(side * 16 - 25 * x + static_cast<int>(random() % jitter));
+            s.places.dy[as_index(k)] =
+                static_cast<std::int16_t>(side * 8 - 25 * y + static_cast<int>(random() % jitter));
+        }
+        if (folds(s.places) > 0) continue;
+        const PixelMap map = stored_map(s.mesh, s.places, {});
+        halves += map.precision == WeightPrecision::kHalf;
+        const std::optional<Displacements> back = displacements_of(s.mesh, map);
+        REQUIRE(back.has_value());
+        REQUIRE(folds(*back) == 0);
+    }
+    CHECK(halves > 100);
 }
 
 TEST_CASE("stored map: floats where half weights would fold, and an error where these are wanted") {
