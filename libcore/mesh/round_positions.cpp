@@ -7,36 +7,10 @@
 #include <vector>
 
 #include "libcore/mesh/adjacency.h"
+#include "libcore/mesh/fixed_axes.h"
 
 namespace imgmesh {
 namespace {
-
-// The coordinates of a vertex that stay, as bits.
-constexpr std::uint8_t kXStays = 1, kYStays = 2;
-
-// An end of a boundary edge may slide only if each boundary edge at it lies on one and the same side.
-std::vector<std::uint8_t> staying_axes(const BaseMesh& mesh) {
-    std::vector<std::uint8_t> stays(mesh.vertex_count(), 0);
-    if (mesh.position.empty()) return stays;
-    Vec2f low = mesh.position[0], high = low;
-    for (const Vec2f& p : mesh.position) {
-        low = low.cwiseMin(p);
-        high = high.cwiseMax(p);
-    }
-    const std::vector<Face> neighbors = face_neighbors(mesh);
-    for (std::size_t f = 0; f < mesh.faces.size(); ++f)
-        for (std::size_t i = 0; i < 3; ++i) {
-            if (neighbors[f][i] != kNone) continue;
-            const Id a = mesh.faces[f][(i + 1) % 3], b = mesh.faces[f][(i + 2) % 3];
-            const Vec2f &p = mesh.position[a], &q = mesh.position[b];
-            std::uint8_t axes = kXStays | kYStays;
-            if (p.x() == q.x() && (p.x() == low.x() || p.x() == high.x())) axes = kXStays;
-            if (p.y() == q.y() && (p.y() == low.y() || p.y() == high.y())) axes = kYStays;
-            stays[a] |= axes;
-            stays[b] |= axes;
-        }
-    return stays;
-}
 
 double squared_edges(const std::array<Vec2f, 3>& p) {
     double sum = 0;
@@ -50,7 +24,7 @@ class Rounding {
         : mesh_(mesh),
           step_(step),
           min_quality_(min_quality),
-          stays_(staying_axes(mesh)),
+          fixed_(fixed_axes(mesh)),
           corners_(vertex_corners(mesh.faces, mesh.vertex_count())) {
         for (const auto& [a, b, c] : mesh.faces)
             least_area2_.push_back(kLeastShare *
@@ -60,8 +34,8 @@ class Rounding {
     bool is_round(Id v) const { return on_grid(mesh_.position[v].x()) && on_grid(mesh_.position[v].y()); }
     // Whether nothing is left to round: coordinates that stay do not count.
     bool is_done(Id v) const {
-        return ((stays_[v] & kXStays) || on_grid(mesh_.position[v].x())) &&
-               ((stays_[v] & kYStays) || on_grid(mesh_.position[v].y()));
+        return ((fixed_[v] & kFixedX) || on_grid(mesh_.position[v].x())) &&
+               ((fixed_[v] & kFixedY) || on_grid(mesh_.position[v].y()));
     }
 
     // Moves a vertex that is not done. Returns whether there was a place for it.
@@ -73,8 +47,8 @@ class Rounding {
         for (int dy = -1; dy <= 2; ++dy)
             for (int dx = -1; dx <= 2; ++dx) {
                 Vec2f to = step_ * (base + Vec2f(static_cast<float>(dx), static_cast<float>(dy)));
-                if (stays_[v] & kXStays) to.x() = from.x();
-                if (stays_[v] & kYStays) to.y() = from.y();
+                if (fixed_[v] & kFixedX) to.x() = from.x();
+                if (fixed_[v] & kFixedY) to.y() = from.y();
                 if (to != from) place[count++] = to;
             }
         const std::span<Vec2f> places = std::span(place).first(count);
@@ -111,7 +85,7 @@ class Rounding {
     BaseMesh& mesh_;
     float step_;
     double min_quality_;
-    std::vector<std::uint8_t> stays_;
+    std::vector<std::uint8_t> fixed_;
     VertexCorners corners_;
     std::vector<double> least_area2_;  // of each face
 };

@@ -6,20 +6,19 @@
 
 #include "libcore/mesh/base_mesh.h"
 #include "libcore/mesh/edit_mesh.h"
+#include "libcore/mesh/fixed_axes.h"
 
 namespace imgmesh {
 
 struct RefineVertices {
-    /// Coordinates that a vertex keeps, as bits.
-    static constexpr std::uint8_t kFree = 0, kFixedX = 1, kFixedY = 2, kFixed = 3;
+    static constexpr std::uint8_t kFree = 0, kFixed = kFixedX | kFixedY;
 
-    /// `mesh` has three channels. A vertex of its boundary may slide where the boundary runs straight along
-    /// one side of the bounding box; all other boundary vertices are fixed.
+    /// `mesh` has three channels.
     explicit RefineVertices(const BaseMesh& mesh);
 
     std::vector<Vec2f> position;
     std::vector<Vec3f> color;
-    std::vector<std::uint8_t> fixed;
+    std::vector<std::uint8_t> fixed;  ///< fixed_axes() of the mesh that it was, bits of kFixedX and kFixedY
 
     /// Adds a vertex, in the place of a removed one if there is one.
     void set(Id v, const Vec2f& p, const Vec3f& c, std::uint8_t axes);

@@ -192,8 +192,8 @@ Vec2f Refiner::newton_step(const OneRing& ring, Id v) const {
     hyy += pull;
     if (ring.closed) rhs += shape_unit_ / (1 + center.squaredNorm()) * center;
     const std::uint8_t fixed = vertex_.fixed[v];
-    if (fixed == RefineVertices::kFixedX) return {0, static_cast<float>(rhs.y() / hyy)};
-    if (fixed == RefineVertices::kFixedY) return {static_cast<float>(rhs.x() / hxx), 0};
+    if (fixed == kFixedX) return {0, static_cast<float>(rhs.y() / hyy)};
+    if (fixed == kFixedY) return {static_cast<float>(rhs.x() / hxx), 0};
     const double det = hxx * hyy - hxy * hxy;
     if (!(det > 0)) return {0, 0};
     return {static_cast<float>((hyy * rhs.x() - hxy * rhs.y()) / det),
@@ -219,8 +219,8 @@ bool Refiner::move_vertex(Id v) {
     const std::uint8_t fixed = vertex_.fixed[v];
     Vec2f last = from;
     for (int half = 0; half <= kHalvings; ++half, step *= 0.5f) {
-        const Vec2f p(fixed == RefineVertices::kFixedX ? from.x() : snapped(from.x() + step.x()),
-                      fixed == RefineVertices::kFixedY ? from.y() : snapped(from.y() + step.y()));
+        const Vec2f p(fixed == kFixedX ? from.x() : snapped(from.x() + step.x()),
+                      fixed == kFixedY ? from.y() : snapped(from.y() + step.y()));
         if (p == from || p == last) break;
         last = p;
         if (place(ring, p, vertex_.color[v], before.least_q, placement) && better(placement.cost, before)) {

@@ -111,11 +111,10 @@ Refiner::Insertion Refiner::best_insertion(Id f) const {
         // Inner edges are tried once; a border edge only if it is on a side.
         if (g != kNone && g < f) continue;
         const std::uint8_t side = vertex_.fixed[p] & vertex_.fixed[q];
-        if (g == kNone && side != RefineVertices::kFixedX && side != RefineVertices::kFixedY) continue;
+        if (g == kNone && side != kFixedX && side != kFixedY) continue;
         const Vec2f middle = (vertex_.position[p] + vertex_.position[q]) / 2;
-        const Vec2f at(
-            g == kNone && side == RefineVertices::kFixedX ? vertex_.position[p].x() : snapped(middle.x()),
-            g == kNone && side == RefineVertices::kFixedY ? vertex_.position[p].y() : snapped(middle.y()));
+        const Vec2f at(g == kNone && side == kFixedX ? vertex_.position[p].x() : snapped(middle.x()),
+                       g == kNone && side == kFixedY ? vertex_.position[p].y() : snapped(middle.y()));
         try_insertion(f, static_cast<int>(n), at, best);
     }
     return best;

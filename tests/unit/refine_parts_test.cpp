@@ -143,7 +143,7 @@ TEST_CASE("refine vertices: corners are fixed, vertices of the sides slide, othe
     for (Id v = 0; v < vertices.position.size(); ++v) {
         const bool x = vertices.position[v].x() == 0 || vertices.position[v].x() == 59;
         const bool y = vertices.position[v].y() == 0 || vertices.position[v].y() == 39;
-        CHECK(vertices.fixed[v] == ((x ? RefineVertices::kFixedX : 0) | (y ? RefineVertices::kFixedY : 0)));
+        CHECK(vertices.fixed[v] == ((x ? kFixedX : 0) | (y ? kFixedY : 0)));
     }
 }
 
@@ -164,8 +164,8 @@ TEST_CASE("refine vertices: a boundary inside the bounding box is fixed") {
     CHECK(fixed_at(3, 2) == RefineVertices::kFixed);  // straight on, yet inside the box
     CHECK(fixed_at(2, 3) == RefineVertices::kFixed);
     CHECK(fixed_at(4, 2) == RefineVertices::kFixed);  // an end of the L
-    CHECK(fixed_at(1, 4) == RefineVertices::kFixedY);
-    CHECK(fixed_at(0, 1) == RefineVertices::kFixedX);
+    CHECK(fixed_at(1, 4) == kFixedY);
+    CHECK(fixed_at(0, 1) == kFixedX);
     CHECK(fixed_at(1, 1) == RefineVertices::kFree);
 }
 
@@ -197,12 +197,12 @@ TEST_CASE("refine vertices: places are taken again, and compact() leaves out wha
         std::find_if(mesh.faces().begin(), mesh.faces().end(), [](const Face& f) { return f[0] != kNone; }) -
         mesh.faces().begin());
     CHECK(mesh.split_face(face) == 5);
-    vertices.set(5, {1, 2}, {3, 4, 5}, RefineVertices::kFixedX);
+    vertices.set(5, {1, 2}, {3, 4, 5}, kFixedX);
     vertices.set(mesh.split_face(face), {6, 7}, {8, 9, 10}, RefineVertices::kFree);
     out = compact(mesh, vertices);
     CHECK(out.vertex_count() == 13);
     CHECK(out.position[5] == Vec2f(1, 2));
     CHECK(out.position[12] == Vec2f(6, 7));
     CHECK(Vec3f(out.feature_of(12)) == Vec3f(8, 9, 10));
-    CHECK(vertices.fixed[5] == RefineVertices::kFixedX);
+    CHECK(vertices.fixed[5] == kFixedX);
 }
