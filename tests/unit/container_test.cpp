@@ -1,12 +1,9 @@
 #include "formats/container/container.h"
 
 #include <doctest/doctest.h>
-#include <optional>
 
-#include <atomic>
 #include <filesystem>
 #include <map>
-#include <thread>
 
 #include "formats/container/validate.h"
 #include "formats/files/atomic_file.h"
@@ -103,10 +100,6 @@ void check_same(const MeshImage& a, const MeshImage& b) {
         CHECK(mapped(a, a.levels[k]) == mapped(b, b.levels[k]));
         CHECK(a.levels[k].mesh.channels == b.levels[k].mesh.channels);
     }
-}
-
-std::vector<std::uint8_t> bytes_of(const std::string& path) {
-    return read_file(path, 1 << 24);
 }
 
 }  // namespace
@@ -237,13 +230,13 @@ TEST_CASE("container: .glb and .gltf turn into each other without loss, and writ
     const MeshImage image = random_mesh_image(30, 20, 2, WeightPrecision::kHalf, true, 99);
     write_container(folder / "a.glb", image);
     write_container(folder / "b.glb", image);
-    CHECK(bytes_of(folder / "a.glb") == bytes_of(folder / "b.glb"));
+    CHECK(load(folder / "a.glb") == load(folder / "b.glb"));
     // A sequential mesh keeps its order, so whole files can be compared.
     const ContainerOptions sequential{DracoMode::kSequential, true};
     write_container(folder / "a.glb", image, sequential);
     write_container(folder / "c.gltf", read_container(folder / "a.glb").mesh_image, sequential);
     write_container(folder / "b.glb", read_container(folder / "c.gltf").mesh_image, sequential);
-    CHECK(bytes_of(folder / "a.glb") == bytes_of(folder / "b.glb"));
+    CHECK(load(folder / "a.glb") == load(folder / "b.glb"));
 }
 
 // The check above must be able to fail: pixels mapped through a wrong permutation are not the same image.
@@ -276,91 +269,11 @@ TEST_CASE("container: vertices without a face are dropped by edgebreaker and not
     }
 }
 
-TEST_CASE("container: usage and files that are there already") {
-    const TemporaryFolder folder;
-    const MeshImage image = random_mesh_image(9, 9, 1, WeightPrecision::kHalf, false, 3);
-    const auto code = [&](const char* name, bool overwrite) -> std::optional<ErrorKind> {
-        try {
-            write_container(folder / name, image, {DracoMode::kEdgebreaker, overwrite});
-        } catch (const Error& error) {
-            return error.kind();
-        }
-        return std::nullopt;
-    };
-    CHECK(code("x.obj", true) == ErrorKind::kBadArgument);
-    CHECK(code("x", true) == ErrorKind::kBadArgument);
-    CHECK(code("a\\b.gltf", true) == ErrorKind::kBadArgument);
-    CHECK(code("x.GLB", true) == std::nullopt);
-    CHECK(code("none/x.glb", true) == ErrorKind::kIo);
-    CHECK(code("x.gltf", false) == std::nullopt);
-    CHECK(code("x.gltf", false) == ErrorKind::kIo);
-    CHECK(code("x.gltf", true) == std::nullopt);
-    // photo.exr may be the image that the container is made from.
-    AtomicFile photo(folder / "photo.exr", true);
-    photo.commit();
-    CHECK(code("photo.gltf", true) == std::nullopt);
-    CHECK(bytes_of(folder / "photo.exr").empty());
-    const std::vector<std::string> files = read_container(folder / "photo.gltf").facts.files;
-    CHECK(files[1] == folder / "photo.bin");
-    CHECK(fs::path(files[2]).filename().string().size() == std::string("photo-0123456789abcdef.exr").size());
-    // The same container again changes nothing; another one leaves nothing of the old one.
-    CHECK(code("photo.gltf", true) == std::nullopt);
-    CHECK(read_container(folder / "photo.gltf").facts.files == files);
-    write_container(folder / "photo.gltf", random_mesh_image(9, 9, 1, WeightPrecision::kHalf, false, 4));
-    for (const std::string& file : {files[1], files[2]}) CHECK_FALSE(fs::exists(file));
-    CHECK(bytes_of(folder / "photo.exr").empty());
-    CHECK_THROWS_AS(read_container(folder / "missing.glb"), Error);
-}
-
-TEST_CASE("container: files that a .gltf merely names are not removed") {
-    const TemporaryFolder folder;
-    const MeshImage image = random_mesh_image(9, 9, 1, WeightPrecision::kHalf, false, 3);
-    const auto put = [&](const char* name, const std::vector<std::uint8_t>& bytes) {
-        AtomicFile file(folder / name, true);
-        file.write(bytes);
-        file.commit();
-    };
-    // The container's own .bin and .exr are exchanged for a person's files, and for those of another
-    // container.
-    write_container(folder / "photo.gltf", image, {});
-    write_container(folder / "other.gltf", random_mesh_image(9, 9, 1, WeightPrecision::kHalf, false, 4), {});
-    put("photo.bin", {1, 2, 3});
-    write_container(folder / "photo.gltf", image, {});
-    CHECK(bytes_of(folder / "photo.bin") == std::vector<std::uint8_t>{1, 2, 3});
-    put("photo.bin", bytes_of(folder / "other.bin"));
-    put("photo.exr", bytes_of(folder / "other.exr"));
-    const auto others = bytes_of(folder / "photo.exr");
-    write_container(folder / "photo.gltf", image, {});
-    CHECK(bytes_of(folder / "photo.exr") == others);
-    CHECK(read_container(folder / "photo.gltf").mesh_image.levels.size() == image.levels.size());
-}
-
-TEST_CASE("container: writers of one .gltf at the same time all succeed and leave one container") {
-    const TemporaryFolder folder;
-    std::vector<std::thread> writers;
-    std::atomic<int> failed = 0;
-    for (std::uint32_t seed = 3; seed < 9; ++seed)
-        writers.emplace_back([&, seed] {
-            const MeshImage image = random_mesh_image(9, 9, 1, WeightPrecision::kHalf, false, seed);
-            for (int n = 0; n < 5; ++n) {
-                try {
-                    write_container(folder / "x.gltf", image, {});
-                } catch (const Error&) {
-                    ++failed;
-                }
-            }
-        });
-    for (std::thread& writer : writers) writer.join();
-    CHECK(failed == 0);
-    CHECK_NOTHROW(read_container(folder / "x.gltf"));
-    CHECK(std::distance(fs::directory_iterator(folder.path()), fs::directory_iterator()) == 3);
-}
-
 TEST_CASE("container: a channel's name without a byte of value 0") {
     const TemporaryFolder folder;
     MeshImage image = random_mesh_image(9, 9, 1, WeightPrecision::kHalf, false, 3);
     write_container(folder / "x.gltf", image, {});
-    const auto bytes = bytes_of(folder / "x.gltf");
+    const auto bytes = load(folder / "x.gltf");
     std::string json(bytes.begin(), bytes.end());
     const std::size_t at = json.find("\"R\"");
     REQUIRE(at != std::string::npos);
