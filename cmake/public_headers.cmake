@@ -61,6 +61,7 @@ set(IMGMESH_PUBLIC_HEADERS
   formats/container/container.h
   formats/container/edit_file.h
   formats/container/validate.h
+  formats/export/contour_files.h
   formats/export/label_files.h
   formats/export/mesh_arrays.h
   formats/export/mesh_export.h

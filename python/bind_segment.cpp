@@ -178,7 +178,7 @@ void bind_segment(py::module_& module) {
              "their "
              "regions become one.")
         .def("write", write, py::arg("path"), py::kw_only(), py::arg("overwrite") = true,
-             "write(path, *, overwrite=True)\n\nWrites the labels as .exr, .tif, .npy or .png.")
+             "write(path, *, overwrite=True)\n\nWrites the labels as .exr, .tif, .npy, .mat or .png.")
         .def("__repr__", [](const SegmentationValue& v) {
             return cat("<imgmesh.Segmentation of ", v.labels().width, "x", v.labels().height,
                        " pixels: ", v.labels().count, " regions>");

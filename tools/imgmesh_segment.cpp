@@ -3,6 +3,7 @@
 #include <ostream>
 
 #include "formats/container/container.h"
+#include "formats/export/contour_files.h"
 #include "formats/export/label_files.h"
 #include "formats/files/atomic_file.h"
 #include "formats/files/extension.h"
@@ -92,7 +93,9 @@ void add_options(CLI::App& app, Options& o) {
              files);
     in_group(add_file(app, "--mesh", o.mesh, "Base mesh to write with one primitive for each region (.glb)"),
              files);
-    advanced(app, in_group(add_file(app, "--ucm", o.ucm, "Ultrametric contour map to write (.exr)"), files));
+    advanced(app, in_group(add_file(app, "--ucm", o.ucm,
+                                    "Ultrametric contour map to write (.exr, .npy, or .mat with ucm2)"),
+                           files));
 }
 
 std::vector<std::string> outputs_of(const Options& o) {
@@ -122,8 +125,10 @@ void check_options(const Options& o) {
         throw Error(ErrorKind::kBadArgument, "--compactness: means something with --superpixels only");
     if (!can_write_labels(o.output))
         throw Error(ErrorKind::kBadArgument,
-                    cat("-o ", o.output, ": expected a name that ends with .exr, .png, .tif or .npy"));
-    expect_extension("--ucm", o.ucm, ".exr");
+                    cat("-o ", o.output, ": expected a name that ends with .exr, .png, .tif, .npy or .mat"));
+    if (!o.ucm.empty() && !can_write_contours(o.ucm))
+        throw Error(ErrorKind::kBadArgument,
+                    cat("--ucm ", o.ucm, ": expected a name that ends with .exr, .npy or .mat"));
     expect_extension("--report", o.report, ".json");
     expect_extension("--mesh", o.mesh, ".glb");
     for (const auto& [option, path] : {std::pair("--outlines", &o.outlines), std::pair("--flat", &o.flat)})
@@ -180,7 +185,8 @@ Report segment_one(const Options& o, Context& context) {
                     {context.overwrite, {}});
     if (!o.ucm.empty()) {
         const ContourMap map = contour_map(result.cells, result.hierarchy);
-        write_float_layer(o.ucm, "height", map.width, map.height, map.values, context.overwrite);
+        write_contours(o.ucm, map.width, map.height, map.values, SegmentParams{}.threshold,
+                       context.overwrite);
     }
     if (!o.report.empty())
         write_text(o.report, regions_text(labels, facts, context.generator, o.input), context.overwrite);
@@ -229,7 +235,8 @@ int main(int argc, char** argv) {
          .description = "Cut the images of containers into regions.",
          .input_name = "CONTAINER",
          .input_help = "Containers to read (.glb, .gltf)",
-         .output_help = "Labels to write, as .exr (UINT id), .tif (32 bit), .npy (uint32) or .png (16 bit), "
+         .output_help = "Labels to write, as .exr (UINT id), .tif (32 bit), .npy (uint32), .mat (segs) or "
+                        ".png (16 bit), "
                         "or a folder, ended by /, for NAME.png "
                         "of each container; with several containers the other outputs are folders as well",
          .type = [] { return "png"; },
@@ -241,7 +248,7 @@ int main(int argc, char** argv) {
          line,
          {{"--outlines", "png", &Options::outlines},
           {"--flat", "png", &Options::flat},
-          {"--ucm", "exr", &Options::ucm},
+          {"--ucm", "exr", &Options::ucm, {"npy", "mat"}},
           {"--report", "json", &Options::report},
           {"--mesh", "glb", &Options::mesh}}},
         options, argc, argv);

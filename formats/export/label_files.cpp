@@ -9,6 +9,7 @@
 #include <array>
 
 #include "formats/export/label_tiff.h"
+#include "formats/export/mat_file.h"
 #include "formats/export/npy.h"
 #include "formats/exr/memory_output.h"
 #include "formats/files/atomic_file.h"
@@ -22,7 +23,7 @@ namespace imgmesh {
 namespace {
 
 constexpr Id kPngNone = 65535;
-constexpr std::array kExtensions = {".exr", ".png", ".tif", ".tiff", ".npy"};
+constexpr std::array kExtensions = {".exr", ".png", ".tif", ".tiff", ".npy", ".mat"};
 
 template <typename Value>
 void write_layer(const std::string& path, const std::string& channel, Imf::PixelType type, int width,
@@ -42,6 +43,24 @@ void write_layer(const std::string& path, const std::string& channel, Imf::Pixel
     target.commit();
 }
 
+// Label 0 is 1 there, and 0 is none.
+void write_segs(const std::string& path, std::size_t width, std::size_t height, std::span<const Id> labels,
+                bool overwrite) {
+    const auto number = [&](std::size_t i) { return labels[i] + 1; };
+    static_assert(kNone + 1 == 0);
+    const bool large = std::ranges::any_of(labels, [](Id l) { return l != kNone && l >= kPngNone; });
+    const MatVariable segs = {
+        "segs",
+        large ? MatType::kUint32 : MatType::kUint16,
+        height,
+        width,
+        large ? column_bytes<std::uint32_t>(width, height, number)
+              : column_bytes<std::uint16_t>(
+                    width, height, [&](std::size_t i) { return static_cast<std::uint16_t>(number(i)); }),
+        /*in_cell=*/true};
+    write_mat(path, {&segs, 1}, overwrite);
+}
+
 }  // namespace
 
 bool can_write_labels(const std::string& path) {
@@ -52,7 +71,8 @@ bool can_write_labels(const std::string& path) {
 void write_labels(const std::string& path, int width, int height, std::span<const Id> labels,
                   bool overwrite) {
     if (!can_write_labels(path))
-        throw Error(ErrorKind::kBadArgument, cat(path, ": labels are written as .exr, .png, .tif or .npy"));
+        throw Error(ErrorKind::kBadArgument,
+                    cat(path, ": labels are written as .exr, .png, .tif, .npy or .mat"));
     const std::string extension = lower_extension(path);
     if (extension == ".exr") {
         write_layer(path, "id", Imf::UINT, width, height, labels, overwrite);
@@ -60,6 +80,10 @@ void write_labels(const std::string& path, int width, int height, std::span<cons
     }
     if (extension == ".npy") {
         write_npy(path, {"", "u4", {as_index(height), as_index(width)}, bytes_of(labels)}, overwrite);
+        return;
+    }
+    if (extension == ".mat") {
+        write_segs(path, as_index(width), as_index(height), labels, overwrite);
         return;
     }
     if (extension != ".png") {
@@ -75,7 +99,7 @@ void write_labels(const std::string& path, int width, int height, std::span<cons
             throw Error(ErrorKind::kBadArgument,
                         cat(path, ": a 16-bit PNG holds labels up to ", kPngNone - 1, ", there is label ",
                             *std::ranges::max_element(labels, {}, [](Id l) { return l == kNone ? 0 : l; }),
-                            "; expected .exr, .tif or .npy"));
+                            "; expected .exr, .tif, .npy or .mat"));
         image.data[i] = static_cast<float>(std::min(labels[i], kPngNone)) / float(kPngNone);
     }
     write_image(path, image, {overwrite, SampleType::kUint16});

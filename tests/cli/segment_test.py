@@ -251,7 +251,7 @@ class Segment(CliCase):
                             (["--flat", "f"], ["--flat"]),
                             (["--ucm", "./x.exr"], ["x.exr", "two outputs"])):
             self.assert_error("imgmesh-segment", ["c.glb", "-o", "x.exr", *args], 2, *words)
-        self.assert_error("imgmesh-segment", ["c.glb", "-o", "x.jpg"], 2, "x.jpg", ".exr, .png, .tif or .npy")
+        self.assert_error("imgmesh-segment", ["c.glb", "-o", "x.jpg"], 2, "x.jpg", ".exr, .png, .tif, .npy or .mat")
         self.assert_error("imgmesh-segment", ["c.glb", "-o", "x.exr", "--mesh", "c.glb"], 2, "c.glb")
         self.assert_error("imgmesh-segment", ["c.glb", "-o", "x.exr", "--ucm", "no/u.exr"], 3, "no")
         self.assert_error("imgmesh-segment", ["in.png", "-o", "x.exr"], 4, "in.png")

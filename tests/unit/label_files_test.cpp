@@ -6,9 +6,12 @@
 #include <OpenEXR/ImfInputFile.h>
 #include <OpenImageIO/imageio.h>
 #include <doctest/doctest.h>
+#include <libdeflate.h>
 
 #include <limits>
 
+#include "formats/export/contour_files.h"
+#include "formats/files/atomic_file.h"
 #include "tests/support/picture_files.h"
 #include "tests/support/temporary_folder.h"
 
@@ -84,6 +87,8 @@ TEST_CASE("labels: what a PNG cannot hold is refused, and nothing is left behind
           ErrorKind::kBadArgument);
     CHECK(text.find("65535") != std::string::npos);
     CHECK(error_of([&] { write_labels(folder / "a.jpg", 3, 1, labels, true); }) == ErrorKind::kBadArgument);
+    CHECK(error_of([&] { write_contours(folder / "a.png", 1, 1, std::vector<float>{1}, 5, true); }) ==
+          ErrorKind::kBadArgument);
     CHECK(folder.count() == 0);
     write_labels(folder / "a.exr", 3, 1, labels, true);
     CHECK(read_exr_layer<Id>(folder / "a.exr", "id", Imf::UINT) == labels);
@@ -97,4 +102,32 @@ TEST_CASE("float layers keep every bit, infinity too") {
     write_float_layer(folder / "a.exr", "height", 1, 4, values, true);
     CHECK(read_exr_layer<float>(folder / "a.exr", "height", Imf::FLOAT) == values);
     CHECK(folder.count() == 1);
+}
+
+// Variables have an upper bound on their size, not on their number of labels: 65536 of them take 32 bits.
+TEST_CASE("labels: a .mat has 16 bits a label if these hold all of them") {
+    const TemporaryFolder folder;
+    std::vector<Id> labels(200 * 400);
+    for (Id i = 0; i < labels.size(); ++i) labels[i] = i % 65535;
+    write_labels(folder / "small.mat", 400, 200, labels, true);
+    labels[0] = 65535;
+    write_labels(folder / "large.mat", 400, 200, labels, true);
+    const auto element = [](const std::string& path) {  // without what compresses it
+        const std::vector<std::uint8_t> bytes = read_file(path, 1 << 20);
+        std::vector<std::uint8_t> out(1 << 20);
+        std::size_t size = 0;
+        libdeflate_decompressor* const unpacker = libdeflate_alloc_decompressor();
+        REQUIRE(libdeflate_zlib_decompress(unpacker, bytes.data() + 136, bytes.size() - 136, out.data(),
+                                           out.size(), &size) == LIBDEFLATE_SUCCESS);
+        libdeflate_free_decompressor(unpacker);
+        out.resize(size);
+        return out;
+    };
+    // Tag, flags, sides and name of the cell array take 48 bytes; so do those of the matrix, with no name.
+    const std::vector<std::uint8_t> small = element(folder / "small.mat"),
+                                    large = element(folder / "large.mat");
+    CHECK(small.size() == 48 + 48 + 8 + 2 * labels.size());
+    CHECK(large.size() == 48 + 48 + 8 + 4 * labels.size());
+    CHECK(int(small[64]) == 11);
+    CHECK(int(large[64]) == 13);
 }

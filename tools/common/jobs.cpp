@@ -24,10 +24,12 @@ std::string needs_folder(const std::string& option, const std::string& value, st
 }
 
 // The file of an option for `input`.
-std::string side_of(const SideFile& side, const std::string& input, std::size_t count) {
+std::string side_of(const SideFile& side, const std::string& type, const std::string& input,
+                    std::size_t count) {
     const std::string& value = *side.value;
     if (value.empty()) return value;
-    if (is_folder(value)) return in_folder(value, input, side.extension);
+    const bool other = std::ranges::find(side.others, type) != side.others.end();
+    if (is_folder(value)) return in_folder(value, input, other ? type : side.extension);
     if (count > 1) throw Error(ErrorKind::kBadArgument, needs_folder(side.option, value, count));
     return value;
 }
@@ -100,7 +102,8 @@ std::vector<Job> plan_jobs(const Tool& tool, const FileOptions& files) {
     std::vector<Job> jobs;
     for (const std::string& input : inputs) {
         Job job{input, output_of(tool, files, input, inputs.size()), reference, {}};
-        for (const SideFile& side : tool.sides) job.sides.push_back(side_of(side, input, inputs.size()));
+        for (const SideFile& side : tool.sides)
+            job.sides.push_back(side_of(side, files.type, input, inputs.size()));
         jobs.push_back(std::move(job));
     }
     if (tool.check)

@@ -59,6 +59,7 @@ struct SideFile {
     std::string option;     ///< "--outlines"
     std::string extension;  ///< of its files in a folder: "png"
     const std::string* value;
+    std::vector<std::string> others = {};  ///< extensions that its files in a folder get if --format says so
 };
 
 /// A tool without its options; name as in "imgmesh-build".
@@ -105,6 +106,7 @@ struct ToolWork {
         const char* option;
         const char* extension;
         std::string Options::*value;
+        std::vector<std::string> others = {};
     };
     std::vector<Side> sides = {};
 };
@@ -121,7 +123,7 @@ int tool_main(Tool tool, const ToolWork<Options>& work, Options& options, int ar
         return own;
     };
     for (const auto& side : work.sides)
-        tool.sides.push_back({side.option, side.extension, &(options.*side.value)});
+        tool.sides.push_back({side.option, side.extension, &(options.*side.value), side.others});
     tool.add_options = [&](CLI::App& app) { work.add_options(app, options); };
     if (work.check) tool.check = [&](const Job& job) { work.check(of_job(job)); };
     tool.run = [&](const Job& job, Context& context) { return work.one(of_job(job), context); };

@@ -1,0 +1,97 @@
+"""imgmesh-segment: files for other programs, read back by readers of their own."""
+import numpy as np
+
+import matlab_file
+import picture_files
+from support import CliCase, main
+from segment_test import NONE, connected, read_layer
+
+
+def eight_connected(inside):
+    """Labels as MATLAB's bwlabel() with its usual eight neighbours."""
+    labels = np.zeros(inside.shape, int)
+    for start in zip(*np.nonzero(inside)):
+        stack = [start] if labels[start] == 0 else []
+        while stack:
+            y, x = stack.pop()
+            around = np.s_[max(y - 1, 0):y + 2, max(x - 1, 0):x + 2]
+            for dy, dx in np.argwhere(inside[around] & (labels[around] == 0)):
+                place = max(y - 1, 0) + dy, max(x - 1, 0) + dx
+                labels[place] = 1 + start[0] * inside.shape[1] + start[1]
+                stack.append(place)
+    return labels
+
+
+class SegmentFilesTest(CliCase):
+    def setUp(self):
+        super().setUp()
+        # A sharp disc on a soft ramp.
+        self.picture = picture_files.ramp(60, 40)
+        picture_files.png(self.folder / "in.png", self.picture)
+        self.build("in.png", "--faces", "500", output="c.glb")
+        y, x = np.mgrid[0:40, 0:60]
+        self.inside = np.hypot(x - 30, y - 20) < 15
+        picture_files.png(self.folder / "mask.png", self.inside[..., None].astype(float))
+        self.build("in.png", "--faces", "400", "--mask", "mask.png", output="masked.glb")
+
+    def labels(self, *args, container="c.glb"):
+        self.run_ok("imgmesh-segment", container, "-o", "out.npy", "-q", *args)
+        return np.load(self.folder / "out.npy")
+
+    def test_labels_for_matlab(self):
+        """`segs` is a cell with a matrix of labels from 1; 0 is outside a mask."""
+        for container, inside in (("c.glb", np.ones_like(self.inside)), ("masked.glb", self.inside)):
+            labels = self.labels("--segments", "9", container=container)
+            self.run_ok("imgmesh-segment", container, "-o", "out.mat", "-q", "--segments", "9")
+            found = matlab_file.load(self.folder / "out.mat")
+            self.assertEqual(list(found), ["segs"])
+            self.assertEqual(found["segs"].shape, (1, 1))
+            segs = found["segs"][0, 0]
+            self.assertEqual(segs.dtype, np.uint16)
+            np.testing.assert_array_equal(segs == 0, ~inside)
+            np.testing.assert_array_equal(segs[inside] - 1, labels[inside])
+
+    def test_contour_map_for_matlab(self):
+        """The benchmark's code joins, at each threshold, what is connected below it, corners and frame included."""
+        for container in ("c.glb", "masked.glb"):
+            self.run_ok("imgmesh-segment", container, "-o", "out.png", "--ucm", "u.mat", "-q")
+            self.run_ok("imgmesh-segment", container, "-o", "out.png", "--ucm", "u.npy", "-q")
+            self.run_ok("imgmesh-segment", container, "-o", "out.png", "--ucm", "u.exr", "-q")
+            plain = np.load(self.folder / "u.npy")
+            self.assertEqual(plain.dtype, np.float32)
+            np.testing.assert_array_equal(plain, read_layer(self.folder / "u.exr", "float")[1])
+            found = matlab_file.load(self.folder / "u.mat")
+            ucm2, half = found["ucm2"], found["half_height"][0, 0]
+            self.assertEqual((ucm2.dtype, ucm2.shape), (np.float32, (81, 121)))
+            finite = np.isfinite(plain[1:-1, 1:-1])
+            expected = np.where(finite, np.divide(plain[1:-1, 1:-1], plain[1:-1, 1:-1] + half, where=finite), 1)
+            np.testing.assert_allclose(ucm2[1:-1, 1:-1], expected, rtol=1e-6)
+            np.testing.assert_array_equal(ucm2[[0, -1]], ucm2[[1, -2]])
+            np.testing.assert_array_equal(ucm2[:, [0, -1]], ucm2[:, [1, -2]])
+            for k in np.float32([0.1, 0.3, 0.5, 0.7, 0.9]):
+                below = ucm2 <= k
+                pixels = eight_connected(below)[1::2, 1::2]
+                height = half * k / (1 - k)
+                expected = connected(plain[1::2, 2:-1:2] <= height, plain[2:-1:2, 1::2] <= height, np.ones((40, 60), bool))
+                pairs = np.unique(np.stack([pixels.ravel(), expected.ravel()]), axis=1)
+                self.assertEqual((len(np.unique(pairs[0])), len(np.unique(pairs[1]))), (pairs.shape[1], pairs.shape[1]))
+
+    def test_images_of_one_pixel_and_of_one_row(self):
+        for width, height in ((1, 1), (9, 1), (1, 9)):
+            picture_files.png(self.folder / "odd.png", picture_files.noise(width, height))
+            self.build("odd.png", output="odd.glb")
+            self.run_ok("imgmesh-segment", "odd.glb", "-o", "odd.mat", "--ucm", "u.mat", "-q")
+            self.assertEqual(matlab_file.load(self.folder / "odd.mat")["segs"][0, 0].shape, (height, width))
+            self.assertEqual(matlab_file.load(self.folder / "u.mat")["ucm2"].shape, (2 * height + 1, 2 * width + 1))
+
+    def test_folders_for_the_benchmark(self):
+        """With --format mat the contour maps of a folder are .mat as well."""
+        for kind, ucm in (("mat", "mat"), ("npy", "npy"), ("tif", "exr")):
+            self.run_ok("imgmesh-segment", "c.glb", "masked.glb", "-o", f"{kind}/", "--format", kind, "--ucm", f"{kind}-ucm/",
+                        "-q")
+            self.assertEqual(sorted(p.name for p in (self.folder / kind).glob("[a-z]*")), [f"c.{kind}", f"masked.{kind}"])
+            self.assertEqual(sorted(p.name for p in (self.folder / f"{kind}-ucm").glob("[a-z]*")), [f"c.{ucm}", f"masked.{ucm}"])
+
+
+if __name__ == "__main__":
+    main()
