@@ -214,10 +214,13 @@ void print(const Report& report, std::ostream& out) {
     out << printable_line(report["input"].get<std::string>() + " -> " + report["output"].get<std::string>())
         << '\n';
     TextTable table;
-    table.add("regions", cat(report["regions"], " of ", report["cells"], " connected patches"));
+    const bool superpixels = report["distance"] == "superpixels";  // which follow pixels, not patches
+    table.add("regions", superpixels ? cat(report["regions"], " superpixels")
+                                     : cat(report["regions"], " of ", report["cells"], " connected patches"));
     table.add("sizes", cat(report["min_pixels"], " to ", report["max_pixels"], " pixels"));
-    table.add("distance", cat(report["distance"].get<std::string>(), ", merged up to ",
-                              format_number(report["merged_up_to"].get<double>())));
+    if (!superpixels)
+        table.add("distance", cat(report["distance"].get<std::string>(), ", merged up to ",
+                                  format_number(report["merged_up_to"].get<double>())));
     table.print(out, 2);
 }
 

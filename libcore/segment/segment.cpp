@@ -6,6 +6,7 @@
 #include "libcore/base/error.h"
 #include "libcore/segment/pair_contrasts.h"
 #include "libcore/segment/region_distance.h"
+#include "libcore/segment/superpixels.h"
 
 namespace imgmesh {
 namespace {
@@ -74,21 +75,17 @@ Segmentation segment(const Level& level, const FeatureImage& image, const Segmen
     const auto pixels = double(
         std::count_if(result.cells.begin(), result.cells.end(), [](Id cell) { return cell != kNone; }));
     if (pixels == 0) throw Error(ErrorKind::kUnsupported, "every pixel is outside the mask");
+    if (params.superpixels) return superpixels(level, result.cells, image, params, progress);
 
-    const bool contours = !params.superpixels && params.distance == DistanceRule::kContour;
+    const bool contours = params.distance == DistanceRule::kContour;
     tell(0.1, "contrasts");
     const PairContrasts contrasts = contours ? pair_contrasts(image, result.cells) : PairContrasts{};
-    const RegionDistance distance =
-        params.superpixels
-            ? superpixel_distance(params.compactness, std::sqrt(pixels / double(*params.superpixels)))
-            : (contours ? contour_distance(pixels) : paper_distance());
+    const RegionDistance distance = contours ? contour_distance(pixels) : paper_distance();
     tell(0.5, "merge");
     result.hierarchy =
         merge_regions(region_graph(result.cells, level.map, image, contrasts), distance, params.min_size);
     if (params.segments)
         result.merges = merges_to_count(result.hierarchy, *params.segments, result.missed);
-    else if (params.superpixels)
-        result.merges = merges_to_count(result.hierarchy, *params.superpixels, result.missed);
     else
         result.merges = merges_below(result.hierarchy, params.threshold);
     result.labels = labels_after(result.cells, result.hierarchy, result.merges);

@@ -23,7 +23,7 @@ struct SegmentParams {
     double threshold = 5.0;                          ///< regions closer than this become one [L*u*v*]; > 0
     std::optional<std::int64_t> segments;            ///< this many regions; >= 1
     std::optional<std::int64_t> superpixels;  ///< this many regions of similar size that follow edges; >= 1
-    double compactness = 10.0;  ///< of superpixels: this L*u*v* distance counts as much as one spacing; >= 0
+    double compactness = 5.0;   ///< of superpixels: this L*u*v* distance counts as much as one spacing; >= 0
     std::int64_t min_size = 1;  ///< no region has fewer pixels, except islands of a mask; >= 1
 };
 
@@ -45,8 +45,12 @@ FeatureImage reconstruct_luv(const Level& level);
 /// size. The result is the same for any number of threads. Takes O(pixels + borders log borders) time for
 /// photographs.
 ///
-/// Where more regions are wanted than there are cells (of at least min_size pixels), or fewer than the mask
-/// has islands, the number is as near as possible, and `missed` tells why.
+/// Superpixels are cells merged and then given smooth outlines that follow the image's pixels. In their
+/// result they are the cells, `merges` is 0, and the hierarchy merges them further.
+///
+/// Where more regions are wanted than there are cells (of at least min_size pixels; of superpixels, than
+/// there are pixels), or fewer than the mask has islands, the number is as near as possible, and `missed`
+/// tells why.
 ///
 /// Throws Error(kBadArgument) for a parameter out of range and an image of another size; Error(kUnsupported)
 /// for an image without colour or a mask without a pixel inside.

@@ -190,6 +190,28 @@ class Segment(CliCase):
             self.assertEqual((report["regions"], report["distance"]), (40, "superpixels"))
             self.assertEqual(labels.max(), 39)
         self.assertLess(report["max_pixels"], 4 * 60)
+        report, _ = self.segment("--superpixels", "30", "--min-size", "40")
+        self.assertEqual(report["regions"], 30)
+        self.assertGreaterEqual(report["min_pixels"], 40)
+        self.assertLess(self.segment("--superpixels", "30")[0]["min_pixels"], 40)
+
+    def test_more_superpixels_than_patches(self):
+        self.build("in.png", "--faces", "20", output="few.glb")
+        for number in ("300", "2400"):
+            report, labels = self.segment("--superpixels", number, container="few.glb")
+            self.assertEqual((str(report["regions"]), report["target_reached"]), (number, True))
+        np.testing.assert_array_equal(labels, np.arange(2400).reshape(40, 60))
+
+    def test_contour_map_of_superpixels(self):
+        """The lowest regions are the superpixels; at higher thresholds they merge."""
+        report, labels = self.segment("--superpixels", "40", "--ucm", "u.exr")
+        values = read_layer(self.folder / "u.exr", "float")[1]
+        for threshold, count in ((1e-30, 40), (report["next_merge"], 40), (report["next_merge"] * 1.0001, 39)):
+            joined = connected(values[1::2, 2:-1:2] < threshold, values[2:-1:2, 1::2] < threshold,
+                               np.ones((40, 60), bool))
+            self.assertEqual(joined.max() + 1, count)
+            if count == 40:
+                np.testing.assert_array_equal(joined, labels)
 
     def test_outside_of_a_mask_has_no_label(self):
         samples = np.dstack([self.picture, np.ones((40, 60))])

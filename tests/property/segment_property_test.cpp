@@ -5,6 +5,7 @@
 #include <numeric>
 #include <random>
 
+#include "libcore/base/grid_neighbors.h"
 #include "libcore/base/parallel.h"
 #include "libcore/segment/contour_map.h"
 #include "libcore/segment/pair_contrasts.h"
@@ -76,6 +77,15 @@ std::vector<Id> parts(std::size_t count, const std::vector<std::pair<std::size_t
         label[i] = r == i ? next++ : label[r];
     }
     return label;
+}
+
+// Returns the 4-connected parts of every label's pixels.
+std::vector<Id> connected_parts(const LabelImage& labels) {
+    std::vector<std::pair<std::size_t, std::size_t>> joined;
+    for_neighbor_pixels(labels, [&](std::size_t i, std::size_t j) {
+        if (labels[i] == labels[j]) joined.emplace_back(i, j);
+    });
+    return parts(labels.size(), joined, labels.values);
 }
 
 std::vector<Id> regions_of_map(const ContourMap& map, double threshold, const std::vector<Id>& inside) {
@@ -172,6 +182,57 @@ TEST_CASE("contour map: any threshold gives the regions of the tool") {
     }
 }
 
+// Superpixels have no thresholds of their own: the map's lowest regions are they, and above, Ward's merges.
+TEST_CASE("contour map of superpixels: the lowest regions are the superpixels") {
+    for (std::uint32_t seed = 1; seed <= 8; ++seed) {
+        const Sample s = sample(23, 19, 30, seed % 2 == 0, seed);
+        INFO("seed " << seed);
+        for (const std::int64_t number : {9, 60, 200}) {
+            SegmentParams params;
+            params.superpixels = number;
+            const Segmentation whole = segment(s.level, s.picture, params);
+            const ContourMap map = contour_map(whole.cells, whole.hierarchy);
+            CHECK(regions_of_map(map, 1e-30, whole.labels.values) == whole.labels.values);
+            for (const Merge& merge : whole.hierarchy.merges)
+                for (const double t : {double(merge.height), std::nextafter(double(merge.height), 1e30)}) {
+                    const LabelImage labels =
+                        labels_after(whole.cells, whole.hierarchy, merges_below(whole.hierarchy, t));
+                    CHECK(labels.values == regions_of_map(map, t, labels.values));
+                }
+        }
+    }
+}
+
+TEST_CASE(
+    "superpixels are connected, numbered by their first pixel, as many as asked for, and large enough") {
+    for (std::uint32_t seed = 1; seed <= 10; ++seed) {
+        const bool mask = seed % 2 == 0;
+        const Sample s = sample(31, 29, 60, mask, seed);
+        INFO("seed " << seed);
+        const auto pixels = std::count_if(s.level.map.begin(), s.level.map.end(),
+                                          [](const PixelCoord& coord) { return coord.face != kNone; });
+        // There are fewer than 200 patches.
+        for (const std::int64_t number : {100, 200, 500, static_cast<int>(pixels)})
+            for (const double compactness : {0.0, 5.0, 1e6}) {
+                SegmentParams params;
+                params.superpixels = number;
+                params.compactness = compactness;
+                const Segmentation result = segment(s.level, s.picture, params);
+                INFO("number " << number << ", compactness " << compactness);
+                CHECK(result.missed.empty());
+                CHECK(result.labels.count == as_index(number));
+                CHECK(connected_parts(result.labels) == result.labels.values);
+            }
+        if (mask) continue;  // islands may be of any size
+        SegmentParams params;
+        params.superpixels = 20;
+        params.min_size = 15;
+        const Segmentation result = segment(s.level, s.picture, params);
+        CHECK(result.labels.count == 20);
+        for (const RegionFacts& f : region_facts(result.labels, s.picture)) CHECK(f.pixels >= 15);
+    }
+}
+
 TEST_CASE("regions are connected, numbered by their first pixel, as many as asked for, and large enough") {
     for (std::uint32_t seed = 1; seed <= 10; ++seed) {
         const Sample s = sample(31, 29, 60, seed % 2 == 0, seed);
@@ -185,13 +246,7 @@ TEST_CASE("regions are connected, numbered by their first pixel, as many as aske
             params.segments = static_cast<std::int64_t>(islands + extra);
             const LabelImage labels = segment(s.level, s.picture, params).labels;
             CHECK(labels.count == islands + extra);
-            std::vector<std::pair<std::size_t, std::size_t>> joined;
-            for (std::size_t i = 0; i < labels.values.size(); ++i) {
-                if (i % 31 != 30 && labels.values[i] == labels.values[i + 1]) joined.emplace_back(i, i + 1);
-                if (i + 31 < labels.values.size() && labels.values[i] == labels.values[i + 31])
-                    joined.emplace_back(i, i + 31);
-            }
-            CHECK(parts(labels.values.size(), joined, labels.values) == labels.values);
+            CHECK(connected_parts(labels) == labels.values);
         }
         if (seed % 2 == 0) continue;  // islands may be of any size
         params.segments.reset();

@@ -1,0 +1,95 @@
+#include "libcore/segment/superpixels.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "libcore/base/disjoint_sets.h"
+#include "libcore/base/error.h"
+#include "libcore/base/grid_neighbors.h"
+#include "libcore/segment/refine_outlines.h"
+#include "libcore/segment/region_distance.h"
+
+namespace imgmesh {
+namespace {
+
+// Merging needs a choice: with fewer cells than this for each superpixel, cells are cut.
+constexpr double kCellsEach = 4;
+
+// Cuts cells along a grid of squares.
+Cells cut_along_squares(const Cells& cells, int side) {
+    DisjointSets sets(cells.size());
+    const auto square = [&](std::size_t i) { return std::pair(cells.x_of(i) / side, cells.y_of(i) / side); };
+    for_neighbor_pixels(cells, [&](std::size_t i, std::size_t j) {
+        if (cells[i] == cells[j] && cells[i] != kNone && square(i) == square(j))
+            sets.join(as_id(i), as_id(j));
+    });
+    Cells pieces(cells, kNone);
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+        if (cells[i] == kNone) continue;
+        const Id first = sets.find(as_id(i));
+        if (first == i) {
+            pieces[i] = as_id(pieces.count());
+            pieces.face.push_back(cells.face[cells[i]]);
+        } else {
+            pieces[i] = pieces[first];
+        }
+    }
+    return pieces;
+}
+
+// Each region as a cell, with the face of its first pixel.
+Cells cells_of(const LabelImage& labels, const PixelMap& map) {
+    Cells cells(labels);
+    cells.values = labels.values;
+    for (std::size_t i = 0; i < labels.size(); ++i)
+        if (labels[i] == cells.count()) cells.face.push_back(map[i].face);
+    return cells;
+}
+
+// Tells in `missed` why the number wanted cannot be had.
+std::size_t merges_to_count(const Hierarchy& hierarchy, std::int64_t count, double pixels,
+                            std::string& missed) {
+    const std::size_t wanted = as_index(count), least = hierarchy.cells - hierarchy.merges.size(),
+                      most = hierarchy.cells - hierarchy.forced;
+    if (wanted > most)
+        missed = cat(count, " regions were wanted, at most ", most,
+                     hierarchy.forced > 0 ? " of that size can be had from " : " can be had from ", pixels,
+                     " pixels");
+    if (wanted < least)
+        missed = cat(count, count == 1 ? " region was wanted, " : " regions were wanted, ", least,
+                     " are the fewest: so many islands has the mask");
+    return hierarchy.cells - std::clamp(wanted, least, most);
+}
+
+}  // namespace
+
+Segmentation superpixels(const Level& level, const Cells& cells, const FeatureImage& image,
+                         const SegmentParams& params, const Progress& progress) {
+    const auto tell = [&](double fraction, std::string_view stage) {
+        if (progress) progress(fraction, stage);
+    };
+    tell(0.1, "merge");
+    const auto pixels =
+        double(std::count_if(cells.begin(), cells.end(), [](Id cell) { return cell != kNone; }));
+    const auto number = double(*params.superpixels);
+    const double spacing = std::sqrt(pixels / number);
+    const RegionDistance distance = superpixel_distance(params.compactness, spacing);
+    const auto merged = [&](const Cells& parts) {
+        return merge_regions(region_graph(parts, level.map, image, {}), distance, params.min_size);
+    };
+    const bool few = double(cells.count()) < kCellsEach * number;
+    const Cells parts = few ? cut_along_squares(cells, std::max(1, static_cast<int>(spacing / 2))) : cells;
+    const Hierarchy hierarchy = merged(parts);
+    Segmentation result;
+    result.labels = labels_after(parts, hierarchy,
+                                 merges_to_count(hierarchy, *params.superpixels, pixels, result.missed));
+    tell(0.6, "outlines");
+    refine_outlines(result.labels, image, {params.compactness, spacing, params.min_size});
+    tell(0.9, "merge");
+    result.cells = cells_of(result.labels, level.map);
+    result.hierarchy = merged(result.cells);
+    tell(1, "done");
+    return result;
+}
+
+}  // namespace imgmesh
