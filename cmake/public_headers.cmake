@@ -38,7 +38,9 @@ set(IMGMESH_PUBLIC_HEADERS
   libcore/segment/draw_regions.h
   libcore/segment/hierarchy.h
   libcore/segment/labels.h
+  libcore/segment/region_colors.h
   libcore/segment/region_faces.h
+  libcore/segment/seeds.h
   libcore/segment/segment.h
 
   libcore/warp/arap.h

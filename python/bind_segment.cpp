@@ -1,12 +1,17 @@
 // segment(): regions of a mesh's image.
 #include <pybind11/stl.h>
 
+#include <array>
+#include <variant>
+
 #include "formats/export/label_files.h"
 #include "libcore/base/error.h"
 #include "libcore/image/color.h"
 #include "libcore/image/feature_space.h"
 #include "libcore/segment/contour_map.h"
 #include "libcore/segment/draw_regions.h"
+#include "libcore/segment/region_colors.h"
+#include "libcore/segment/seeds.h"
 #include "libcore/segment/segment.h"
 #include "python/bind.h"
 #include "python/errors.h"
@@ -116,6 +121,36 @@ std::shared_ptr<ImageValue> outlines(const SegmentationValue& value) {
         {}, [&] { return image_value(draw_outlines(value.labels(), value.picture, value.source)); });
 }
 
+std::shared_ptr<ImageValue> colors(const SegmentationValue& value) {
+    return without_gil(
+        {}, [&] { return image_value(draw_colors(value.labels(), distinct_colors(value.facts))); });
+}
+
+// A pixel, or the corners of a line.
+using Place = std::array<std::int64_t, 2>;
+using Places = std::vector<std::variant<Place, std::vector<Place>>>;
+
+void add_seeds(std::vector<Seed>& seeds, const Places& places, bool keep) {
+    for (const auto& place : places) {
+        const auto* const line = std::get_if<std::vector<Place>>(&place);
+        Seed seed{{}, keep, keep ? "keep" : "drop"};
+        for (const Place& p : line ? *line : std::vector<Place>{std::get<Place>(place)}) {
+            seed.where += cat(seed.points.empty() ? " (" : ", (", p[0], ", ", p[1], ")");
+            seed.points.push_back({p[0], p[1]});
+        }
+        if (!seed.points.empty()) seeds.push_back(std::move(seed));
+    }
+}
+
+py::array mask(const SegmentationValue& value, const Places& keep, const Places& drop) {
+    std::vector<Seed> seeds;
+    add_seeds(seeds, keep, true);
+    add_seeds(seeds, drop, false);
+    Mask chosen = without_gil({}, [&] { return choose_by_seeds(value.result, seeds); });
+    const py::ssize_t height = chosen.height, width = chosen.width;
+    return array_of(std::move(chosen.values), {height, width}).attr("astype")("bool");
+}
+
 py::array contours(const SegmentationValue& value) {
     ContourMap map = without_gil({}, [&] { return contour_map(value.result.cells, value.result.hierarchy); });
     const py::ssize_t height = map.height, width = map.width;
@@ -150,6 +185,17 @@ progress     called with the fraction done and the name of the stage
 
 Raises ArgumentError for a parameter out of range.)";
 
+constexpr char kMask[] = R"(mask(*, keep=(), drop=()) -> array
+
+Chooses an object by pixels (x, y) inside it and around it, as imgmesh-segment --mask does, and returns height x width of
+bool for build(mask=...). In place of a pixel there may be a list of them, the corners of a line.
+
+With both, everything goes to what it is joined with first on the way up the hierarchy. With keep alone the regions that
+hold these pixels are chosen, with drop alone all others.
+
+Raises ArgumentError for a pixel outside the image or the mesh's mask, and UnsupportedError if one patch of the mesh holds
+pixels of both kinds.)";
+
 }  // namespace
 
 void bind_segment(py::module_& module) {
@@ -171,6 +217,9 @@ void bind_segment(py::module_& module) {
             "missed", [](const SegmentationValue& v) { return v.result.missed; },
             "Why there are not as many regions as wanted; empty if there are.")
         .def("flat", flat, "flat() -> Image\n\nDraws each region in its mean colour.")
+        .def("colors", colors,
+             "colors() -> Image\n\nDraws each region in a colour of its own, unlike its neighbours'.")
+        .def("mask", mask, py::kw_only(), py::arg("keep") = Places(), py::arg("drop") = Places(), kMask)
         .def("outlines", outlines, "outlines() -> Image\n\nDraws the image with the regions' borders.")
         .def("contours", contours,
              "contours() -> array\n\nThe ultrametric contour map, (2 height + 1) x (2 width + 1) of float32: "

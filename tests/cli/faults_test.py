@@ -159,11 +159,11 @@ class Faults(CliCase):
     def test_several_outputs_appear_together(self):
         """A limit on file size that only the largest exceeds: none of them appears, and older ones stay."""
         runs = {"imgmesh-segment": ("c.glb", "-o", "1.png", "--outlines", "2.png", "--flat", "3.bmp", "--report", "4.json",
-                                    "--mesh", "5.glb"),
+                                    "--mesh", "5.glb", "--colors", "6.png", "--ucm", "7.mat", "--keep", "2,2", "--mask", "8.png"),
                 "imgmesh-compare": ("old.png", "new.png", "--error-image", "1.bmp", "--plot", "2.svg"),
                 "imgmesh-warp": ("c.glb", "--image", "old.png", "-o", "1.bmp", "--displacement", "2.exr")}
         for tool, args in runs.items():
-            outputs = [a for a in args if a[0].isdigit()]
+            outputs = [a for a in args if a[:2] in {f"{i}." for i in range(1, 10)}]
             before = self.files()
             self.run_ok(tool, *args, "-q")
             sizes = sorted((self.folder / name).stat().st_size for name in outputs)

@@ -76,11 +76,56 @@ class SegmentFilesTest(CliCase):
                 pairs = np.unique(np.stack([pixels.ravel(), expected.ravel()]), axis=1)
                 self.assertEqual((len(np.unique(pairs[0])), len(np.unique(pairs[1]))), (pairs.shape[1], pairs.shape[1]))
 
+    def test_colors(self):
+        """Regions are told apart by their colours alone; outside a mask nothing is drawn."""
+        for container, inside in (("c.glb", np.ones_like(self.inside)), ("masked.glb", self.inside)):
+            labels = self.labels("--segments", "9", container=container)
+            self.report("imgmesh-segment", container, "-o", "out.png", "--segments", "9", "--colors", "colors.png")
+            colors = picture_files.read(self.folder / "colors.png")
+            self.assertEqual(colors.shape[2], 3 if inside.all() else 4)
+            codes = colors[..., :3].dot([1, 256, 65536])
+            pairs = np.unique(np.stack([codes[inside], labels[inside]]), axis=1)
+            self.assertEqual([len(np.unique(row)) for row in pairs], [9, 9])
+            if not inside.all():
+                np.testing.assert_array_equal(colors[..., 3] > 0, inside)
+
+    def test_seeds_choose_the_disc(self):
+        """One pixel inside and one outside; build takes the mask."""
+        disc = self.picture[..., 2] > 0.5
+        y, x = np.argwhere(disc).mean(0).astype(int)
+        for seeds in (["--keep", f"{x},{y}", "--drop", "0,0"], ["--keep", f"{x},{y}", "--drop", "0,0:59,0:59,39"],
+                      ["--keep", f"{x},{y}", "--segments", "2"], ["--drop", "0,0", "--segments", "2"]):
+            report = self.report("imgmesh-segment", "c.glb", "-o", "out.png", "--mask", "object.png", *seeds)
+            found = picture_files.read(self.folder / "object.png")[..., 0]
+            self.assertEqual(sorted(np.unique(found)), [0, 1])
+            self.assertGreater(((found == 1) == disc).mean(), 0.97, seeds)
+            self.assertEqual(report["mask_pixels"], (found == 1).sum())
+        self.build("in.png", "--mask", "object.png", output="object.glb")
+        np.testing.assert_array_equal(self.labels(container="object.glb") != NONE, found == 1)
+
+    def test_seeds_that_cannot_be(self):
+        for args, code, words in ((["--keep", "60,1"], 2, ["--keep 60,1", "0,0 to 59,39"]),
+                                  (["--drop", "3,3:3,40"], 2, ["--drop 3,3:3,40", "3,40"]),
+                                  (["--keep", "3"], 2, ["--keep '3'", "X,Y"]),
+                                  (["--keep", "3,4,5"], 2, ["--keep '3,4,5'"]),
+                                  (["--keep", "3,4:"], 2, ["--keep '3,4:'"]),
+                                  (["--keep", "-1,4"], 2, ["--keep"]),
+                                  (["--keep", "1.5,4"], 2, ["--keep"]),
+                                  (["--keep", ""], 2, ["--keep"]),
+                                  ([], 2, ["--mask object.png", "--keep"]),
+                                  (["--keep", "5,5", "--drop", "5,5"], 5, ["--keep 5,5 and --drop 5,5", "one patch"])):
+            self.assert_error("imgmesh-segment", ["c.glb", "-o", "x.png", "--mask", "object.png", *args], code, *words)
+        self.assert_error("imgmesh-segment", ["c.glb", "-o", "x.png", "--keep", "1,1"], 2, "--keep 1,1", "--mask")
+        self.assert_error("imgmesh-segment", ["masked.glb", "-o", "x.png", "--mask", "object.png", "--keep", "0,0"], 2,
+                          "--keep 0,0", "outside the mask")
+        self.assert_error("imgmesh-segment", ["c.glb", "-o", "x.png", "--mask", "object.txt", "--keep", "1,1"], 2, "object.txt")
+
     def test_images_of_one_pixel_and_of_one_row(self):
         for width, height in ((1, 1), (9, 1), (1, 9)):
             picture_files.png(self.folder / "odd.png", picture_files.noise(width, height))
             self.build("odd.png", output="odd.glb")
-            self.run_ok("imgmesh-segment", "odd.glb", "-o", "odd.mat", "--ucm", "u.mat", "-q")
+            self.run_ok("imgmesh-segment", "odd.glb", "-o", "odd.mat", "--ucm", "u.mat", "--colors", "c.png", "--keep", "0,0",
+                        "--mask", "m.png", "-q")
             self.assertEqual(matlab_file.load(self.folder / "odd.mat")["segs"][0, 0].shape, (height, width))
             self.assertEqual(matlab_file.load(self.folder / "u.mat")["ucm2"].shape, (2 * height + 1, 2 * width + 1))
 

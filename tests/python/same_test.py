@@ -143,12 +143,17 @@ class Same(CliCase):
                                     (("--image", "in.png", "--distance", "paper"), {"image": self.color, "distance": "paper"})):
             with self.subTest(options):
                 self.run_ok("imgmesh-segment", "a.glb", "-o", "a.exr", "-q", "--flat", "flat.png", "--outlines", "lines.png",
-                            *options)
+                            "--colors", "colors.png", "--keep", "2,2:5,3", "--drop", "40,20", "--mask", "mask.png", *options)
                 result = mesh.segment(**parameters)
                 result.write(self.folder / "python.exr")
                 imgmesh.write_image(self.folder / "python-flat.png", result.flat())
                 imgmesh.write_image(self.folder / "python-lines.png", result.outlines())
-                for python, tool in (("python.exr", "a.exr"), ("python-flat.png", "flat.png"), ("python-lines.png", "lines.png")):
+                imgmesh.write_image(self.folder / "python-colors.png", result.colors())
+                mask = result.mask(keep=[[(2, 2), (5, 3)]], drop=[(40, 20)])
+                self.assertEqual((mask.dtype, mask.shape), (bool, result.labels.shape))
+                imgmesh.write_image(self.folder / "python-mask.png", mask.astype(np.uint8) * 255)
+                for python, tool in (("python.exr", "a.exr"), ("python-flat.png", "flat.png"), ("python-lines.png", "lines.png"),
+                                     ("python-colors.png", "colors.png"), ("python-mask.png", "mask.png")):
                     self.assertEqual((self.folder / python).read_bytes(), (self.folder / tool).read_bytes(), tool)
                 self.assertEqual(len(np.unique(result.labels)), result.count)
                 self.assertEqual([r["pixels"] for r in result.regions], np.bincount(result.labels.ravel()).tolist())

@@ -1,0 +1,39 @@
+// The options of imgmesh-segment.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "formats/container/container.h"
+#include "formats/picture/image_io.h"
+#include "libcore/segment/seeds.h"
+
+namespace CLI {
+class App;
+}
+
+namespace imgmesh {
+
+struct SegmentOptions {
+    std::string input, output;
+    SegmentParams params;
+    std::optional<double> threshold, compactness;
+    std::optional<DistanceRule> distance;
+    int level = 0;
+    std::vector<Seed> seeds;
+    std::string image, outlines, flat, colors, ucm, report, mesh, mask;
+    ReadImageOptions read;
+    ContainerLimits limits;
+    bool strict = false;
+};
+
+void add_segment_options(CLI::App& app, SegmentOptions& options);
+
+/// Returns all files that a run writes.
+std::vector<std::string> outputs_of(const SegmentOptions& options);
+
+/// Throws Error(kBadArgument) for mistakes that can be found before the container is read.
+void check_segment_options(const SegmentOptions& options);
+
+}  // namespace imgmesh
