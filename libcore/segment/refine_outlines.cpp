@@ -3,12 +3,8 @@
 #include <array>
 #include <cmath>
 
-#include "libcore/base/parallel.h"
-
 namespace imgmesh {
 namespace {
-
-constexpr int kGrain = 16;  // rows a block
 
 // Most pixels that ever move do so in the first three passes. Those after the sixth change no figure by more
 // than .001 (docs/decisions/0010-superpixels.md).
@@ -39,50 +35,14 @@ constexpr std::array<bool, 256> kStaysConnected = [] {
     return table;
 }();
 
-// Blurs by 1 4 6 4 1 along rows and columns, of the pixels inside only.
-FeatureImage blurred(const FeatureImage& image, const LabelImage& labels) {
-    constexpr int kReach = 2;
-    constexpr std::array<float, 2 * kReach + 1> kWeights = {1, 4, 6, 4, 1};
-    using Sum = std::array<float, 4>;  // of weights and of weighted colours
-    Grid<Sum> rows{GridSize(labels)};
-    parallel_blocks(0, labels.height, kGrain, [&](int begin, int end) {
-        for (int y = begin; y < end; ++y)
-            for (int x = 0; x < labels.width; ++x) {
-                Sum& sum = rows.at(x, y);
-                for (int k = -kReach; k <= kReach; ++k) {
-                    if (!labels.contains(x + k, y) || labels.at(x + k, y) == kNone) continue;
-                    const float weight = kWeights[as_index(k + kReach)];
-                    const float* color = image.pixel(x + k, y);
-                    sum[0] += weight;
-                    for (std::size_t c = 0; c < 3; ++c) sum[1 + c] += weight * color[c];
-                }
-            }
-    });
-    FeatureImage result(image.width, image.height, 3, std::vector<float>(image.sample_count()));
-    parallel_blocks(0, labels.height, kGrain, [&](int begin, int end) {
-        for (int y = begin; y < end; ++y)
-            for (int x = 0; x < labels.width; ++x) {
-                if (labels.at(x, y) == kNone) continue;
-                Sum sum{};
-                for (int k = -kReach; k <= kReach; ++k) {
-                    if (!labels.contains(x, y + k)) continue;
-                    const float weight = kWeights[as_index(k + kReach)];
-                    for (std::size_t c = 0; c < 4; ++c) sum[c] += weight * rows.at(x, y + k)[c];
-                }
-                float* color = result.pixel(x, y);
-                for (std::size_t c = 0; c < 3; ++c) color[c] = sum[1 + c] / sum[0];
-            }
-    });
-    return result;
-}
-
 class Mover {
   public:
     Mover(LabelImage& labels, const FeatureImage& image, const OutlineParams& params)
         : labels_(labels),
-          colors_(blurred(image, labels)),
+          colors_(image),
           stride_(as_index(labels.width) + 2),
           framed_(stride_ * (as_index(labels.height) + 2), kNone),
+          stale_(framed_.size(), 1),
           regions_(labels.count),
           place_scale_(params.compactness / params.spacing),
           price_(params.compactness * params.compactness),
@@ -99,14 +59,14 @@ class Mover {
     void run() {
         // Every other pass runs backwards, so that outlines do not drift one way.
         for (int pass = 0; pass < kPasses; ++pass) {
-            bool moved = false;
+            const bool back = pass % 2 == 1;
             for (int row = 0; row < labels_.height; ++row)
                 for (int column = 0; column < labels_.width; ++column) {
-                    const bool back = pass % 2 == 1;
-                    moved |= visit(back ? labels_.width - 1 - column : column,
-                                   back ? labels_.height - 1 - row : row);
+                    const int x = back ? labels_.width - 1 - column : column,
+                              y = back ? labels_.height - 1 - row : row;
+                    // What has not changed nearby since the last visit is left alone.
+                    if (stale_[framed(x, y)] != 0) visit(x, y);
                 }
-            if (!moved) break;
         }
         renumber();
     }
@@ -135,13 +95,14 @@ class Mover {
         return {double(color[0]), double(color[1]), double(color[2]), place_scale_ * x, place_scale_ * y};
     }
 
-    // Gives a pixel to the neighbouring region that lowers the energy most. Returns whether one did.
-    bool visit(int x, int y) {
-        Id* const at = framed_.data() + framed(x, y);
+    // Gives a pixel to the neighbouring region that lowers the energy most.
+    void visit(int x, int y) {
+        const std::size_t i = framed(x, y);
+        Id* const at = framed_.data() + i;
         const Id own = *at;
-        if (own == kNone) return false;
-        if (at[1] == own && at[-1] == own && at[stride_] == own && at[-as_signed(stride_)] == own)
-            return false;
+        stale_[i] = 0;
+        if (own == kNone) return;
+        if (at[1] == own && at[-1] == own && at[stride_] == own && at[-as_signed(stride_)] == own) return;
         std::array<Id, kNeighbors> around;
         unsigned same = 0;
         for (std::size_t k = 0; k < kNeighbors; ++k) {
@@ -149,7 +110,7 @@ class Mover {
             same |= unsigned(around[k] == own) << k;
         }
         Region& from = regions_[own];
-        if (!kStaysConnected[same] || from.pixels <= min_size_) return false;
+        if (!kStaysConnected[same] || from.pixels <= min_size_) return;
         const Features pixel = features(x, y);
         // What the pixel costs where it is: the sum of squares falls by this when it leaves.
         double least = from.pixels / (from.pixels - 1) * (pixel - from.mean).squaredNorm() +
@@ -165,11 +126,11 @@ class Mover {
             least = cost;
             best = other;
         }
-        if (best == own) return false;
+        if (best == own) return;
         from.add(pixel, -1);
         regions_[best].add(pixel, 1);
         *at = best;
-        return true;
+        for (const std::ptrdiff_t offset : offset_) stale_[as_index(as_signed(i) + offset)] = 1;
     }
 
     // The outline between a pixel of region `own` and its neighbours. The frame and the mask's are free.
@@ -193,9 +154,10 @@ class Mover {
     }
 
     LabelImage& labels_;
-    FeatureImage colors_;
+    const FeatureImage& colors_;
     std::size_t stride_;
     std::vector<Id> framed_;  // labels inside a frame of kNone, so that every pixel has eight neighbours
+    std::vector<std::uint8_t> stale_;  // of the framed labels: 1 where a pixel must be visited
     std::array<std::ptrdiff_t, kNeighbors> offset_{};
     std::vector<Region> regions_;
     double place_scale_, price_, min_size_;

@@ -18,9 +18,8 @@ struct OutlineParams {
 ///     sum over pixels  |colour - mean colour of its region|^2 + c^2 |place - mean place|^2 / spacing^2
 ///     + c^2 times the length of the outlines,    c = compactness
 ///
-/// which is superpixel_distance's sum of squares with a price on outlines. The length counts pairs of
-/// 4-neighbours in different regions as 1 and diagonal pairs as sqrt(1/2). Colours are those of the image
-/// blurred by about a pixel, inside the mask, so that noise does not decide. Every region stays 4-connected
+/// which is the sum of squares behind Ward's criterion, with a price on outlines. The length counts pairs
+/// of 4-neighbours in different regions as 1 and diagonal pairs as sqrt(1/2). Every region stays 4-connected
 /// and keeps a pixel, so their number stays; the numbers themselves follow the new first pixels.
 ///
 /// The image is L*u*v*, of the labels' size. Visits the pixels a fixed number of times, in O(pixels) time.

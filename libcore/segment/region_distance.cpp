@@ -17,6 +17,17 @@ constexpr double kShapeExponent = 0.2;  // regions joined along most of their bo
 // The smallest value of 1 - m: keeps the logarithm finite.
 constexpr double kLeastLikeness = 1e-9;
 
+// Beyond this distance of colours [L*u*v*] superpixels count it, not its square. Without that, specks of
+// strong contrast take superpixels that weak edges need (docs/decisions/0010-superpixels.md).
+constexpr double kStrongContrast = 5;
+
+// Huber's loss, twice, of a distance's square.
+double huber(double square) {
+    return square <= kStrongContrast * kStrongContrast
+               ? square
+               : kStrongContrast * (2 * std::sqrt(square) - kStrongContrast);
+}
+
 double harmonic(double a, double b) {
     return a * b / (a + b);
 }
@@ -44,7 +55,7 @@ RegionDistance contour_distance(double pixels) {
 RegionDistance superpixel_distance(double compactness, double spacing) {
     const double scale = compactness / spacing;
     return [scale](const RegionSums& a, const RegionSums& b, const Border&) {
-        const double color = (a.mean_color() - b.mean_color()).squaredNorm();
+        const double color = huber((a.mean_color() - b.mean_color()).squaredNorm());
         const double place = (a.mean_place() - b.mean_place()).squaredNorm();
         return harmonic(a.pixels, b.pixels) * (color + scale * scale * place);
     };

@@ -20,8 +20,9 @@ RegionDistance paper_distance();
 RegionDistance contour_distance(double pixels);
 
 /// Ward's criterion: what a merge adds to the sum of squares about the regions' means, of colours and of
-/// places times compactness / spacing, as in SLIC (Achanta et al. 2012). `compactness` is in L*u*v* units,
-/// `spacing` is that of superpixels on a square grid [pixels].
+/// places times compactness / spacing, as in SLIC (Achanta et al. 2012). Of colours more than 5 apart the
+/// distance counts instead of its square, as in Huber's loss. `compactness` is in L*u*v* units, `spacing` is
+/// that of superpixels on a square grid [pixels]. Figures: docs/decisions/0010-superpixels.md.
 RegionDistance superpixel_distance(double compactness, double spacing);
 
 }  // namespace imgmesh

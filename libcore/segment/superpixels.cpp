@@ -6,14 +6,17 @@
 #include "libcore/base/disjoint_sets.h"
 #include "libcore/base/error.h"
 #include "libcore/base/grid_neighbors.h"
+#include "libcore/segment/blur_inside.h"
 #include "libcore/segment/refine_outlines.h"
 #include "libcore/segment/region_distance.h"
 
 namespace imgmesh {
 namespace {
 
-// Merging needs a choice: with fewer cells than this for each superpixel, cells are cut.
-constexpr double kCellsEach = 4;
+// Regions get their outlines first when this many of them are left for each superpixel, and again in the
+// end: merging then starts from parts with good outlines (docs/decisions/0010-superpixels.md). Where there
+// are fewer cells, they are cut.
+constexpr std::size_t kPartsEach = 4;
 
 // Cuts cells along a grid of squares.
 Cells cut_along_squares(const Cells& cells, int side) {
@@ -54,7 +57,7 @@ std::size_t merges_to_count(const Hierarchy& hierarchy, std::int64_t count, doub
     if (wanted > most)
         missed = cat(count, " regions were wanted, at most ", most,
                      hierarchy.forced > 0 ? " of that size can be had from " : " can be had from ", pixels,
-                     " pixels");
+                     pixels == 1 ? " pixel" : " pixels");
     if (wanted < least)
         missed = cat(count, count == 1 ? " region was wanted, " : " regions were wanted, ", least,
                      " are the fewest: so many islands has the mask");
@@ -63,31 +66,43 @@ std::size_t merges_to_count(const Hierarchy& hierarchy, std::int64_t count, doub
 
 }  // namespace
 
-Segmentation superpixels(const Level& level, const Cells& cells, const FeatureImage& image,
+Segmentation superpixels(const Level& level, const Cells& patches, const FeatureImage& image,
                          const SegmentParams& params, const Progress& progress) {
     const auto tell = [&](double fraction, std::string_view stage) {
         if (progress) progress(fraction, stage);
     };
     tell(0.1, "merge");
     const auto pixels =
-        double(std::count_if(cells.begin(), cells.end(), [](Id cell) { return cell != kNone; }));
+        double(std::count_if(patches.begin(), patches.end(), [](Id cell) { return cell != kNone; }));
     const auto number = double(*params.superpixels);
     const double spacing = std::sqrt(pixels / number);
     const RegionDistance distance = superpixel_distance(params.compactness, spacing);
-    const auto merged = [&](const Cells& parts) {
-        return merge_regions(region_graph(parts, level.map, image, {}), distance, params.min_size);
+    const auto merged = [&](const Cells& cells, std::int64_t min_size) {
+        return merge_regions(region_graph(cells, level.map, image, {}), distance, min_size);
     };
-    const bool few = double(cells.count()) < kCellsEach * number;
-    const Cells parts = few ? cut_along_squares(cells, std::max(1, static_cast<int>(spacing / 2))) : cells;
-    const Hierarchy hierarchy = merged(parts);
+    const FeatureImage smooth = blur_inside(image, patches);
+    const auto refine = [&](LabelImage& labels, std::int64_t min_size) {
+        refine_outlines(labels, smooth, {params.compactness, spacing, min_size});
+        return cells_of(labels, level.map);
+    };
+    const bool few = double(patches.count()) < double(kPartsEach) * number;
+    Cells cells = few ? cut_along_squares(patches, std::max(1, static_cast<int>(spacing / 2))) : patches;
+    Hierarchy hierarchy = merged(cells, 1);
+    const std::size_t wanted = std::min(as_index(*params.superpixels), cells.size());
+    const std::size_t surplus = cells.count() - std::min(cells.count(), kPartsEach * wanted);
+    LabelImage parts = labels_after(cells, hierarchy, std::min(surplus, hierarchy.merges.size()));
+    tell(0.4, "outlines");
+    cells = refine(parts, 1);
+
+    tell(0.6, "merge");
+    hierarchy = merged(cells, params.min_size);
     Segmentation result;
-    result.labels = labels_after(parts, hierarchy,
+    result.labels = labels_after(cells, hierarchy,
                                  merges_to_count(hierarchy, *params.superpixels, pixels, result.missed));
-    tell(0.6, "outlines");
-    refine_outlines(result.labels, image, {params.compactness, spacing, params.min_size});
+    tell(0.7, "outlines");
+    result.cells = refine(result.labels, params.min_size);
     tell(0.9, "merge");
-    result.cells = cells_of(result.labels, level.map);
-    result.hierarchy = merged(result.cells);
+    result.hierarchy = merged(result.cells, params.min_size);
     tell(1, "done");
     return result;
 }
