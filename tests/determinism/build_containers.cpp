@@ -1,8 +1,9 @@
-// build-containers FOLDER: containers of small images with every preset, metric, solver and kind of map, as
-// FOLDER/NAME.glb. Builds of it by other compilers, and without AVX2, write the same bytes
-// (compare_builds.py).
+// build-containers FOLDER PART PARTS: containers of small images with every preset, metric, solver and kind
+// of map, as FOLDER/NAME.glb. Of all containers it writes those whose number leaves PART when divided by
+// PARTS. Builds of it by other compilers, and without AVX2, write the same bytes (compare_builds.py).
 #include <algorithm>
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
 #include <filesystem>
 #include <string>
@@ -96,9 +97,11 @@ std::vector<Case> make_cases(const Image& photo, const Image& gray) {
     return cases;
 }
 
-void write_all(const std::filesystem::path& folder) {
+void write_part(const std::filesystem::path& folder, std::size_t part, std::size_t parts) {
     const Image photo = make_photo(), gray = green_of(photo);
-    for (Case& c : make_cases(photo, gray)) {
+    std::vector<Case> cases = make_cases(photo, gray);
+    for (std::size_t i = part; i < cases.size(); i += parts) {
+        Case& c = cases[i];
         const BuildResult result = build_mesh_image(*c.image, c.params, {}, std::move(c.mask));
         write_container((folder / (c.name + ".glb")).string(), result.mesh_image, {.draco = c.draco});
     }
@@ -107,12 +110,13 @@ void write_all(const std::filesystem::path& folder) {
 }  // namespace
 
 int main(int argc, char** argv) {
-    if (argc != 2) {
-        std::fputs("usage: build-containers FOLDER\n", stderr);
+    const int parts = argc == 4 ? std::atoi(argv[3]) : 0;
+    if (parts <= 0) {
+        std::fputs("usage: build-containers FOLDER PART PARTS\n", stderr);
         return 2;
     }
     try {
-        write_all(argv[1]);
+        write_part(argv[1], static_cast<std::size_t>(std::atoi(argv[2])), static_cast<std::size_t>(parts));
     } catch (const std::exception& e) {
         std::fprintf(stderr, "build-containers: %s\n", e.what());
         return 1;

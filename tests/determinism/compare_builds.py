@@ -11,10 +11,9 @@ import tempfile
 from concurrent.futures import ThreadPoolExecutor
 
 
-def build_all(program, folder):
-    folder.mkdir()
-    subprocess.run([program, folder], check=True)
-    return {file.name: file.read_bytes() for file in folder.iterdir()}
+def build_part(program, folder, part, parts):
+    folder.mkdir(exist_ok=True)
+    subprocess.run([program, folder, str(part), str(parts)], check=True)
 
 
 def first_difference(one, other):
@@ -27,9 +26,14 @@ def first_difference(one, other):
 def main(programs):
     if len(programs) < 2:
         sys.exit(__doc__)
-    with tempfile.TemporaryDirectory() as temporary, ThreadPoolExecutor(os.cpu_count()) as pool:
+    parts = os.cpu_count()  # a build with sanitizers alone takes most of the time, on one core
+    with tempfile.TemporaryDirectory() as temporary, ThreadPoolExecutor(parts) as pool:
         folders = [pathlib.Path(temporary) / str(i) for i in range(len(programs))]
-        built = list(pool.map(build_all, programs, folders))
+        jobs = [pool.submit(build_part, program, folder, part, parts)
+                for program, folder in zip(programs, folders) for part in range(parts)]
+        for job in jobs:
+            job.result()
+        built = [{file.name: file.read_bytes() for file in folder.iterdir()} for folder in folders]
     differences = 0
     for program, files in zip(programs[1:], built[1:]):
         for name in sorted(built[0].keys() | files.keys()):
