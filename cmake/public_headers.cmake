@@ -40,6 +40,8 @@ set(IMGMESH_PUBLIC_HEADERS
   libcore/segment/labels.h
   libcore/segment/region_colors.h
   libcore/segment/region_faces.h
+  libcore/segment/region_outlines.h
+  libcore/segment/regions_svg.h
   libcore/segment/seeds.h
   libcore/segment/segment.h
 

@@ -11,6 +11,7 @@
 #include "libcore/segment/contour_map.h"
 #include "libcore/segment/draw_regions.h"
 #include "libcore/segment/region_colors.h"
+#include "libcore/segment/regions_svg.h"
 #include "libcore/segment/seeds.h"
 #include "libcore/segment/segment.h"
 #include "python/bind.h"
@@ -110,10 +111,15 @@ std::shared_ptr<ImageValue> image_value(Image image) {
     return std::make_shared<ImageValue>(ImageValue{std::move(image)});
 }
 
-std::shared_ptr<ImageValue> flat(const SegmentationValue& value) {
+std::vector<Vec3f> mean_colors(const SegmentationValue& value) {
     std::vector<Vec3f> colors;
     for (const RegionFacts& f : value.facts) colors.push_back(f.color);
-    return without_gil({}, [&] { return image_value(draw_flat(value.labels(), colors, value.source)); });
+    return colors;
+}
+
+std::shared_ptr<ImageValue> flat(const SegmentationValue& value) {
+    return without_gil(
+        {}, [&] { return image_value(draw_flat(value.labels(), mean_colors(value), value.source)); });
 }
 
 std::shared_ptr<ImageValue> outlines(const SegmentationValue& value) {
@@ -124,6 +130,11 @@ std::shared_ptr<ImageValue> outlines(const SegmentationValue& value) {
 std::shared_ptr<ImageValue> colors(const SegmentationValue& value) {
     return without_gil(
         {}, [&] { return image_value(draw_colors(value.labels(), distinct_colors(value.facts))); });
+}
+
+std::string svg(const SegmentationValue& value, double tolerance) {
+    return without_gil(
+        {}, [&] { return regions_svg(region_outlines(value.labels(), tolerance), mean_colors(value)); });
 }
 
 // A pixel, or the corners of a line.
@@ -219,6 +230,10 @@ void bind_segment(py::module_& module) {
         .def("flat", flat, "flat() -> Image\n\nDraws each region in its mean colour.")
         .def("colors", colors,
              "colors() -> Image\n\nDraws each region in a colour of its own, unlike its neighbours'.")
+        .def("svg", svg, py::arg("tolerance") = kMostOutlineTolerance,
+             "svg(tolerance=0.5) -> str\n\nDraws each region as a shape in its mean colour, as an SVG "
+             "document. "
+             "Neighbours share their borders, which stay within tolerance of the pixels' edges (0 to 0.5).")
         .def("mask", mask, py::kw_only(), py::arg("keep") = Places(), py::arg("drop") = Places(), kMask)
         .def("outlines", outlines, "outlines() -> Image\n\nDraws the image with the regions' borders.")
         .def("contours", contours,

@@ -14,6 +14,7 @@
 #include "libcore/segment/draw_regions.h"
 #include "libcore/segment/region_colors.h"
 #include "libcore/segment/region_faces.h"
+#include "libcore/segment/regions_svg.h"
 #include "libcore/segment/segment.h"
 #include "tools/common/choices.h"
 #include "tools/common/container_input.h"
@@ -87,6 +88,9 @@ Report segment_one(const SegmentOptions& o, Context& context) {
                     {context.overwrite, {}});
     if (!o.colors.empty())
         write_image(o.colors, draw_colors(labels, distinct_colors(facts)), {context.overwrite, {}});
+    if (!o.svg.empty())
+        write_text(o.svg, regions_svg(region_outlines(labels, o.svg_tolerance), mean_colors(facts)),
+                   context.overwrite);
     if (!o.mask.empty()) write_image(o.mask, mask_image(mask), {context.overwrite, {}});
     if (!o.ucm.empty()) {
         const ContourMap map = contour_map(result.cells, result.hierarchy);
@@ -108,8 +112,9 @@ Report segment_one(const SegmentOptions& o, Context& context) {
     report.update(segmentation_report(result, facts));
     report.update(target_report(missed));
     const std::pair<const char*, const std::string*> others[] = {
-        {"image", &o.image}, {"outlines", &o.outlines}, {"flat", &o.flat}, {"colors", &o.colors},
-        {"ucm", &o.ucm},     {"report", &o.report},     {"mesh", &o.mesh}, {"mask", &o.mask}};
+        {"image", &o.image},   {"outlines", &o.outlines}, {"flat", &o.flat},
+        {"colors", &o.colors}, {"svg", &o.svg},           {"ucm", &o.ucm},
+        {"report", &o.report}, {"mesh", &o.mesh},         {"mask", &o.mask}};
     for (const auto& [name, path] : others)
         if (!path->empty()) report[name] = *path;
     if (!mask.empty()) report["mask_pixels"] = mask.count();
@@ -159,6 +164,7 @@ int main(int argc, char** argv) {
          {{"--outlines", "png", &SegmentOptions::outlines},
           {"--flat", "png", &SegmentOptions::flat},
           {"--colors", "png", &SegmentOptions::colors},
+          {"--svg", "svg", &SegmentOptions::svg},
           {"--ucm", "exr", &SegmentOptions::ucm, {"npy", "mat"}},
           {"--report", "json", &SegmentOptions::report},
           {"--mesh", "glb", &SegmentOptions::mesh},

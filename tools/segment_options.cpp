@@ -105,6 +105,17 @@ void add_segment_options(CLI::App& app, SegmentOptions& o) {
     in_group(add_file(app, "--colors", o.colors,
                       "Image to write with each region in a colour of its own, unlike its neighbours'"),
              files);
+    CLI::Option* const svg =
+        in_group(add_file(app, "--svg", o.svg,
+                          "Drawing to write with a shape for each region in its mean colour (.svg)"),
+                 files);
+    advanced(
+        app,
+        in_group(needs(add_number(app, "--svg-tolerance", o.svg_tolerance, {0, kMostOutlineTolerance},
+                                  "How far shapes in --svg may leave the pixels' edges, in pixels; 0 draws "
+                                  "every pixel's corner"),
+                       svg),
+                 files));
     in_group(add_file(app, "--report", o.report,
                       "List to write of each region's colour, pixels, box and neighbours (.json)"),
              files);
@@ -117,7 +128,8 @@ void add_segment_options(CLI::App& app, SegmentOptions& o) {
 
 std::vector<std::string> outputs_of(const SegmentOptions& o) {
     std::vector<std::string> outputs = {o.output};
-    for (const std::string* path : {&o.outlines, &o.flat, &o.colors, &o.ucm, &o.report, &o.mesh, &o.mask})
+    for (const std::string* path :
+         {&o.outlines, &o.flat, &o.colors, &o.svg, &o.ucm, &o.report, &o.mesh, &o.mask})
         if (!path->empty()) outputs.push_back(*path);
     return outputs;
 }
@@ -139,6 +151,7 @@ void check_segment_options(const SegmentOptions& o) {
     if (!o.ucm.empty() && !can_write_contours(o.ucm))
         throw Error(ErrorKind::kBadArgument,
                     cat("--ucm ", o.ucm, ": expected a name that ends with .exr, .npy or .mat"));
+    expect_extension("--svg", o.svg, ".svg");
     expect_extension("--report", o.report, ".json");
     expect_extension("--mesh", o.mesh, ".glb");
     for (const auto& [option, path] : {std::pair("--outlines", &o.outlines), std::pair("--flat", &o.flat),

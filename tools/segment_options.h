@@ -7,6 +7,7 @@
 
 #include "formats/container/container.h"
 #include "formats/picture/image_io.h"
+#include "libcore/segment/region_outlines.h"
 #include "libcore/segment/seeds.h"
 
 namespace CLI {
@@ -22,7 +23,8 @@ struct SegmentOptions {
     std::optional<DistanceRule> distance;
     int level = 0;
     std::vector<Seed> seeds;
-    std::string image, outlines, flat, colors, ucm, report, mesh, mask;
+    std::string image, outlines, flat, colors, svg, ucm, report, mesh, mask;
+    double svg_tolerance = kMostOutlineTolerance;
     ReadImageOptions read;
     ContainerLimits limits;
     bool strict = false;

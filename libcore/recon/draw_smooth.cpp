@@ -11,7 +11,7 @@
 #include "libcore/mesh/bounded_raster.h"
 #include "libcore/recon/coverage.h"
 #include "libcore/recon/level_colors.h"
-#include "libcore/recon/svg_text.h"
+#include "libcore/recon/svg_places.h"
 #include "libcore/recon/wire_lines.h"
 
 namespace imgmesh {

@@ -1,10 +1,11 @@
 #include <utility>
 
 #include "libcore/base/error.h"
+#include "libcore/base/svg_text.h"
 #include "libcore/image/luv_encoder.h"
 #include "libcore/recon/draw.h"
 #include "libcore/recon/level_colors.h"
-#include "libcore/recon/svg_text.h"
+#include "libcore/recon/svg_places.h"
 
 namespace imgmesh {
 namespace {

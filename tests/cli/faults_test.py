@@ -159,7 +159,8 @@ class Faults(CliCase):
     def test_several_outputs_appear_together(self):
         """A limit on file size that only the largest exceeds: none of them appears, and older ones stay."""
         runs = {"imgmesh-segment": ("c.glb", "-o", "1.png", "--outlines", "2.png", "--flat", "3.bmp", "--report", "4.json",
-                                    "--mesh", "5.glb", "--colors", "6.png", "--ucm", "7.mat", "--keep", "2,2", "--mask", "8.png"),
+                                    "--mesh", "5.glb", "--colors", "6.png", "--ucm", "7.mat", "--keep", "2,2", "--mask", "8.png",
+                                    "--svg", "9.svg"),
                 "imgmesh-compare": ("old.png", "new.png", "--error-image", "1.bmp", "--plot", "2.svg"),
                 "imgmesh-warp": ("c.glb", "--image", "old.png", "-o", "1.bmp", "--displacement", "2.exr")}
         for tool, args in runs.items():

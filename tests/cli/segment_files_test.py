@@ -1,4 +1,7 @@
 """imgmesh-segment: files for other programs, read back by readers of their own."""
+import re
+import xml.etree.ElementTree
+
 import numpy as np
 
 import matlab_file
@@ -20,6 +23,32 @@ def eight_connected(inside):
                 labels[place] = 1 + start[0] * inside.shape[1] + start[1]
                 stack.append(place)
     return labels
+
+
+def rings_of(path):
+    """The polygons of a path of an SVG; curves become eight pieces."""
+    for ring in re.findall("M([^MZ]*)Z", path):
+        (_, (start,)), *steps = [(c, np.array(re.findall(r"-?(?:\d+\.?\d*|\.\d+)", numbers), float).reshape(-1, 2))
+                                 for c, numbers in re.findall("([MLQ])([^MLQ]*)", "M" + ring)]
+        points = [start]
+        for command, places in steps:
+            if command == "Q":
+                t = np.linspace(0, 1, 9)[1:, None]
+                points.extend((1 - t) ** 2 * points[-1] + 2 * t * (1 - t) * places[0] + t * t * places[1])
+            else:
+                points.append(places[0])
+        yield np.array(points)
+
+
+def centers_inside(rings, width, height):
+    """Which pixels' centres are inside, by the even-odd rule."""
+    x, y = np.meshgrid(np.arange(width) + 0.5, np.arange(height) + 0.5)
+    inside = np.zeros((height, width), bool)
+    for ring in rings:
+        for (ax, ay), (bx, by) in zip(ring, np.roll(ring, -1, axis=0)):
+            if ay != by:
+                inside ^= ((ay < y) != (by < y)) & (ax + (y - ay) / (by - ay) * (bx - ax) < x)
+    return inside
 
 
 class SegmentFilesTest(CliCase):
@@ -89,6 +118,31 @@ class SegmentFilesTest(CliCase):
             if not inside.all():
                 np.testing.assert_array_equal(colors[..., 3] > 0, inside)
 
+    def test_shapes(self):
+        """Drawn at pixels' centres, the shapes are the labels: smooth ones too."""
+        for container in ("c.glb", "masked.glb"):
+            labels = self.labels("--segments", "7", container=container)
+            for tolerance in ("0", "0.2", "0.5"):
+                self.report("imgmesh-segment", container, "-o", "out.png", "--segments", "7", "--svg", "r.svg",
+                            "--svg-tolerance", tolerance, "--flat", "flat.png")
+                root = xml.etree.ElementTree.parse(self.folder / "r.svg").getroot()
+                self.assertEqual((root.get("width"), root.get("height"), root.get("viewBox")), ("60", "40", "0 0 60 40"))
+                flat = picture_files.read(self.folder / "flat.png")
+                paths = root.findall(".//{http://www.w3.org/2000/svg}path")
+                self.assertEqual([p.get("id") for p in paths], [f"region-{i}" for i in range(7)])
+                for i, path in enumerate(paths):
+                    self.assertEqual(path.get("data-label"), str(i))
+                    np.testing.assert_array_equal(centers_inside(rings_of(path.get("d")), 60, 40), labels == i)
+                    code = np.rint(flat[labels == i][0, :3] * 255).astype(int)
+                    self.assertEqual(path.get("fill"), "#%02x%02x%02x" % tuple(code))
+            self.run_ok("imgmesh-segment", container, "-o", "out.png", "--segments", "7", "--svg", "usual.svg", "-q")
+            self.assertEqual((self.folder / "usual.svg").read_bytes(), (self.folder / "r.svg").read_bytes())
+
+    def test_shapes_that_cannot_be(self):
+        for args, words in ((["--svg", "r.png"], ["--svg r.png", ".svg"]), (["--svg-tolerance", "0.3"], ["--svg"]),
+                            (["--svg", "r.svg", "--svg-tolerance", "0.6"], ["--svg-tolerance", "0.5"])):
+            self.assert_error("imgmesh-segment", ["c.glb", "-o", "x.png", *args], 2, *words)
+
     def test_seeds_choose_the_disc(self):
         """One pixel inside and one outside; build takes the mask."""
         disc = self.picture[..., 2] > 0.5
@@ -125,7 +179,7 @@ class SegmentFilesTest(CliCase):
             picture_files.png(self.folder / "odd.png", picture_files.noise(width, height))
             self.build("odd.png", output="odd.glb")
             self.run_ok("imgmesh-segment", "odd.glb", "-o", "odd.mat", "--ucm", "u.mat", "--colors", "c.png", "--keep", "0,0",
-                        "--mask", "m.png", "-q")
+                        "--mask", "m.png", "--svg", "r.svg", "-q")
             self.assertEqual(matlab_file.load(self.folder / "odd.mat")["segs"][0, 0].shape, (height, width))
             self.assertEqual(matlab_file.load(self.folder / "u.mat")["ucm2"].shape, (2 * height + 1, 2 * width + 1))
 

@@ -143,12 +143,13 @@ class Same(CliCase):
                                     (("--image", "in.png", "--distance", "paper"), {"image": self.color, "distance": "paper"})):
             with self.subTest(options):
                 self.run_ok("imgmesh-segment", "a.glb", "-o", "a.exr", "-q", "--flat", "flat.png", "--outlines", "lines.png",
-                            "--colors", "colors.png", "--keep", "2,2:5,3", "--drop", "40,20", "--mask", "mask.png", *options)
+                            "--colors", "colors.png", "--svg", "r.svg", "--keep", "2,2:5,3", "--drop", "40,20", "--mask", "mask.png", *options)
                 result = mesh.segment(**parameters)
                 result.write(self.folder / "python.exr")
                 imgmesh.write_image(self.folder / "python-flat.png", result.flat())
                 imgmesh.write_image(self.folder / "python-lines.png", result.outlines())
                 imgmesh.write_image(self.folder / "python-colors.png", result.colors())
+                self.assertEqual(result.svg(), (self.folder / "r.svg").read_text())
                 mask = result.mask(keep=[[(2, 2), (5, 3)]], drop=[(40, 20)])
                 self.assertEqual((mask.dtype, mask.shape), (bool, result.labels.shape))
                 imgmesh.write_image(self.folder / "python-mask.png", mask.astype(np.uint8) * 255)

@@ -13,7 +13,7 @@
 #include "libcore/recon/coverage.h"
 #include "libcore/recon/draw.h"
 #include "libcore/recon/level_colors.h"
-#include "libcore/recon/svg_text.h"
+#include "libcore/recon/svg_places.h"
 #include "tests/support/grid_mesh_image.h"
 #include "tests/support/meshes.h"
 

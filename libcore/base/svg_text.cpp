@@ -1,9 +1,7 @@
-#include "libcore/recon/svg_text.h"
+#include "libcore/base/svg_text.h"
 
 #include <cmath>
 #include <cstdlib>
-
-#include "libcore/mesh/outer_edge.h"
 
 namespace imgmesh {
 
@@ -23,24 +21,6 @@ void append_point(std::string& out, char command, const Vec2d& p) {
     append_number(out, p.x());
     out += ' ';
     append_number(out, p.y());
-}
-
-std::vector<Vec2d> outward(const Level& level, const SourceInfo& source) {
-    const BaseMesh& mesh = level.mesh;
-    std::vector<Vec2d> points;
-    points.reserve(mesh.vertex_count());
-    if (source.has_mask) {
-        for (const Vec2f& p : outer_positions(mesh, level.map)) points.push_back(p.cast<double>());
-        return points;
-    }
-    const auto moved = [&](float x, int side) {
-        if (side == 1) return double(x);  // already -0.5 .. 0.5
-        if (x <= 0) return x - 0.5;
-        return x >= static_cast<float>(side - 1) ? x + 0.5 : double(x);
-    };
-    for (const Vec2f& p : mesh.position)
-        points.emplace_back(moved(p.x(), source.width), moved(p.y(), source.height));
-    return points;
 }
 
 void append_hex(std::string& out, const Vec3d& codes) {

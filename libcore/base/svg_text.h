@@ -1,10 +1,9 @@
-// What the SVG drawings share: short numbers, colours, and the places of vertices.
+// What SVG drawings share: short numbers, points and colours.
 #pragma once
 
 #include <string>
-#include <vector>
 
-#include "libcore/mesh/mesh_image.h"
+#include "libcore/base/types.h"
 
 namespace imgmesh {
 
@@ -15,9 +14,5 @@ void append_number(std::string& out, double value);
 void append_point(std::string& out, char command, const Vec2d& p);
 /// Appends red, green and blue as "#rrggbb", each rounded to a whole number from 0 to 255.
 void append_hex(std::string& out, const Vec3d& codes);
-
-/// Returns the vertices of a level's mesh. Those on the image's sides move out by half a pixel, to the outer
-/// edge of the outermost pixels, and those on the boundary of a masked image as outer_positions() has them.
-std::vector<Vec2d> outward(const Level& level, const SourceInfo& source);
 
 }  // namespace imgmesh
