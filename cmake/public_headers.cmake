@@ -44,6 +44,7 @@ set(IMGMESH_PUBLIC_HEADERS
   libcore/segment/regions_svg.h
   libcore/segment/seeds.h
   libcore/segment/segment.h
+  libcore/segment/smooth_image.h
 
   libcore/warp/arap.h
   libcore/warp/displacement.h

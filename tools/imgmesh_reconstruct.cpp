@@ -10,6 +10,8 @@
 #include "libcore/image/feature_space.h"
 #include "libcore/recon/draw.h"
 #include "libcore/recon/draw_channels.h"
+#include "libcore/segment/segment.h"
+#include "libcore/segment/smooth_image.h"
 #include "tools/common/container_input.h"
 #include "tools/common/limits.h"
 #include "tools/common/memory.h"
@@ -17,6 +19,8 @@
 #include "tools/common/options.h"
 #include "tools/common/other_tool.h"
 #include "tools/common/output.h"
+#include "tools/common/read_options.h"
+#include "tools/common/source_image.h"
 #include "tools/common/text.h"
 #include "tools/common/tool_main.h"
 
@@ -26,6 +30,8 @@ namespace {
 
 // Drawing and writing take this for each pixel drawn [bytes]; measured as in docs/limits.md.
 constexpr double kDrawBytes = 7, kDrawChannelBytes = 9;
+// And smoothing this for each pixel.
+constexpr double kSmoothBytes = 100;
 
 // Below, a pixel would be the mean of more than a million of the image.
 constexpr double kLeastScale = 0.001;
@@ -33,11 +39,22 @@ constexpr double kLeastScale = 0.001;
 struct Options {
     std::string input;
     std::string output;
-    DrawParams draw;
+    std::optional<DrawMode> mode = DrawMode::kMap;  // nothing: smooth
+    double scale = 1;
+    std::optional<double> strength;
+    std::string image;
+    ReadImageOptions read;
     int level = 0;
     std::optional<SampleType> depth;
     ContainerLimits limits;
 };
+
+Choices<std::optional<DrawMode>> mode_choices() {
+    Choices<std::optional<DrawMode>> choices;
+    for (const auto& [name, mode] : draw_mode_choices()) choices.emplace_back(name, mode);
+    choices.emplace_back("smooth", std::nullopt);
+    return choices;
+}
 
 Choices<SampleType> depth_choices() {
     return {{"8", SampleType::kUint8},
@@ -48,36 +65,50 @@ Choices<SampleType> depth_choices() {
 
 void add_options(CLI::App& app, Options& o) {
     const std::string drawing = "Drawing";
-    in_group(add_choice(app, "--mode", o.draw.mode, draw_mode_choices(),
-                        "What to draw; map is the reconstruction"),
+    in_group(
+        add_choice(app, "--mode", o.mode, mode_choices(),
+                   "What to draw; map is the reconstruction, smooth an image without what is weaker than its "
+                   "contours"),
+        drawing);
+    in_group(add_number(app, "--strength", o.strength, {0, kMostStrength},
+                        {"Contours and differences weaker than this vanish in mode smooth, in L*u*v*",
+                         cat(kUsualStrength)}),
              drawing);
+    CLI::Option* const image =
+        in_group(add_file(app, "--image", o.image,
+                          "Image itself, to smooth instead of the reconstruction in mode smooth"),
+                 drawing);
+    o.read.channels.emplace();  // the colour and alpha
     in_group(add_count(app, "--level", o.level, {0}, "Level of the pyramid, 0 the finest"), drawing);
     in_group(add_number(
-                 app, "--scale", o.draw.scale, {kLeastScale},
+                 app, "--scale", o.scale, {kLeastScale},
                  "Size relative to the source's, for gouraud, wire and flat; the last two are antialiased at "
                  "any size"),
              drawing);
     in_group(add_choice(app, "--depth", o.depth, depth_choices(),
                         {"Type of the samples to write", "that of the source"}),
              drawing);
+    add_read_options(app, o.read, image, true);
     add_container_limits(app, o.limits);
 }
 
 // Throws Error(kBadArgument) for mistakes that can be found before the container is read.
 void check_options(const Options& o) {
     const bool svg = lower_extension(o.output) == ".svg";
-    const bool plane = o.draw.mode == DrawMode::kMap || o.draw.mode == DrawMode::kPatches ||
-                       o.draw.mode == DrawMode::kVisits;
-    const std::string mode = name_of(draw_mode_choices(), o.draw.mode);
-    if (plane && o.draw.scale != 1)
-        throw Error(ErrorKind::kBadArgument, cat("--scale ", o.draw.scale, ": mode ", mode,
+    const bool plane = o.mode != DrawMode::kGouraud && o.mode != DrawMode::kWire && o.mode != DrawMode::kFlat;
+    const std::string mode = name_of(mode_choices(), o.mode);
+    if (o.mode && (o.strength || !o.image.empty()))
+        throw Error(ErrorKind::kBadArgument,
+                    cat(o.strength ? "--strength" : "--image", ": means something with --mode smooth only"));
+    if (plane && o.scale != 1)
+        throw Error(ErrorKind::kBadArgument, cat("--scale ", o.scale, ": mode ", mode,
                                                  " draws one pixel for one; expected gouraud, wire or flat"));
-    if (o.draw.mode == DrawMode::kVisits && o.level != 0)
+    if (o.mode == DrawMode::kVisits && o.level != 0)
         throw Error(ErrorKind::kBadArgument, cat("--level ", o.level, ": mode visits is of level 0 alone"));
-    if (svg && o.draw.mode != DrawMode::kWire && o.draw.mode != DrawMode::kFlat)
+    if (svg && o.mode != DrawMode::kWire && o.mode != DrawMode::kFlat)
         throw Error(ErrorKind::kBadArgument,
                     cat(o.output, ": mode ", mode, " cannot be drawn as SVG; expected wire or flat"));
-    if (svg && (o.depth || o.draw.scale != 1))
+    if (svg && (o.depth || o.scale != 1))
         throw Error(ErrorKind::kBadArgument, cat(o.output, ": an SVG has neither --depth nor --scale"));
     if (!svg && !can_write_image(o.output))
         throw Error(ErrorKind::kBadArgument,
@@ -95,13 +126,35 @@ void check_size(const SourceInfo& source, double scale) {
                         " pixels, more than ", limits.max_side, " a side or ", limits.max_pixels, " in all"));
 }
 
+DrawParams draw_params(const Options& o) {
+    return {o.mode.value_or(DrawMode::kMap), o.scale};
+}
+
+// Smooths the image itself or, if it is not given, the reconstruction.
+Image smooth(const Options& o, const MeshImage& mesh_image, Context& context) {
+    const Level& level = mesh_image.levels[static_cast<std::size_t>(o.level)];
+    Image image;
+    FeatureImage features;
+    if (o.image.empty()) {
+        image = draw(mesh_image, o.level, draw_params(o));
+        features = reconstruct_luv(level);
+    } else {
+        image = read_source_image(o.image, mesh_image.source, o.input,
+                                  image_options(o.read, o.limits, context.max_memory), context.warnings);
+        features = luv_image(image, mesh_image.source.gamut == Gamut::kHdr ? Range::kHdr : Range::kClipped);
+    }
+    return smooth_image(level, features, image, o.strength.value_or(kUsualStrength),
+                        [&](double f, std::string_view stage) { context.progress(0.4 + 0.4 * f, stage); });
+}
+
 // Returns what reading and drawing take [bytes].
 double draw_memory(const Options& o, const MeshImage& mesh_image, bool all_channels) {
     const SourceInfo& source = mesh_image.source;
     const auto channels = static_cast<double>(all_channels ? source.channel_names.size() : 3);
     const double pixels = static_cast<double>(source.width) * source.height;
-    return container_memory(
-        mesh_image, pixels * o.draw.scale * o.draw.scale * (kDrawBytes + kDrawChannelBytes * channels));
+    if (!o.mode) return container_memory(mesh_image, pixels * kSmoothBytes);
+    return container_memory(mesh_image,
+                            pixels * o.scale * o.scale * (kDrawBytes + kDrawChannelBytes * channels));
 }
 
 // Returns whether all channels are written, not only the colour. Throws Error(kUnsupported) if there is no
@@ -111,7 +164,7 @@ bool writes_channels(const Options& o, const SourceInfo& source) {
     const std::string extension = lower_extension(o.output);
     const bool values = names.color.empty();
     const bool holds = (extension == ".exr" || (values && (extension == ".tif" || extension == ".tiff"))) &&
-                       (o.draw.mode == DrawMode::kMap || o.draw.mode == DrawMode::kGouraud);
+                       (o.mode == DrawMode::kMap || o.mode == DrawMode::kGouraud);
     if (values && !holds) {
         std::string list;
         for (const std::string& name : names.auxiliary) list += (list.empty() ? "" : ", ") + name;
@@ -128,43 +181,49 @@ Report draw_one(const Options& o, Context& context) {
 
     context.progress(0, "read");
     const Container container = read_container(o.input, container_limits(o.limits, context.max_memory));
-    check_distinct(container.facts.files, {o.output});
+    std::vector<std::string> inputs = container.facts.files;
+    if (!o.image.empty()) inputs.push_back(o.image);
+    check_distinct(inputs, {o.output});
     const MeshImage& mesh_image = container.mesh_image;
     const SourceInfo& source = mesh_image.source;
     check_level("--level", o.level, o.input, mesh_image);
-    if (o.draw.mode == DrawMode::kVisits && mesh_image.visits.empty())
+    if (o.mode == DrawMode::kVisits && mesh_image.visits.empty())
         throw Error(ErrorKind::kUnsupported,
                     cat(o.input, ": there is no visit map; imgmesh-build --visits stores one"));
     const bool all_channels = writes_channels(o, source);
     int width = source.width, height = source.height;
     context.progress(0.4, "draw");
     if (svg) {
-        write_text(o.output, draw_svg(mesh_image, o.level, o.draw.mode), context.overwrite);
+        write_text(o.output, draw_svg(mesh_image, o.level, *o.mode), context.overwrite);
     } else {
-        check_size(source, o.draw.scale);
-        context.memory.take(cat(o.input, ": a drawing of ", source.width * o.draw.scale, "x",
-                                source.height * o.draw.scale, " pixels"),
-                            draw_memory(o, mesh_image, all_channels));
-        const Image image =
-            all_channels ? draw_channels(mesh_image, o.level, o.draw) : draw(mesh_image, o.level, o.draw);
+        check_size(source, o.scale);
+        context.memory.take(
+            cat(o.input, ": a drawing of ", source.width * o.scale, "x", source.height * o.scale, " pixels"),
+            draw_memory(o, mesh_image, all_channels));
+        const Image image = !o.mode        ? smooth(o, mesh_image, context)
+                            : all_channels ? draw_channels(mesh_image, o.level, draw_params(o))
+                                           : draw(mesh_image, o.level, draw_params(o));
         context.progress(0.8, "write");
-        const bool whole = o.draw.mode == DrawMode::kMap || o.draw.mode == DrawMode::kGouraud;
+        const bool whole = !o.mode || o.mode == DrawMode::kMap || o.mode == DrawMode::kGouraud;
         write_image(o.output, image,
                     {context.overwrite, o.depth, whole ? container.metadata : ExrMetadata()});
         width = image.width;
         height = image.height;
     }
     const Level& level = mesh_image.levels[static_cast<std::size_t>(o.level)];
-    return {{"input", o.input},
-            {"output", o.output},
-            {"mode", name_of(draw_mode_choices(), o.draw.mode)},
-            {"level", o.level},
-            {"scale", o.draw.scale},
-            {"width", width},
-            {"height", height},
-            {"vertices", level.mesh.vertex_count()},
-            {"faces", level.mesh.faces.size()},
-            {"bytes", output_bytes(o.output)}};
+    Report report = {{"input", o.input},
+                     {"output", o.output},
+                     {"mode", name_of(mode_choices(), o.mode)},
+                     {"level", o.level},
+                     {"scale", o.scale},
+                     {"width", width},
+                     {"height", height},
+                     {"vertices", level.mesh.vertex_count()},
+                     {"faces", level.mesh.faces.size()},
+                     {"bytes", output_bytes(o.output)}};
+    if (!o.mode) report["strength"] = o.strength.value_or(kUsualStrength);
+    if (!o.image.empty()) report["image"] = o.image;
+    return report;
 }
 
 void print(const Report& report, std::ostream& out) {
@@ -195,6 +254,7 @@ int main(int argc, char** argv) {
          .output_help =
              "Image to write (.png, .exr, .tif, .jpg, ...; .svg of wire and flat), or a folder, ended "
              "by /, for NAME.png of each container",
-         .type = [] { return "png"; }},
+         .type = [] { return "png"; },
+         .sources = {"--image"}},
         {add_options, check_options, draw_one, print, line}, options, argc, argv);
 }

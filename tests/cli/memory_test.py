@@ -96,6 +96,7 @@ class Memory(CliCase):
         jobs += [("imgmesh-build", ["in.png", "-o", "out.glb", "--levels", "3"]),
                  ("imgmesh-build", ["in.png", "-o", "out.glb", "--map", "trivial", "--refine", "0"]),
                  ("imgmesh-reconstruct", ["in.glb", "-o", "out.png", "--mode", "gouraud", "--scale", "2"]),
+                 ("imgmesh-reconstruct", ["in.glb", "-o", "out.png", "--mode", "smooth", "--image", "in.png"]),
                  ("imgmesh-compare", ["in.glb"]), ("imgmesh-compare", ["in.png", "in.png"])]
         for tool, args in jobs:
             with self.subTest(tool=tool, args=args):
