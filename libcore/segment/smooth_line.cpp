@@ -17,9 +17,9 @@ constexpr double kMargin = 0.02;
 // Points of a polygon are sought this far ahead. Longer straight pieces have a few points more.
 constexpr std::size_t kLongest = 256;
 
-// A rounded corner is at most this far from the polygon's corner [pixels]: sharp corners stay sharp, and
-// blunt ones, of which curves consist, become smooth.
-constexpr double kRounding = 0.2;
+// A rounded corner is at most this far from the polygon's corner [pixels], and the less the sharper it is:
+// curves, which consist of blunt corners, become smooth, and corners stay corners.
+constexpr double kRounding = 0.45;
 // ... and begins at most so far from it, which bounds the work of looking for centres.
 constexpr double kArm = 8;
 
@@ -125,17 +125,22 @@ std::vector<std::size_t> best_polygon(const std::vector<Place>& places) {
     return chosen;
 }
 
-// Whether a pixel's centre lies in the triangle, or very near to it.
-bool holds_center(const Vec2d& a, const Vec2d& b, const Vec2d& c) {
-    const Vec2d low = a.cwiseMin(b).cwiseMin(c), high = a.cwiseMax(b).cwiseMax(c);
-    const double turn = cross(b - a, c - a) < 0 ? -1 : 1;
-    const auto beside = [&](const Vec2d& from, const Vec2d& to, const Vec2d& p) {
-        return turn * cross(to - from, p - from) >= -kMargin * (to - from).norm();
-    };
+// Whether rounding a corner cuts off a pixel's centre, or nearly: whether one lies between the corner and the
+// parabola from `a` to `b` whose control point is the corner.
+bool cuts_off_center(const Vec2d& a, const Vec2d& corner, const Vec2d& b) {
+    const double area = cross(b - a, corner - a);
+    if (area == 0) return false;
+    const Vec2d low = a.cwiseMin(b).cwiseMin(corner), high = a.cwiseMax(b).cwiseMax(corner);
+    const Vec2d shift = kMargin * (corner - (a + b) / 2).normalized();
     for (double y = std::ceil(low.y() - 0.5 - kMargin) + 0.5; y <= high.y() + kMargin; ++y)
         for (double x = std::ceil(low.x() - 0.5 - kMargin) + 0.5; x <= high.x() + kMargin; ++x) {
-            const Vec2d p(x, y);
-            if (beside(a, b, p) && beside(b, c, p) && beside(c, a, p)) return true;
+            // Weights of the triangle's corners; on the parabola they are (1 - t)^2, 2 t (1 - t) and t^2.
+            const Vec2d p = Vec2d(x, y) + shift;
+            const double at_corner = cross(b - a, p - a) / area;
+            const double at_a = cross(corner - b, p - b) / area, at_b = 1 - at_corner - at_a;
+            const double slack = kMargin * ((corner - a).norm() + (corner - b).norm()) / std::abs(area);
+            const bool inside = at_a >= -slack && at_b >= -slack && at_corner >= 0 && at_corner <= 1 + slack;
+            if (inside && at_corner * at_corner >= 4 * at_a * at_b) return true;
         }
     return false;
 }
@@ -147,9 +152,9 @@ double arm_of(const Vec2d& before, const Vec2d& corner, const Vec2d& after) {
     const Vec2d from = -in.normalized(), to = out.normalized();
     const double sine = (from + to).norm() / 2;  // of half the turn
     if (sine < 1e-6) return 0;                   // straight on
-    double arm = std::min({half, kArm, 2 * kRounding / sine});
-    for (int tries = 0; tries < 4; ++tries, arm /= 2)
-        if (!holds_center(corner + arm * from, corner, corner + arm * to)) return arm;
+    double arm = std::min({half, kArm, 2 * kRounding * (1 - sine * sine) / sine});
+    for (int tries = 0; tries < 8; ++tries, arm *= 0.75)
+        if (!cuts_off_center(corner + arm * from, corner, corner + arm * to)) return arm;
     return 0;
 }
 
