@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""imgmesh-segment beside Felzenszwalb-Huttenlocher and SLIC, all measured in one run.
+"""imgmesh-segment beside Felzenszwalb-Huttenlocher, SLIC, SEEDS and LSC, all measured in one run.
 
 segmentation.py BIN FOLDER [--density 2] [--pictures N] [--only regions|superpixels] [--distance contour|paper]
 
@@ -7,8 +7,8 @@ BIN     folder with imgmesh-build and imgmesh-segment
 FOLDER  images X.jpg or X.png, each with the hand-made segmentations X.mat of BSDS500 (not part of this project)
 
 Prints F, covering, PRI and VI at the best parameter for all images, for every other image from the first on, on which
-the constants of imgmesh-segment were chosen, for the rest, and for all; then boundary recall and achievable accuracy of
-superpixels, and user CPU seconds a picture. Needs python3-skimage, python3-scipy and python3-openimageio.
+the constants of imgmesh-segment were chosen, for the rest, and for all; then scores of superpixels, and user CPU seconds a
+picture. Needs python3-skimage, python3-scipy and python3-openimageio, and for SEEDS and LSC python3-opencv.
 """
 import argparse
 import pathlib
@@ -19,6 +19,11 @@ import tempfile
 import numpy as np
 import OpenImageIO as oiio
 from skimage.segmentation import felzenszwalb, slic
+
+try:
+    import cv2
+except ImportError:
+    cv2 = None
 
 from segmentation_scores import boundary_counts, load_truths, region_scores, summary, superpixel_scores
 
@@ -75,22 +80,65 @@ def region_table(paths, truths, ours, options):
                                            for key, (value, at) in figures.items()), flush=True)
 
 
+def nearest_number(method, wanted):
+    """The labels of a method nearest to the number wanted: it is asked again until it makes as many."""
+    best, asked = None, wanted
+    for _ in range(4):
+        labels = method(asked)
+        number = len(np.unique(labels))
+        if best is None or abs(number - wanted) < abs(best[0] - wanted):
+            best = number, labels
+        if abs(number - wanted) < 0.02 * wanted:
+            break
+        asked *= wanted / number
+    return best[1]
+
+
+def opencv_superpixels():
+    """SEEDS and LSC as OpenCV has them, at the settings of its manual and at those that were best for boundaries."""
+    if not hasattr(cv2, "ximgproc"):
+        return {}
+
+    def seeds(image, number, prior):
+        hsv = cv2.cvtColor(image, cv2.COLOR_RGB2HSV)
+        runs = []
+        for levels in (3, 4, 5, 6):  # the number of blocks depends on them, in steps
+            s = cv2.ximgproc.createSuperpixelSEEDS(image.shape[1], image.shape[0], 3, round(number), levels, prior, 5)
+            runs.append((abs(s.getNumberOfSuperpixels() - number), -levels, s))
+        best = min(runs, key=lambda r: r[:2])[2]
+        best.iterate(hsv, 10)
+        return best.getLabels().copy()
+
+    def lsc(image, number, ratio):
+        lab = cv2.cvtColor(cv2.GaussianBlur(image, (3, 3), 0), cv2.COLOR_RGB2LAB)
+        s = cv2.ximgproc.createSuperpixelLSC(lab, max(2, round(np.sqrt(image[..., 0].size / number))), ratio)
+        s.iterate(10)
+        s.enforceLabelConnectivity(20)
+        return s.getLabels().copy()
+
+    methods = {f"SEEDS, prior {p}": lambda image, n, p=p: seeds(image, n, p) for p in (2, 1)}
+    return methods | {f"LSC, ratio {r}": lambda image, n, r=r: lsc(image, n, r) for r in (0.075, 0.03)}
+
+
 def superpixel_table(paths, truths, ours):
-    """SLIC makes fewer than it is asked for: asked again until it makes as many."""
-    print("superpixels: mean number, boundary recall, achievable accuracy")
+    print("superpixels: mean number, boundary recall, precision, achievable accuracy, circularity; recall and accuracy of "
+          "every second picture and of the others")
+    others = {f"SLIC, compactness {c}": lambda image, n, c=c: slic(image, n_segments=round(n), compactness=c, start_label=0)
+              for c in (10, 20)} | opencv_superpixels()
     for wanted in SUPERPIXELS:
-        rows = {"imgmesh-segment": [], "SLIC": []}
-        for p in paths:
-            labels = ours.labels(p, "--superpixels", wanted)
-            rows["imgmesh-segment"].append((labels.max() + 1, *superpixel_scores(labels, truths[p])))
-            asked = wanted
-            for _ in range(4):
-                labels = slic(read(p), n_segments=round(asked), compactness=10, start_label=0)
-                asked *= wanted / (labels.max() + 1)
-            rows["SLIC"].append((labels.max() + 1, *superpixel_scores(labels, truths[p])))
-        for name, values in rows.items():
-            number, recall, accuracy = np.mean(values, axis=0)
-            print(f"  {name:16} {number:7.1f}  {recall:.4f}  {accuracy:.4f}", flush=True)
+        makers = {"imgmesh-segment": lambda p: ours.labels(p, "--superpixels", wanted),
+                  "with --image": lambda p: ours.labels(p, "--superpixels", wanted, "--image", p)}
+        for name, method in others.items():
+            makers[name] = lambda p, m=method: nearest_number(lambda n: m(np.ascontiguousarray(read(p)), n), wanted)
+        for name, make in makers.items():
+            rows = []
+            for p in paths:
+                labels = make(p)
+                rows.append((len(np.unique(labels)), *superpixel_scores(labels, truths[p])))
+            rows = np.array(rows)
+            halves = "".join(f"  {h[:, 1].mean():.4f} {h[:, 3].mean():.4f}" for h in (rows[::2], rows[1::2]) if len(h))
+            print(f"  {name:20} {rows[:, 0].mean():7.1f}" + "".join(f"  {v:.4f}" for v in rows[:, 1:].mean(0)) + halves,
+                  flush=True)
 
 
 def main():
