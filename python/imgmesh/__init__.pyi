@@ -170,6 +170,15 @@ class Mesh(_Arrays):
         all_channels: bool = False,
         threads: int | None = None,
     ) -> Image: ...
+    def smooth(
+        self,
+        strength: float = 8,
+        *,
+        image: _ImageLike | None = None,
+        level: int = 0,
+        progress: _Progress | None = None,
+        threads: int | None = None,
+    ) -> Image: ...
     def svg(self, mode: Literal["wire", "flat"] = "wire", level: int = 0) -> str: ...
     def segment(
         self,

@@ -141,6 +141,8 @@ class Errors(unittest.TestCase):
         mesh = imgmesh.build(IMAGE)
         self.check(imgmesh.ArgumentError, ("level is 3", "levels 0 to 0"), mesh.reconstruct, level=3)
         self.check(imgmesh.ArgumentError, ("level is -1",), mesh.reconstruct, level=-1)
+        self.check(imgmesh.ArgumentError, ("strength is -1",), mesh.smooth, -1)
+        self.check(imgmesh.ArgumentError, ("level is 3",), mesh.smooth, level=3)
         self.check(imgmesh.ArgumentError, ("mode 'x'", "gouraud"), mesh.reconstruct, mode="x")
         self.check(imgmesh.ArgumentError, (), mesh.reconstruct, scale=2)
         self.check(imgmesh.UnsupportedError, ("visit",), mesh.reconstruct, mode="visits")

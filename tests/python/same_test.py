@@ -134,6 +134,17 @@ class Same(CliCase):
         self.run_ok("imgmesh-reconstruct", "a.glb", "-o", "a.svg", "-q", "--mode", "wire")
         self.assertEqual(mesh.svg(), (self.folder / "a.svg").read_text())
 
+    def test_smoothing(self):
+        self.png(self.hard)
+        self.run_ok("imgmesh-build", "in.png", "-o", "a.glb", "-q", "--density", "8", "--levels", "2")
+        mesh = imgmesh.read(self.folder / "a.glb")
+        for options, result in (((), mesh.smooth()), (("--strength", "20", "--level", "1"), mesh.smooth(20, level=1)),
+                                (("--image", "in.png"), mesh.smooth(image=self.folder / "in.png"))):
+            with self.subTest(options):
+                self.run_ok("imgmesh-reconstruct", "a.glb", "-o", "a.png", "-q", "--mode", "smooth", *options)
+                imgmesh.write_image(self.folder / "python.png", result)
+                self.assertEqual((self.folder / "python.png").read_bytes(), (self.folder / "a.png").read_bytes())
+
     def test_segments(self):
         self.png(self.color)
         self.run_ok("imgmesh-build", "in.png", "-o", "a.glb", "-q", "--density", "10")
