@@ -6,6 +6,7 @@
 #include "formats/export/contour_files.h"
 #include "formats/export/label_files.h"
 #include "formats/files/atomic_file.h"
+#include "formats/files/extension.h"
 #include "formats/gltf/region_gltf.h"
 #include "formats/picture/image_io.h"
 #include "libcore/image/color.h"
@@ -38,6 +39,8 @@ namespace {
 // Reading, segmenting and writing take this, beside the container itself [bytes a pixel]; measured as in
 // docs/limits.md.
 constexpr double kSegmentBytes = 66;
+// A contour map is a whole .mat before that is compressed.
+constexpr double kMatBytes = 16;
 
 FeatureImage picture_of(const SegmentOptions& o, const MeshImage& mesh_image, const Level& level,
                         Context& context) {
@@ -61,7 +64,8 @@ Report segment_one(const SegmentOptions& o, Context& context) {
     check_level("--level", o.level, o.input, mesh_image);
     const Level& level = mesh_image.levels[static_cast<std::size_t>(o.level)];
 
-    context.memory.take_for(o.input, mesh_image, kSegmentBytes);
+    context.memory.take_for(o.input, mesh_image,
+                            kSegmentBytes + (lower_extension(o.ucm) == ".mat" ? kMatBytes : 0));
     SegmentParams params = o.params;
     params.threshold = o.threshold.value_or(params.threshold);
     params.compactness = o.compactness.value_or(params.compactness);

@@ -21,11 +21,10 @@ void write_ucm2(const std::string& path, std::size_t width, std::size_t height, 
         const double h = double(values[y * width + x]);
         return static_cast<float>(std::isinf(h) ? 1 : h / (h + half));
     };
-    const double numbers[] = {half};
     const MatVariable variables[] = {
-        {"ucm2", MatType::kSingle, height, width, column_bytes<float>(width, height, scaled)},
-        {"half_height", MatType::kDouble, 1, 1,
-         column_bytes<double>(1, 1, [&](std::size_t i) { return numbers[i]; })}};
+        {"ucm2", MatType::kSingle, height, width, false, by_columns<float>(width, height, scaled)},
+        {"half_height", MatType::kDouble, 1, 1, false,
+         by_columns<double>(1, 1, [&](std::size_t) { return half; })}};
     write_mat(path, variables, overwrite);
 }
 

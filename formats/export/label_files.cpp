@@ -49,15 +49,15 @@ void write_segs(const std::string& path, std::size_t width, std::size_t height, 
     const auto number = [&](std::size_t i) { return labels[i] + 1; };
     static_assert(kNone + 1 == 0);
     const bool large = std::ranges::any_of(labels, [](Id l) { return l != kNone && l >= kPngNone; });
-    const MatVariable segs = {
-        "segs",
-        large ? MatType::kUint32 : MatType::kUint16,
-        height,
-        width,
-        large ? column_bytes<std::uint32_t>(width, height, number)
-              : column_bytes<std::uint16_t>(
-                    width, height, [&](std::size_t i) { return static_cast<std::uint16_t>(number(i)); }),
-        /*in_cell=*/true};
+    const MatVariable segs = {"segs",
+                              large ? MatType::kUint32 : MatType::kUint16,
+                              height,
+                              width,
+                              /*in_cell=*/true,
+                              large ? by_columns<std::uint32_t>(width, height, number)
+                                    : by_columns<std::uint16_t>(width, height, [&](std::size_t i) {
+                                          return static_cast<std::uint16_t>(number(i));
+                                      })};
     write_mat(path, {&segs, 1}, overwrite);
 }
 

@@ -8,6 +8,7 @@
 #include <memory>
 #include <new>
 #include <string_view>
+#include <vector>
 
 #include "formats/files/atomic_file.h"
 #include "formats/files/byte_writer.h"
@@ -37,6 +38,14 @@ constexpr std::uint64_t kMost = (std::uint64_t{1} << 31) - 1;  // bytes of a var
 // Numbers stand in the order that the header names, which is this machine's.
 constexpr ByteOrder kOrder = std::endian::native == std::endian::big ? ByteOrder::kBig : ByteOrder::kLittle;
 
+std::size_t bytes_of_one(MatType type) {
+    return type == MatType::kDouble ? 8 : type == MatType::kUint16 ? 2 : 4;
+}
+
+std::size_t data_size(const MatVariable& v) {
+    return v.rows * v.columns * bytes_of_one(v.type);
+}
+
 ElementType data_type(MatType type) {
     switch (type) {
         case MatType::kDouble:
@@ -60,15 +69,17 @@ void append_tag(Bytes& out, ElementType type, std::size_t size) {
     append_number(out, size, 4, kOrder);
 }
 
-// An element of numbers or characters. Four bytes or less stand in the tag itself, as MATLAB writes them.
-void append_element(Bytes& out, ElementType type, std::span<const std::uint8_t> bytes) {
-    const bool small = !bytes.empty() && bytes.size() <= 4;
-    if (small)
-        append_number(out, bytes.size() << 16 | type, 4, kOrder);
+// An element of `size` bytes, which `fill` writes. Four bytes or less stand in the tag itself, as MATLAB has
+// it.
+void append_element(Bytes& out, ElementType type, std::size_t size,
+                    const std::function<void(std::uint8_t*)>& fill) {
+    if (size > 0 && size <= 4)
+        append_number(out, size << 16 | type, 4, kOrder);
     else
-        append_tag(out, type, bytes.size());
-    out.insert(out.end(), bytes.begin(), bytes.end());
-    out.resize(padded(out.size()));
+        append_tag(out, type, size);
+    const std::size_t at = out.size();
+    out.resize(padded(at + size));
+    fill(out.data() + at);
 }
 
 std::size_t element_size(std::size_t bytes) {
@@ -84,7 +95,8 @@ void append_head(Bytes& out, std::uint8_t array_class, std::size_t rows, std::si
     append_tag(out, kInt32, 8);
     append_number(out, rows, 4, kOrder);
     append_number(out, columns, 4, kOrder);
-    append_element(out, kInt8, {reinterpret_cast<const std::uint8_t*>(name.data()), name.size()});
+    append_element(out, kInt8, name.size(),
+                   [&](std::uint8_t* to) { std::copy(name.begin(), name.end(), to); });
 }
 
 std::size_t head_size(const std::string& name) {
@@ -94,7 +106,7 @@ std::size_t head_size(const std::string& name) {
 // The variable as an element of its own, not compressed.
 Bytes variable_element(const MatVariable& v) {
     const std::string inner = v.in_cell ? "" : v.name;
-    const std::size_t matrix = head_size(inner) + element_size(v.bytes.size());
+    const std::size_t matrix = head_size(inner) + element_size(data_size(v));
     Bytes out;
     out.reserve(matrix + head_size(v.name) + 2 * kTag);
     if (v.in_cell) {
@@ -103,7 +115,7 @@ Bytes variable_element(const MatVariable& v) {
     }
     append_tag(out, kMatrix, matrix);
     append_head(out, static_cast<std::uint8_t>(v.type), v.rows, v.columns, inner);
-    append_element(out, data_type(v.type), v.bytes);
+    append_element(out, data_type(v.type), data_size(v), v.fill);
     return out;
 }
 
@@ -123,28 +135,30 @@ Bytes file_header() {
 void write_mat(const std::string& path, std::span<const MatVariable> variables, bool overwrite) {
     constexpr int kLevel = 6;  // as zlib's usual one
     for (const MatVariable& v : variables)
-        if (v.bytes.size() > kMost - 1024)
+        if (data_size(v) > kMost - 1024)
             throw Error(ErrorKind::kUnsupported, cat(path, ": a variable of a .mat takes at most 2 GB, ",
-                                                     v.name, " would take ", v.bytes.size() >> 20, " MB"));
+                                                     v.name, " would take ", data_size(v) >> 20, " MB"));
     const std::unique_ptr<libdeflate_compressor, decltype(&libdeflate_free_compressor)> packer(
         libdeflate_alloc_compressor(kLevel), libdeflate_free_compressor);
     if (!packer) throw std::bad_alloc();
     AtomicFile file(path, overwrite);
-    Bytes out = file_header();
+    std::vector<Bytes> heads = {file_header()};
+    std::vector<std::unique_ptr<std::uint8_t[]>> packed;
+    std::vector<std::size_t> sizes;
     for (const MatVariable& v : variables) {
         const Bytes element = variable_element(v);
-        const std::size_t at = out.size();
         const std::size_t most = libdeflate_zlib_compress_bound(packer.get(), element.size());
-        append_tag(out, kCompressed, 0);
-        out.resize(at + kTag + most);
-        const std::size_t size = libdeflate_zlib_compress(packer.get(), element.data(), element.size(),
-                                                          out.data() + at + kTag, most);
-        out.resize(at + kTag + size);
-        Bytes tag;
-        append_tag(tag, kCompressed, size);
-        std::copy(tag.begin(), tag.end(), out.begin() + static_cast<std::ptrdiff_t>(at));
+        packed.push_back(std::make_unique_for_overwrite<std::uint8_t[]>(most));  // most of it stays untouched
+        sizes.push_back(libdeflate_zlib_compress(packer.get(), element.data(), element.size(),
+                                                 packed.back().get(), most));
+        append_tag(heads.emplace_back(), kCompressed, sizes.back());
     }
-    file.write(out);
+    std::vector<std::span<const std::uint8_t>> parts = {heads[0]};
+    for (std::size_t k = 0; k < packed.size(); ++k) {
+        parts.emplace_back(heads[k + 1]);
+        parts.emplace_back(packed[k].get(), sizes[k]);
+    }
+    file.write_parts(parts);
     file.commit();
 }
 

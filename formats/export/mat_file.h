@@ -3,9 +3,10 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
+#include <functional>
 #include <span>
 #include <string>
-#include <vector>
 
 namespace imgmesh {
 
@@ -18,23 +19,22 @@ struct MatVariable {
     MatType type = MatType::kDouble;
     std::size_t rows = 1;
     std::size_t columns = 1;
-    std::vector<std::uint8_t> bytes;  ///< of this machine's order, column after column
-    bool in_cell = false;             ///< the variable is a 1 x 1 cell array that holds the matrix
+    bool in_cell = false;  ///< the variable is a 1 x 1 cell array that holds the matrix
+    /// Writes the numbers, in this machine's order, column after column. They are not held twice.
+    std::function<void(std::uint8_t* to)> fill;
 };
 
-/// Returns the bytes of a grid of `width` x `height` values, row after row, in MATLAB's order: column after
-/// column. `value` gives the stored value of a place.
+/// Returns a MatVariable::fill for a grid of `width` x `height` values that has them row after row: `value`
+/// gives the stored value of a place.
 template <typename Value, typename ValueAt>
-std::vector<std::uint8_t> column_bytes(std::size_t width, std::size_t height, ValueAt value) {
-    std::vector<std::uint8_t> bytes(width * height * sizeof(Value));
-    std::size_t k = 0;
-    for (std::size_t x = 0; x < width; ++x)
-        for (std::size_t y = 0; y < height; ++y) {
-            const Value v = value(y * width + x);
-            const auto* const from = reinterpret_cast<const std::uint8_t*>(&v);
-            for (std::size_t b = 0; b < sizeof v; ++b) bytes[k++] = from[b];
-        }
-    return bytes;
+std::function<void(std::uint8_t*)> by_columns(std::size_t width, std::size_t height, ValueAt value) {
+    return [=](std::uint8_t* to) {
+        for (std::size_t x = 0; x < width; ++x)
+            for (std::size_t y = 0; y < height; ++y, to += sizeof(Value)) {
+                const Value v = value(y * width + x);
+                std::memcpy(to, &v, sizeof v);
+            }
+    };
 }
 
 /// Writes a .mat, each variable compressed (MathWorks' "MAT-File Format", level 5), which MATLAB 7, Octave
