@@ -77,9 +77,11 @@ void add_segment_options(CLI::App& app, SegmentOptions& o) {
     in_group(add_count(app, "--superpixels", o.params.superpixels, {1},
                        "Make this many regions of similar size that follow edges"),
              regions);
-    in_group(add_count(app, "--min-size", o.params.min_size, {1}, "Least number of pixels of a region"),
-             regions);
-    in_group(add_count(app, "--level", o.level, {0}, "Level of the pyramid, 0 the finest"), regions);
+    advanced(app, in_group(add_count(app, "--min-size", o.params.min_size, {1},
+                                     "Least number of pixels of a region"),
+                           regions));
+    advanced(app, in_group(add_count(app, "--level", o.level, {0}, "Level of the pyramid, 0 the finest"),
+                           regions));
     CLI::Option* const compactness =
         add_number(app, "--compactness", o.compactness, {0, kMostCompactness},
                    {"Compactness of superpixels; higher is rounder", cat(usual.compactness)});
@@ -116,11 +118,13 @@ void add_segment_options(CLI::App& app, SegmentOptions& o) {
                                   "every pixel's corner"),
                        svg),
                  files));
-    in_group(add_file(app, "--report", o.report,
-                      "List to write of each region's colour, pixels, box and neighbours (.json)"),
-             files);
-    in_group(add_file(app, "--mesh", o.mesh, "Base mesh to write with one primitive for each region (.glb)"),
-             files);
+    advanced(app,
+             in_group(add_file(app, "--report", o.report,
+                               "List to write of each region's colour, pixels, box and neighbours (.json)"),
+                      files));
+    advanced(app, in_group(add_file(app, "--mesh", o.mesh,
+                                    "Base mesh to write with one primitive for each region (.glb)"),
+                           files));
     advanced(app, in_group(add_file(app, "--ucm", o.ucm,
                                     "Ultrametric contour map to write (.exr, .npy, or .mat with ucm2)"),
                            files));
