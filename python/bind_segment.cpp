@@ -187,7 +187,7 @@ threshold    merge regions that are closer than this, in L*u*v*
 segments     merge until this many regions are left
 superpixels  make this many regions of similar size that follow edges
 min_size     the least number of pixels of a region
-compactness  of superpixels; higher is rounder (default 5)
+compactness  of superpixels; higher is rounder (default 4)
 distance     contour (default), or paper: by mean colours
 level        of the pyramid, 0 the finest
 image        the image itself, to measure on instead of the reconstruction: a path, an Image or an array

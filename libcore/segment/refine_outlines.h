@@ -8,7 +8,7 @@
 namespace imgmesh {
 
 struct OutlineParams {
-    double compactness = 5.0;   ///< this L*u*v* distance counts as much as one spacing; >= 0
+    double compactness = 4.0;   ///< this L*u*v* distance counts as much as one spacing; >= 0
     double spacing = 1.0;       ///< of the regions on a square grid [pixels]; > 0
     std::int64_t min_size = 1;  ///< no region of this many pixels or more shrinks below it
 };

@@ -23,7 +23,7 @@ struct SegmentParams {
     double threshold = 5.0;                          ///< regions closer than this become one [L*u*v*]; > 0
     std::optional<std::int64_t> segments;            ///< this many regions; >= 1
     std::optional<std::int64_t> superpixels;  ///< this many regions of similar size that follow edges; >= 1
-    double compactness = 5.0;   ///< of superpixels: this L*u*v* distance counts as much as one spacing; >= 0
+    double compactness = 4.0;   ///< of superpixels: this L*u*v* distance counts as much as one spacing; >= 0
     std::int64_t min_size = 1;  ///< no region has fewer pixels, except islands of a mask; >= 1
 };
 

@@ -7,6 +7,7 @@
 #include "libcore/base/error.h"
 #include "libcore/base/grid_neighbors.h"
 #include "libcore/segment/blur_inside.h"
+#include "libcore/segment/clean_edges.h"
 #include "libcore/segment/refine_outlines.h"
 #include "libcore/segment/region_distance.h"
 
@@ -77,12 +78,12 @@ Segmentation superpixels(const Level& level, const Cells& patches, const Feature
     const auto number = double(*params.superpixels);
     const double spacing = std::sqrt(pixels / number);
     const RegionDistance distance = superpixel_distance(params.compactness, spacing);
+    const FeatureImage clean = clean_edges(blur_inside(image, patches), patches);
     const auto merged = [&](const Cells& cells, std::int64_t min_size) {
-        return merge_regions(region_graph(cells, level.map, image, {}), distance, min_size);
+        return merge_regions(region_graph(cells, level.map, clean, {}), distance, min_size);
     };
-    const FeatureImage smooth = blur_inside(image, patches);
     const auto refine = [&](LabelImage& labels, std::int64_t min_size) {
-        refine_outlines(labels, smooth, {params.compactness, spacing, min_size});
+        refine_outlines(labels, clean, {params.compactness, spacing, min_size});
         return cells_of(labels, level.map);
     };
     const bool few = double(patches.count()) < double(kPartsEach) * number;
