@@ -126,6 +126,16 @@ void check_size(const SourceInfo& source, double scale) {
                         " pixels, more than ", limits.max_side, " a side or ", limits.max_pixels, " in all"));
 }
 
+// Says which channels smoothing leaves out, where the file could hold them.
+void tell_left_out(const Options& o, const SourceInfo& source, Context& context) {
+    std::string list;
+    for (const std::string& name : split_names(source.channel_names).auxiliary)
+        if (name != "A") list += (list.empty() ? "" : ", ") + name;
+    if (!list.empty() && lower_extension(o.output) == ".exr")
+        context.warnings.push_back(
+            cat(o.input, ": mode smooth writes colour and alpha alone, without ", list));
+}
+
 DrawParams draw_params(const Options& o) {
     return {o.mode.value_or(DrawMode::kMap), o.scale};
 }
@@ -191,6 +201,7 @@ Report draw_one(const Options& o, Context& context) {
         throw Error(ErrorKind::kUnsupported,
                     cat(o.input, ": there is no visit map; imgmesh-build --visits stores one"));
     const bool all_channels = writes_channels(o, source);
+    if (!o.mode) tell_left_out(o, source, context);
     int width = source.width, height = source.height;
     context.progress(0.4, "draw");
     if (svg) {

@@ -69,6 +69,20 @@ class Smooth(CliCase):
         self.assertEqual(str(picture_files.spec(self.folder / "b.png").format), "uint16")
         self.assertLess(self.error(deep), 0.03)
 
+    def test_channels_that_are_left_out_are_told(self):
+        picture_files.write_float(self.folder / "in.exr", np.dstack([self.clean, self.clean[..., 0]]),
+                                  names=["R", "G", "B", "depth.Z"])
+        self.build("in.exr", "--channels", "R,G,B,depth.Z:10", output="c.glb")
+        report, image = self.smooth(output="a.exr")
+        self.assertEqual(image.shape[2], 3)
+        self.assertIn("without depth.Z", report["warnings"][0])
+        self.assertNotIn("warnings", self.smooth(output="a.png")[0])
+
+    def test_a_mesh_without_colour_is_refused(self):
+        picture_files.write_float(self.folder / "in.tif", self.clean[..., :1])
+        self.build("in.tif", "--values", output="c.glb")
+        self.assert_error("imgmesh-reconstruct", ["c.glb", "-o", "a.png", "--mode", "smooth"], 5, "c.glb", "no colour")
+
     def test_refusals(self):
         tool = "imgmesh-reconstruct"
         self.assert_error(tool, ["c.glb", "-o", "x.png", "--strength", "4"], 2, "--strength", "--mode smooth")
