@@ -37,7 +37,7 @@ class Merger {
         }
     }
 
-    Hierarchy run() {
+    Hierarchy run(std::size_t least) {
         Hierarchy hierarchy{graph_.regions.size(), {}, 0};
         float height = 0;
         while (!queue_.empty()) {
@@ -45,6 +45,7 @@ class Merger {
             queue_.pop();
             if (next.version != version_[next.border]) continue;
             // Regions only grow: once no merge is forced, none will be.
+            if (next.waits && hierarchy.cells - hierarchy.merges.size() <= least) break;
             if (next.waits)
                 height = std::max(height, next.distance);
             else
@@ -111,8 +112,9 @@ class Merger {
 
 }  // namespace
 
-Hierarchy merge_regions(RegionGraph graph, const RegionDistance& distance, std::int64_t min_size) {
-    return Merger(std::move(graph), distance, min_size).run();
+Hierarchy merge_regions(RegionGraph graph, const RegionDistance& distance, std::int64_t min_size,
+                        std::size_t least) {
+    return Merger(std::move(graph), distance, min_size).run(least);
 }
 
 }  // namespace imgmesh

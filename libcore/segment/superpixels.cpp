@@ -79,8 +79,8 @@ Segmentation superpixels(const Level& level, const Cells& patches, const Feature
     const double spacing = std::sqrt(pixels / number);
     const RegionDistance distance = superpixel_distance(params.compactness, spacing);
     const FeatureImage clean = clean_edges(blur_inside(image, patches), patches);
-    const auto merged = [&](const Cells& cells, std::int64_t min_size) {
-        return merge_regions(region_graph(cells, level.map, clean, {}), distance, min_size);
+    const auto merged = [&](const Cells& cells, std::int64_t min_size, std::size_t least) {
+        return merge_regions(region_graph(cells, level.map, clean, {}), distance, min_size, least);
     };
     const auto refine = [&](LabelImage& labels, std::int64_t min_size) {
         refine_outlines(labels, clean, {params.compactness, spacing, min_size});
@@ -88,22 +88,21 @@ Segmentation superpixels(const Level& level, const Cells& patches, const Feature
     };
     const bool few = double(patches.count()) < double(kPartsEach) * number;
     Cells cells = few ? cut_along_squares(patches, std::max(1, static_cast<int>(spacing / 2))) : patches;
-    Hierarchy hierarchy = merged(cells, 1);
     const std::size_t wanted = std::min(as_index(*params.superpixels), cells.size());
-    const std::size_t surplus = cells.count() - std::min(cells.count(), kPartsEach * wanted);
-    LabelImage parts = labels_after(cells, hierarchy, std::min(surplus, hierarchy.merges.size()));
+    Hierarchy hierarchy = merged(cells, 1, kPartsEach * wanted);
+    LabelImage parts = labels_after(cells, hierarchy, hierarchy.merges.size());
     tell(0.4, "outlines");
     cells = refine(parts, 1);
 
     tell(0.6, "merge");
-    hierarchy = merged(cells, params.min_size);
+    hierarchy = merged(cells, params.min_size, wanted);
     Segmentation result;
     result.labels = labels_after(cells, hierarchy,
                                  merges_to_count(hierarchy, *params.superpixels, pixels, result.missed));
     tell(0.7, "outlines");
     result.cells = refine(result.labels, params.min_size);
     tell(0.9, "merge");
-    result.hierarchy = merged(result.cells, params.min_size);
+    result.hierarchy = merged(result.cells, params.min_size, 1);
     tell(1, "done");
     return result;
 }

@@ -148,6 +148,13 @@ TEST_CASE("merging agrees with regions made anew at every step") {
             REQUIRE(fast.merges.size() + 1 == steps.size());
             for (std::size_t k = 0; k < steps.size(); ++k)
                 CHECK(labels_after(cells, fast, k).values == steps[k]);
+            // Ended early: the same merges, as far as they go, and all that are forced.
+            const Hierarchy some =
+                merge_regions(region_graph(cells, s.level.map, s.picture, contrasts), distance, min_size, 8);
+            REQUIRE(some.forced == fast.forced);
+            REQUIRE(some.merges.size() ==
+                    std::max(fast.forced, std::min(fast.merges.size(), cells.count() - std::size_t{8})));
+            for (std::size_t k = 0; k < some.merges.size(); ++k) CHECK(some.merges[k].b == fast.merges[k].b);
         }
     }
 }
