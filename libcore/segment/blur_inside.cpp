@@ -1,5 +1,6 @@
 #include "libcore/segment/blur_inside.h"
 
+#include <algorithm>
 #include <array>
 
 #include "libcore/base/parallel.h"
