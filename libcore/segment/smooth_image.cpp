@@ -23,7 +23,7 @@ constexpr int kGrainRows = 16;
 // tests/bench/smoothing.py). A guide has a fraction of the image's noise, so differences in it count more.
 constexpr double kGuideRange = 1, kRange = 0.29, kGuideSpatial = 2.5, kSpatial = 3;
 
-// Across a contour as strong as the strength 2 percent of the weight is left, across one half stronger
+// Across a contour as strong as the strength half a percent of the weight is left, across one half stronger
 // nothing. The guide is made without heights: they cost time and change nothing there.
 constexpr double kHeight = 0.5, kNoHeight = std::numeric_limits<double>::infinity();
 
