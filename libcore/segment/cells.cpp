@@ -1,27 +1,29 @@
 #include "libcore/segment/cells.h"
 
-#include "libcore/base/disjoint_sets.h"
-#include "libcore/base/grid_neighbors.h"
+#include "libcore/segment/connected_parts.h"
 
 namespace imgmesh {
+namespace {
+
+template <typename Alike>
+Cells cells_where(const PixelMap& map, const Alike& alike) {
+    ConnectedParts parts = connected_parts(
+        map, [&](std::size_t i) { return map[i].face != kNone; },
+        [&](std::size_t i, std::size_t j) { return map[i].face == map[j].face && alike(i, j); });
+    Cells cells(map, kNone);
+    cells.values = std::move(parts.part.values);
+    for (const std::size_t i : parts.first) cells.face.push_back(map[i].face);
+    return cells;
+}
+
+}  // namespace
 
 Cells cut_cells(const PixelMap& map) {
-    DisjointSets sets(map.size());
-    for_neighbor_pixels(map, [&](std::size_t i, std::size_t j) {
-        if (map[i].face == map[j].face && map[i].face != kNone) sets.join(as_id(i), as_id(j));
-    });
-    Cells cells(map, kNone);
-    for (std::size_t i = 0; i < map.size(); ++i) {
-        if (map[i].face == kNone) continue;
-        const Id first = sets.find(as_id(i));
-        if (first == i) {
-            cells[i] = as_id(cells.count());
-            cells.face.push_back(map[i].face);
-        } else {
-            cells[i] = cells[first];
-        }
-    }
-    return cells;
+    return cells_where(map, [](std::size_t, std::size_t) { return true; });
+}
+
+Cells cut_cells(const PixelMap& map, const Grid<Id>& regions) {
+    return cells_where(map, [&](std::size_t i, std::size_t j) { return regions[i] == regions[j]; });
 }
 
 }  // namespace imgmesh

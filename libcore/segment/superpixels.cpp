@@ -3,11 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "libcore/base/disjoint_sets.h"
 #include "libcore/base/error.h"
-#include "libcore/base/grid_neighbors.h"
 #include "libcore/segment/blur_inside.h"
 #include "libcore/segment/clean_edges.h"
+#include "libcore/segment/connected_parts.h"
 #include "libcore/segment/refine_outlines.h"
 #include "libcore/segment/region_distance.h"
 
@@ -15,29 +14,19 @@ namespace imgmesh {
 namespace {
 
 // Regions get their outlines first when this many of them are left for each superpixel, and again in the
-// end: merging then starts from parts with good outlines (docs/decisions/0010-superpixels.md). Where there
-// are fewer cells, they are cut.
+// end: merging then starts from parts with good outlines (docs/decisions/0010-superpixels.md). Where
+// there are fewer cells, they are cut.
 constexpr std::size_t kPartsEach = 4;
 
 // Cuts cells along a grid of squares.
 Cells cut_along_squares(const Cells& cells, int side) {
-    DisjointSets sets(cells.size());
     const auto square = [&](std::size_t i) { return std::pair(cells.x_of(i) / side, cells.y_of(i) / side); };
-    for_neighbor_pixels(cells, [&](std::size_t i, std::size_t j) {
-        if (cells[i] == cells[j] && cells[i] != kNone && square(i) == square(j))
-            sets.join(as_id(i), as_id(j));
-    });
+    ConnectedParts parts = connected_parts(
+        cells, [&](std::size_t i) { return cells[i] != kNone; },
+        [&](std::size_t i, std::size_t j) { return cells[i] == cells[j] && square(i) == square(j); });
     Cells pieces(cells, kNone);
-    for (std::size_t i = 0; i < cells.size(); ++i) {
-        if (cells[i] == kNone) continue;
-        const Id first = sets.find(as_id(i));
-        if (first == i) {
-            pieces[i] = as_id(pieces.count());
-            pieces.face.push_back(cells.face[cells[i]]);
-        } else {
-            pieces[i] = pieces[first];
-        }
-    }
+    pieces.values = std::move(parts.part.values);
+    for (const std::size_t i : parts.first) pieces.face.push_back(cells.face[cells[i]]);
     return pieces;
 }
 
