@@ -13,6 +13,21 @@ std::size_t merges_below(const Hierarchy& hierarchy, double threshold) {
     return as_index(end - hierarchy.merges.begin());
 }
 
+std::size_t clearest_merges(const Hierarchy& hierarchy, double low, double high) {
+    const std::vector<Merge>& merges = hierarchy.merges;
+    const std::size_t first = merges_below(hierarchy, low), end = merges_below(hierarchy, high);
+    std::size_t best = first;
+    double widest = 0;
+    for (std::size_t k = first; k <= end; ++k) {
+        const double from = k == first ? low : double(merges[k - 1].height);
+        const double to = k == end ? high : double(merges[k].height);
+        if (to / from <= widest) continue;
+        widest = to / from;
+        best = k;
+    }
+    return best;
+}
+
 std::vector<Id> regions_after(const Hierarchy& hierarchy, std::size_t merges) {
     // The a and b of every merge are the first cells of their regions, and a < b.
     std::vector<Id> region(hierarchy.cells);

@@ -26,6 +26,11 @@ struct Hierarchy {
 /// Returns the number of merges whose height is below `threshold`. Takes O(log merges) time.
 std::size_t merges_below(const Hierarchy& hierarchy, double threshold);
 
+/// Returns the number of merges to do if the threshold may be anything from `low` to `high`, 0 < low <= high:
+/// where it could move farthest, by its factor, without a change. Noise then changes the regions least. The
+/// first of equal ones counts. Takes O(log merges + merges in between) time.
+std::size_t clearest_merges(const Hierarchy& hierarchy, double low, double high);
+
 /// Returns each cell's region after the first `merges` merges, at most hierarchy.merges.size(). Regions are
 /// numbered from 0 by their first cell. Takes O(cells + merges) time.
 std::vector<Id> regions_after(const Hierarchy& hierarchy, std::size_t merges);

@@ -14,9 +14,6 @@ constexpr double kBorderShare = 0.7;    // of the contrast along the border, aga
 constexpr double kSizeExponent = 0.2;   // small regions are details of their surroundings
 constexpr double kShapeExponent = 0.2;  // regions joined along most of their boundary belong together
 
-// The smallest value of 1 - m: keeps the logarithm finite.
-constexpr double kLeastLikeness = 1e-9;
-
 // Beyond this distance of colours [L*u*v*] superpixels count it, not its square. Without that, specks of
 // strong contrast take superpixels that weak edges need (docs/decisions/0010-superpixels.md).
 constexpr double kStrongContrast = 5;
@@ -45,10 +42,9 @@ RegionDistance contour_distance(double pixels) {
         const double regions =
             1 - std::exp(-population_distance(a.mean_color(), a.variance(), b.mean_color(), b.variance()));
         const double m = kBorderShare * border.mean_contrast() + (1 - kBorderShare) * regions;
-        const double color = color_equivalent(-std::log(std::max(kLeastLikeness, 1 - m)));
         const double size = 4 * harmonic(a.pixels, b.pixels) / pixels;
         const double shape = border.length / std::sqrt(2 * std::min(a.pixels, b.pixels));
-        return color * std::pow(size, kSizeExponent) * std::pow(shape, -kShapeExponent);
+        return m * std::pow(size, kSizeExponent) * std::pow(shape, -kShapeExponent);
     };
 }
 

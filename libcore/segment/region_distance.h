@@ -9,14 +9,14 @@ namespace imgmesh {
 /// its pixels' colours, each weighted by the smallest of the pixel's three weights.
 RegionDistance paper_distance();
 
-/// Combines colours and texture of the regions, contrast along their border, size and shape, in L*u*v* units:
+/// Combines colours and texture of the regions, contrast along their border, size and shape:
 ///
-///     color_equivalent(-ln(1 - m)) * (4 h / pixels)^0.2 * (l / sqrt(2 s))^-0.2
+///     m * (4 h / pixels)^0.2 * (l / sqrt(2 s))^-0.2
 ///     m = 0.7 (mean contrast of the border) + 0.3 (1 - exp(-population distance of the regions))
 ///
 /// with h = a b / (a + b) for regions of a and b pixels, s the smaller of a and b, and l the border's length.
-/// `pixels` is the number of pixels in all. For two uniform halves of a square image the distance is that of
-/// their colours. Small regions and long borders count less. Figures: docs/decisions/0009-segmentation.md.
+/// `pixels` is the number of pixels in all. Two halves of a square image have the distance m, which is in
+/// [0, 1]. Small regions and long borders count less. Figures: docs/decisions/0036-contours-with-texture.md.
 RegionDistance contour_distance(double pixels);
 
 /// Ward's criterion: what a merge adds to the sum of squares about the regions' means, of colours and of

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "libcore/base/error.h"
-#include "libcore/segment/pair_contrasts.h"
+#include "libcore/segment/contour_hierarchy.h"
 #include "libcore/segment/region_distance.h"
 #include "libcore/segment/superpixels.h"
 
@@ -16,6 +16,8 @@ void check(const Level& level, const FeatureImage& image, const SegmentParams& p
     if (!(params.threshold > 0 && std::isfinite(params.threshold)))
         fail(cat("threshold is ", params.threshold, ", expected above 0"));
     if (params.segments && params.superpixels) fail("segments and superpixels exclude each other");
+    if (params.clearest && (params.segments || params.superpixels))
+        fail("the clearest regions, and a number of segments or superpixels exclude each other");
     if (params.segments && *params.segments < 1)
         fail(cat("segments is ", *params.segments, ", expected at least 1"));
     if (params.superpixels && *params.superpixels < 1)
@@ -69,23 +71,26 @@ Segmentation segment(const Level& level, const FeatureImage& image, const Segmen
     const auto tell = [&](double fraction, std::string_view stage) {
         if (progress) progress(fraction, stage);
     };
-    Segmentation result;
-    tell(0, "cells");
-    result.cells = cut_cells(level.map);
-    const auto pixels = double(
-        std::count_if(result.cells.begin(), result.cells.end(), [](Id cell) { return cell != kNone; }));
-    if (pixels == 0) throw Error(ErrorKind::kUnsupported, "every pixel is outside the mask");
-    if (params.superpixels) return superpixels(level, result.cells, image, params, progress);
+    if (std::all_of(level.map.begin(), level.map.end(), [](const PixelCoord& c) { return c.face == kNone; }))
+        throw Error(ErrorKind::kUnsupported, "every pixel is outside the mask");
+    if (params.superpixels) return superpixels(level, cut_cells(level.map), image, params, progress);
 
-    const bool contours = params.distance == DistanceRule::kContour;
-    tell(0.1, "contrasts");
-    const PairContrasts contrasts = contours ? pair_contrasts(image, result.cells) : PairContrasts{};
-    const RegionDistance distance = contours ? contour_distance(pixels) : paper_distance();
-    tell(0.5, "merge");
-    result.hierarchy =
-        merge_regions(region_graph(result.cells, level.map, image, contrasts), distance, params.min_size);
+    Segmentation result;
+    if (params.distance == DistanceRule::kContour) {
+        CellHierarchy merged = contour_hierarchy(level.map, image, params.quality, params.min_size, progress);
+        result.cells = std::move(merged.cells);
+        result.hierarchy = std::move(merged.hierarchy);
+    } else {
+        tell(0, "merge");
+        result.cells = cut_cells(level.map);
+        result.hierarchy = merge_regions(region_graph(result.cells, level.map, image, {}), paper_distance(),
+                                         params.min_size);
+    }
     if (params.segments)
         result.merges = merges_to_count(result.hierarchy, *params.segments, result.missed);
+    else if (params.clearest)
+        result.merges = clearest_merges(result.hierarchy, params.threshold / kClearestRange,
+                                        params.threshold * kClearestRange);
     else
         result.merges = merges_below(result.hierarchy, params.threshold);
     result.labels = labels_after(result.cells, result.hierarchy, result.merges);

@@ -13,15 +13,26 @@ namespace imgmesh {
 
 enum class DistanceRule {
     kContour,  ///< contrast along the border, colour, texture, size and shape
-               ///< (docs/decisions/0009-segmentation.md)
+               ///< (docs/decisions/0036-contours-with-texture.md)
     kPaper     ///< the difference of weighted mean colours (paper sec. 4.1)
 };
+
+/// How carefully contours are measured; of DistanceRule::kContour only.
+enum class SegmentQuality {
+    kFast,    ///< once, by squares of pixels
+    kDefault  ///< again along smoothed outlines, with texture and direction
+};
+
+/// With SegmentParams::clearest, the threshold is up to this factor higher or lower.
+inline constexpr double kClearestRange = 1.1;
 
 /// Where merging stops. Give at most one of `segments` and `superpixels`; without them `threshold` counts.
 struct SegmentParams {
     DistanceRule distance = DistanceRule::kContour;  ///< not for superpixels, which have their own
-    double threshold = 5.0;                          ///< regions closer than this become one [L*u*v*]; > 0
-    std::optional<std::int64_t> segments;            ///< this many regions; >= 1
+    SegmentQuality quality = SegmentQuality::kDefault;
+    double threshold = 8.0;  ///< regions closer than this become one [L*u*v*]; > 0
+    bool clearest = false;   ///< near `threshold` where the regions change least (clearest_merges())
+    std::optional<std::int64_t> segments;     ///< this many regions; >= 1
     std::optional<std::int64_t> superpixels;  ///< this many regions of similar size that follow edges; >= 1
     double compactness = 4.0;   ///< of superpixels: this L*u*v* distance counts as much as one spacing; >= 0
     std::int64_t min_size = 1;  ///< no region has fewer pixels, except islands of a mask; >= 1

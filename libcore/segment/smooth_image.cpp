@@ -86,7 +86,10 @@ struct Borders {
 
 Borders find_borders(const Level& level, const FeatureImage& features, double strength,
                      const PaddedPlanes& layout, const Progress& progress) {
-    const Segmentation regions = segment(level, features, {}, [&](double f, std::string_view stage) {
+    // Outlines that are smoothed for people's eyes would leave the edges of the image.
+    SegmentParams params;
+    params.quality = SegmentQuality::kFast;
+    const Segmentation regions = segment(level, features, params, [&](double f, std::string_view stage) {
         if (progress) progress(f / 2, stage);
     });
     const Cells& cells = regions.cells;

@@ -165,10 +165,14 @@ TEST_CASE("contour map: any threshold gives the regions of the tool") {
     for (std::uint32_t seed = 1; seed <= 8; ++seed) {
         const Sample s = sample(23, 19, 30, seed % 2 == 0, seed);
         INFO("seed " << seed);
-        for (const DistanceRule rule : {DistanceRule::kContour, DistanceRule::kPaper})
+        using enum DistanceRule;
+        for (const auto& [rule, quality] : {std::pair(kContour, SegmentQuality::kDefault),
+                                            {kContour, SegmentQuality::kFast},
+                                            {kPaper, SegmentQuality::kDefault}})
             for (const std::int64_t min_size : {1, 12}) {
                 SegmentParams params;
                 params.distance = rule;
+                params.quality = quality;
                 params.min_size = min_size;
                 const Segmentation whole = segment(s.level, s.picture, params);
                 const ContourMap map = contour_map(whole.cells, whole.hierarchy);
@@ -180,12 +184,41 @@ TEST_CASE("contour map: any threshold gives the regions of the tool") {
                     thresholds.push_back(std::nextafter(double(merge.height), 1e30));
                     thresholds.push_back(double(merge.height) * 1.01);
                 }
-                for (const double threshold : thresholds) {
-                    params.threshold = threshold;
-                    const LabelImage labels = segment(s.level, s.picture, params).labels;
-                    CHECK(labels.values == regions_of_map(map, threshold, labels.values));
+                for (std::size_t k = 0; k < thresholds.size(); ++k) {
+                    const LabelImage labels = labels_after(whole.cells, whole.hierarchy,
+                                                           merges_below(whole.hierarchy, thresholds[k]));
+                    CHECK(labels.values == regions_of_map(map, thresholds[k], labels.values));
+                    if (k % 25 != 2) continue;
+                    params.threshold = thresholds[k];
+                    CHECK(segment(s.level, s.picture, params).labels.values == labels.values);
                 }
             }
+    }
+}
+
+// Cells inside a smoothed region merge first, regions after them; every number in between can be had.
+TEST_CASE("contours: regions are connected, nested, and as many as asked for") {
+    for (std::uint32_t seed = 1; seed <= 4; ++seed) {
+        const Sample s = sample(90, 80, 200, seed % 2 == 0, seed);
+        INFO("seed " << seed);
+        for (const std::int64_t min_size : {1, 20}) {
+            SegmentParams params;
+            params.min_size = min_size;
+            const Segmentation whole = segment(s.level, s.picture, params);
+            const Hierarchy& hierarchy = whole.hierarchy;
+            CHECK(std::is_sorted(hierarchy.merges.begin(), hierarchy.merges.end(),
+                                 [](const Merge& a, const Merge& b) { return a.height < b.height; }));
+            for (std::size_t k = hierarchy.forced; k <= hierarchy.merges.size(); k += 7) {
+                const LabelImage labels = labels_after(whole.cells, hierarchy, k);
+                CHECK(labels.count == hierarchy.cells - k);
+                CHECK(connected_parts(labels) == labels.values);
+            }
+            if (seed % 2 == 0) continue;  // islands may be of any size
+            const LabelImage labels = labels_after(whole.cells, hierarchy, hierarchy.forced);
+            std::vector<std::int64_t> sizes(labels.count, 0);
+            for (const Id label : labels) ++sizes[label];
+            CHECK(*std::min_element(sizes.begin(), sizes.end()) >= min_size);
+        }
     }
 }
 

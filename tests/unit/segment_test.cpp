@@ -75,6 +75,22 @@ TEST_CASE("paper: closest first, colours averaged anew, strictly below the thres
     CHECK(regions(15.4) == std::vector<Id>{0, 0, 0, 0});
 }
 
+// Heights 0, 1, 2, 4, 4.5, 9: from 1 to 2, from 2 to 4 and from 4.5 to 9 the threshold can double. Between 3
+// and 6 it moves by the factor 4/3 below 4 and above 4.5.
+TEST_CASE("clearest merges: where the threshold can move farthest") {
+    Hierarchy hierarchy{7, {}, 0};
+    for (const float height : {0.0f, 1.0f, 2.0f, 4.0f, 4.5f, 9.0f})
+        hierarchy.merges.push_back({0, 1, height});
+    CHECK(clearest_merges(hierarchy, 1, 10) == 2);
+    CHECK(clearest_merges(hierarchy, 1.5, 10) == 3);
+    CHECK(clearest_merges(hierarchy, 3, 6) == 3);
+    CHECK(clearest_merges(hierarchy, 3.1, 6) == 5);
+    CHECK(clearest_merges(hierarchy, 4.1, 4.2) == 4);
+    CHECK(clearest_merges(hierarchy, 20, 30) == 6);
+    CHECK(clearest_merges(hierarchy, 0.1, 0.5) == 1);
+    CHECK(clearest_merges({1, {}, 0}, 1, 2) == 0);
+}
+
 // All steps are equal: among equal distances the lower regions merge first.
 TEST_CASE("ties go to the lower regions") {
     const PixelMap map = map_of_faces(4, 1, {3, 2, 1, 0});
@@ -96,7 +112,8 @@ TEST_CASE("population distance: the textbook's values") {
     CHECK(color_equivalent(population_distance(zero, zero, step, zero)) == doctest::Approx(5));
 }
 
-// Two uniform halves of a square image: every part of the formula then gives their colours' distance.
+// Two uniform halves of a square image: every part of the formula then gives their colours' distance, and so
+// does the height of the merge.
 TEST_CASE("contour distance of two plain halves is that of their colours") {
     constexpr int kSide = 32;
     PixelMap map = map_of_faces(kSide, kSide, std::vector<Id>(kSide * kSide, 0));
@@ -116,7 +133,11 @@ TEST_CASE("contour distance of two plain halves is that of their colours") {
     REQUIRE(graph.borders.size() == 1);
     CHECK(graph.borders[0].length == kSide);
     CHECK(contour_distance(kSide * kSide)(graph.regions[0], graph.regions[1], graph.borders[0]) ==
-          doctest::Approx(5).epsilon(1e-4));
+          doctest::Approx(1 - std::exp(-25 / (8 * kUniformDeviation * kUniformDeviation))).epsilon(1e-4));
+    SegmentParams params;
+    params.quality = SegmentQuality::kFast;
+    const Segmentation result = segment(level_of(map), picture, params);
+    CHECK(result.hierarchy.merges.at(0).height == doctest::Approx(5).epsilon(1e-4));
 }
 
 // Pixels outside the mask have colours too, but do not count.
@@ -267,6 +288,7 @@ TEST_CASE("parameters out of range") {
     refused([](SegmentParams& p) { p.segments = 0; });
     refused([](SegmentParams& p) { p.superpixels = 0; });
     refused([](SegmentParams& p) { p.segments = p.superpixels = 1; });
+    refused([](SegmentParams& p) { p.segments = 1, p.clearest = true; });
     refused([](SegmentParams& p) { p.compactness = -1; });
     refused([](SegmentParams& p) { p.min_size = 0; });
     CHECK_THROWS_AS(segment(level, {1, 1, 3, {1, 1, 1}}, {}), Error);

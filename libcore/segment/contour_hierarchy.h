@@ -1,0 +1,33 @@
+// The hierarchy of regions by the contours between them.
+#pragma once
+
+#include <cstdint>
+
+#include "libcore/base/progress.h"
+#include "libcore/segment/cells.h"
+#include "libcore/segment/hierarchy.h"
+#include "libcore/segment/segment.h"
+
+namespace imgmesh {
+
+/// Cells and all their merges.
+struct CellHierarchy {
+    Cells cells;
+    Hierarchy hierarchy;
+};
+
+/// Merges the patches of a map, closest first, by contour_distance, in two stages. First, cells merge by the
+/// contrasts of squares (pair_contrasts.h) until 1500 regions are left. Their outlines are smoothed, the
+/// contrast along them is measured with texture and direction (contours/), and merging goes on. The cells of
+/// the result are the patches, cut along the smoothed outlines; inside a smoothed region they merge first.
+///
+/// The heights are color_equivalent(-ln(1 - d)) of a distance d: for weak contrasts this is a distance of
+/// colours [L*u*v*]; where d is near 1, it grows without much meaning. Each image's distances are first
+/// divided by the square root of what they are like at 8 to 64 regions, so that one threshold suits images of
+/// strong and of weak contrast; the factor lies between 1/2 and 2.
+///
+/// kFast ends with the first stage. Figures: docs/decisions/0036-contours-with-texture.md.
+CellHierarchy contour_hierarchy(const PixelMap& map, const FeatureImage& image, SegmentQuality quality,
+                                std::int64_t min_size, const Progress& progress);
+
+}  // namespace imgmesh
