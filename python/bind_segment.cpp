@@ -43,10 +43,12 @@ struct Request {
     bool strict = false;
 };
 
-Request request_of(const std::optional<double>& threshold, const std::optional<std::int64_t>& segments,
+using Segments = std::optional<std::variant<std::int64_t, std::string>>;
+
+Request request_of(const std::optional<double>& threshold, const Segments& segments,
                    const std::optional<std::int64_t>& superpixels, std::int64_t min_size,
                    const std::optional<double>& compactness, const std::optional<std::string>& distance,
-                   int level) {
+                   const std::optional<std::string>& quality, int level) {
     const auto refuse = [](const char* text) { throw Error(ErrorKind::kBadArgument, text); };
     if (threshold && segments) refuse("threshold and segments: expected one of them");
     if (superpixels && (threshold || segments || distance))
@@ -54,11 +56,20 @@ Request request_of(const std::optional<double>& threshold, const std::optional<s
     if (compactness && !superpixels) refuse("compactness: means something with superpixels only");
     Request r;
     r.params.threshold = threshold.value_or(r.params.threshold);
-    r.params.segments = segments;
+    if (segments && std::holds_alternative<std::string>(*segments)) {
+        if (std::get<std::string>(*segments) != "auto") refuse("segments: expected a number or auto");
+        r.params.clearest = true;
+    } else if (segments) {
+        r.params.segments = std::get<std::int64_t>(*segments);
+    }
     r.params.superpixels = superpixels;
     r.params.min_size = min_size;
     r.params.compactness = compactness.value_or(r.params.compactness);
     r.params.distance = word_value("distance", distance, distance_choices()).value_or(r.params.distance);
+    r.params.quality = word_value("quality", quality, segment_quality_choices()).value_or(r.params.quality);
+    if (quality && (superpixels || r.params.distance == DistanceRule::kPaper))
+        refuse(superpixels ? "quality: means something without superpixels only"
+                           : "quality: means something without the paper's distance only");
     r.level = level;
     return r;
 }
@@ -178,17 +189,19 @@ void write(const SegmentationValue& value, const py::object& path, bool overwrit
 }
 
 constexpr char kSegment[] =
-    R"(segment(*, threshold=None, segments=None, superpixels=None, min_size=1, compactness=None, distance=None, level=0,
+    R"(segment(*, threshold=None, segments=None, superpixels=None, min_size=1, compactness=None, distance=None,
+        quality=None, level=0,
         image=None, strict=False, progress=None, threads=None) -> Segmentation
 
-Cuts the image of a level into regions, as imgmesh-segment does. The default is threshold=5.
+Cuts the image of a level into regions, as imgmesh-segment does. The default is threshold=8.
 
 threshold    merge regions that are closer than this, in L*u*v*
-segments     merge until this many regions are left
+segments     merge until this many regions are left; "auto": near the default threshold, where regions are clearest
 superpixels  make this many regions of similar size that follow edges
 min_size     the least number of pixels of a region
 compactness  of superpixels; higher is rounder (default 4)
 distance     contour (default), or paper: by mean colours
+quality      default, or fast: contours are measured once, by colours in squares
 level        of the pyramid, 0 the finest
 image        the image itself, to measure on instead of the reconstruction: a path, an Image or an array
 strict       a number of regions that cannot be had is an UnsupportedError instead of a warning
@@ -250,20 +263,21 @@ void bind_segment(py::module_& module) {
     auto mesh = py::reinterpret_borrow<py::class_<MeshValue, MeshPointer>>(module.attr("Mesh"));
     mesh.def(
         "segment",
-        [](const MeshValue& self, const std::optional<double>& threshold,
-           const std::optional<std::int64_t>& segments, const std::optional<std::int64_t>& superpixels,
-           std::int64_t min_size, const std::optional<double>& compactness,
-           const std::optional<std::string>& distance, int level, const py::object& image, bool strict,
+        [](const MeshValue& self, const std::optional<double>& threshold, const Segments& segments,
+           const std::optional<std::int64_t>& superpixels, std::int64_t min_size,
+           const std::optional<double>& compactness, const std::optional<std::string>& distance,
+           const std::optional<std::string>& quality, int level, const py::object& image, bool strict,
            const py::object& progress, const std::optional<int>& threads) {
-            Request r = request_of(threshold, segments, superpixels, min_size, compactness, distance, level);
+            Request r =
+                request_of(threshold, segments, superpixels, min_size, compactness, distance, quality, level);
             r.strict = strict;
             return run(self, r, image, progress, threads);
         },
         py::kw_only(), py::arg("threshold") = py::none(), py::arg("segments") = py::none(),
         py::arg("superpixels") = py::none(), py::arg("min_size") = 1, py::arg("compactness") = py::none(),
-        py::arg("distance") = py::none(), py::arg("level") = 0, py::arg("image") = py::none(),
-        py::arg("strict") = false, py::arg("progress") = py::none(), py::arg("threads") = py::none(),
-        kSegment);
+        py::arg("distance") = py::none(), py::arg("quality") = py::none(), py::arg("level") = 0,
+        py::arg("image") = py::none(), py::arg("strict") = false, py::arg("progress") = py::none(),
+        py::arg("threads") = py::none(), kSegment);
 }
 
 }  // namespace imgmesh::python

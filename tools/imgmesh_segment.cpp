@@ -70,6 +70,7 @@ Report segment_one(const SegmentOptions& o, Context& context) {
     params.threshold = o.threshold.value_or(params.threshold);
     params.compactness = o.compactness.value_or(params.compactness);
     params.distance = o.distance.value_or(params.distance);
+    params.quality = o.quality.value_or(params.quality);
     const FeatureImage picture = picture_of(o, mesh_image, level, context);
     const Segmentation result = segment(level, picture, params, [&](double f, std::string_view stage) {
         context.progress(0.3 + 0.4 * f, stage);

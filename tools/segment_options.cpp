@@ -72,7 +72,16 @@ void add_segment_options(CLI::App& app, SegmentOptions& o) {
     in_group(add_number(app, "--threshold", o.threshold, {0, kNoLimit, true},
                         {"Merge regions that are closer than this, in L*u*v*", cat(usual.threshold)}),
              regions);
-    in_group(add_count(app, "--segments", o.params.segments, {1}, "Merge until this many regions are left"),
+    in_group(add_value(
+                 app, "--segments", "N",
+                 [&o](const std::string& text) {
+                     if (text == "auto")
+                         o.params.clearest = true;
+                     else
+                         o.params.segments = parse_count("--segments", text, {1});
+                 },
+                 "Merge until this many regions are left; auto: near the default threshold, where regions "
+                 "are clearest"),
              regions);
     in_group(add_count(app, "--superpixels", o.params.superpixels, {1},
                        "Make this many regions of similar size that follow edges"),
@@ -91,6 +100,12 @@ void add_segment_options(CLI::App& app, SegmentOptions& o) {
                    {"Distance of regions, by their contours or by mean colours as in the paper",
                     name_of(distance_choices(), usual.distance)});
     advanced(app, in_group(distance, regions));
+    CLI::Option* const quality =
+        add_choice(app, "--quality", o.quality, segment_quality_choices(),
+                   {"How carefully contours are measured: fast looks at colours in squares, default also at "
+                    "texture, along smoothed outlines",
+                    name_of(segment_quality_choices(), usual.quality)});
+    advanced(app, in_group(quality, regions));
     add_seed_options(app, o);
     CLI::Option* const image =
         in_group(add_file(app, "--image", o.image,
@@ -139,14 +154,19 @@ std::vector<std::string> outputs_of(const SegmentOptions& o) {
 }
 
 void check_segment_options(const SegmentOptions& o) {
-    if (o.threshold && o.params.segments)
+    const bool segments = o.params.segments || o.params.clearest;
+    if (o.threshold && segments)
         throw Error(ErrorKind::kBadArgument, "--threshold and --segments: expected one of them");
-    if (o.params.superpixels && (o.threshold || o.params.segments || o.distance))
+    if (o.params.superpixels && (o.threshold || segments || o.distance))
         throw Error(ErrorKind::kBadArgument, cat("--superpixels and ",
-                                                 o.threshold         ? "--threshold"
-                                                 : o.params.segments ? "--segments"
-                                                                     : "--distance",
+                                                 o.threshold ? "--threshold"
+                                                 : segments  ? "--segments"
+                                                             : "--distance",
                                                  ": expected one of them"));
+    if (o.quality && (o.params.superpixels || o.distance == DistanceRule::kPaper))
+        throw Error(ErrorKind::kBadArgument,
+                    cat("--quality: means something without ",
+                        o.params.superpixels ? "--superpixels" : "--distance paper", " only"));
     if (o.compactness && !o.params.superpixels)
         throw Error(ErrorKind::kBadArgument, "--compactness: means something with --superpixels only");
     if (!can_write_labels(o.output))

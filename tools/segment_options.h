@@ -21,6 +21,7 @@ struct SegmentOptions {
     SegmentParams params;
     std::optional<double> threshold, compactness;
     std::optional<DistanceRule> distance;
+    std::optional<SegmentQuality> quality;
     int level = 0;
     std::vector<Seed> seeds;
     std::string image, outlines, flat, colors, svg, ucm, report, mesh, mask;

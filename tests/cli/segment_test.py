@@ -104,6 +104,18 @@ class Segment(CliCase):
             agreement = ((labels == labels[16, 30]) == disc).mean()
             self.assertGreater(agreement, 0.97, distance)
 
+    def test_quality(self):
+        disc = self.picture[..., 2] > 0.5
+        found = [self.segment("--quality", quality, "--segments", "2")[1] for quality in ("fast", "default")]
+        for labels in found:
+            self.assertGreater(((labels == labels[16, 30]) == disc).mean(), 0.97)
+        self.assertTrue((found[0] != found[1]).any())  # outlines are smoothed
+
+    def test_a_number_near_the_default_threshold(self):
+        report, _ = self.segment("--segments", "auto")
+        self.assertLess(report["merged_up_to"], 8 * 1.1)
+        self.assertGreater(report["next_merge"], 8 / 1.1)
+
     def test_png_and_exr_hold_the_same_labels(self):
         _, exr = self.segment("--segments", "20")
         _, png = self.segment("--segments", "20", output="out.png")
@@ -259,6 +271,11 @@ class Segment(CliCase):
                             (["--segments", "0"], ["--segments"]),
                             (["--segments", "3", "--threshold", "3"], ["--segments", "--threshold"]),
                             (["--superpixels", "3", "--segments", "3"], ["--superpixels", "--segments"]),
+                            (["--superpixels", "3", "--segments", "auto"], ["--superpixels", "--segments"]),
+                            (["--threshold", "3", "--segments", "auto"], ["--threshold", "--segments"]),
+                            (["--segments", "automatic"], ["--segments", "automatic"]),
+                            (["--quality", "fast", "--distance", "paper"], ["--quality", "--distance"]),
+                            (["--quality", "fast", "--superpixels", "9"], ["--quality", "--superpixels"]),
                             (["--superpixels", "3", "--distance", "paper"], ["--superpixels", "--distance"]),
                             (["--compactness", "3"], ["--compactness", "--superpixels"]),
                             (["--superpixels", "3", "--compactness", "-1"], ["--compactness"]),

@@ -43,6 +43,10 @@ Choices<DistanceRule> distance_choices() {
     return {{"contour", DistanceRule::kContour}, {"paper", DistanceRule::kPaper}};
 }
 
+Choices<SegmentQuality> segment_quality_choices() {
+    return {{"fast", SegmentQuality::kFast}, {"default", SegmentQuality::kDefault}};
+}
+
 Choices<AlphaUse> alpha_choices() {
     return {{"auto", AlphaUse::kAuto},
             {"keep", AlphaUse::kKeep},

@@ -20,6 +20,7 @@ Choices<LayerLayout> layer_choices();  ///< without kOff
 Choices<SampleType> sample_type_choices();
 Choices<DrawMode> draw_mode_choices();
 Choices<DistanceRule> distance_choices();
+Choices<SegmentQuality> segment_quality_choices();
 Choices<AlphaUse> alpha_choices();
 Choices<NonFinite> non_finite_choices();
 Choices<TextureType> texture_type_choices();
