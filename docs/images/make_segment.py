@@ -14,19 +14,19 @@ from PIL import Image, ImageDraw
 from make_readme import labelled, save_grid
 from make_warp import HERE, PHOTO, run, shown
 
-KEEP, DROP = (520, 200), (30, 30)
+KEEP, DROP = ((520, 200), (430, 265)), (30, 30)
 DETAIL = (500, 230, 596, 294)  # left, top, right, bottom [px]
 
 
 def draw_object(tools, folder, container):
     mask = folder / "parrot.png"
     run(tools / "imgmesh-segment", container, "-q", "-o", folder / "labels.png", "--image", PHOTO, "--mask", mask,
-        "--keep", "%d,%d" % KEEP, "--drop", "%d,%d" % DROP)
+        "--drop", "%d,%d" % DROP, *(word for place in KEEP for word in ("--keep", "%d,%d" % place)))
     run(tools / "imgmesh-build", PHOTO, "-o", folder / "parrot.glb", "-q", "--mask", mask)
     run(tools / "imgmesh-reconstruct", folder / "parrot.glb", "-q", "-o", folder / "wire.png", "--mode", "wire", "--scale", 2)
     photo, inside = shown(PHOTO), np.asarray(Image.open(mask)) > 0
     clicks = photo.copy()
-    for (x, y), color in ((KEEP, (60, 230, 60)), (DROP, (255, 60, 60))):
+    for (x, y), color in [(place, (60, 230, 60)) for place in KEEP] + [(DROP, (255, 60, 60))]:
         ImageDraw.Draw(clicks).ellipse((x - 14, y - 14, x + 14, y + 14), fill=color, outline=(255, 255, 255), width=4)
     white = np.where(inside[..., None], np.asarray(photo), 255).astype(np.uint8)
     save_grid([[labelled(clicks, "--keep (green), --drop (red)"), labelled(Image.fromarray(white), "what the mask keeps"),
