@@ -74,19 +74,19 @@ Hierarchy merges_inside(const Cells& cells, const LabelImage& regions, RegionGra
 }
 
 // One hierarchy of cells: those inside regions merge first, below the height of every merge of regions; then
-// the regions. Cells and regions are both numbered by their first pixel, so a region's first cell stands for
-// it.
-Hierarchy joined(const Cells& cells, const LabelImage& regions, Hierarchy inside, const Hierarchy& outside) {
+// the regions. With a least size, merges inside are forced, as are those of small regions. Cells and regions
+// are both numbered by their first pixel, so a region's first cell stands for it.
+Hierarchy joined(const Cells& cells, const LabelImage& regions, Hierarchy inside, const Hierarchy& outside,
+                 bool forced) {
     std::vector<Id> first_cell(regions.count, kNone);
     for (std::size_t i = 0; i < cells.size(); ++i)
         if (cells[i] != kNone) first_cell[regions[i]] = std::min(first_cell[regions[i]], cells[i]);
-    if (!outside.merges.empty() && !inside.merges.empty()) {
-        const float least = outside.merges.front().height, most = inside.merges.back().height;
-        if (most >= least)
-            for (Merge& merge : inside.merges) merge.height = most > 0 ? least * (merge.height / most) : 0;
-    }
+    const float most = inside.merges.empty() ? 0 : inside.merges.back().height;
+    const float limit = forced ? 0 : outside.merges.empty() ? most : outside.merges.front().height;
+    if (most > limit)
+        for (Merge& merge : inside.merges) merge.height = limit * (merge.height / most);
     Hierarchy all{cells.count(), std::move(inside.merges), 0};
-    if (outside.forced > 0) all.forced = all.merges.size() + outside.forced;
+    if (forced) all.forced = all.merges.size() + outside.forced;
     for (const Merge& merge : outside.merges)
         all.merges.push_back({first_cell[merge.a], first_cell[merge.b], merge.height});
     return all;
@@ -129,7 +129,7 @@ CellHierarchy contour_hierarchy(const PixelMap& map, const FeatureImage& image, 
     // Pairs that only the new outlines cut have no contrast here, but they lie between regions.
     Hierarchy inside = merges_inside(cells, regions, region_graph(cells, map, image, squares), distance);
     scale_heights(inside);
-    Hierarchy all = joined(cells, regions, std::move(inside), second);
+    Hierarchy all = joined(cells, regions, std::move(inside), second, min_size > 1);
     return {std::move(cells), std::move(all)};
 }
 

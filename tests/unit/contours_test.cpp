@@ -183,3 +183,25 @@ TEST_CASE("contrasts: the same for any number of threads, and of any image") {
         for (const float value : one.right) CHECK((value >= 0 && value <= 1));
     }
 }
+
+// Patches of 4x4 pixels in plain squares of 20x20: smoothing cuts off corners of patches, which are cells of
+// one pixel. No region is that small.
+TEST_CASE("min size: holds for cells that smoothed outlines cut off") {
+    constexpr int kSide = 200;
+    std::vector<Id> faces;
+    for (int y = 0; y < kSide; ++y)
+        for (int x = 0; x < kSide; ++x) faces.push_back(Id(y / 4 * (kSide / 4) + x / 4));
+    const PixelMap map = map_of_faces(kSide, kSide, faces);
+    const FeatureImage image =
+        grey(kSide, kSide, [](int x, int y) { return (x / 20 * 7 + y / 20 * 3) % 10 * 10; });
+    const auto smallest = [&](std::int64_t min_size) {
+        const auto [cells, hierarchy] = contour_hierarchy(map, image, SegmentQuality::kDefault, min_size, {});
+        const LabelImage labels = labels_after(cells, hierarchy, hierarchy.forced);
+        std::vector<std::int64_t> sizes(labels.count, 0);
+        for (const Id label : labels) ++sizes[label];
+        return *std::min_element(sizes.begin(), sizes.end());
+    };
+    CHECK(smallest(1) == 1);
+    CHECK(smallest(2) >= 2);
+    CHECK(smallest(50) >= 50);
+}
