@@ -14,19 +14,20 @@ from PIL import Image, ImageDraw
 from make_readme import labelled, save_grid
 from make_warp import HERE, PHOTO, run, shown
 
-KEEP, DROP = ((520, 200), (430, 265)), (30, 30)
+KEEP, DROP = ((520, 200), (430, 265)), ((30, 30), (380, 350))
 DETAIL = (500, 230, 596, 294)  # left, top, right, bottom [px]
 
 
 def draw_object(tools, folder, container):
     mask = folder / "parrot.png"
     run(tools / "imgmesh-segment", container, "-q", "-o", folder / "labels.png", "--image", PHOTO, "--mask", mask,
-        "--drop", "%d,%d" % DROP, *(word for place in KEEP for word in ("--keep", "%d,%d" % place)))
+        *(word for option, places in (("--keep", KEEP), ("--drop", DROP)) for x, y in places
+          for word in (option, f"{x},{y}")))
     run(tools / "imgmesh-build", PHOTO, "-o", folder / "parrot.glb", "-q", "--mask", mask)
     run(tools / "imgmesh-reconstruct", folder / "parrot.glb", "-q", "-o", folder / "wire.png", "--mode", "wire", "--scale", 2)
     photo, inside = shown(PHOTO), np.asarray(Image.open(mask)) > 0
     clicks = photo.copy()
-    for (x, y), color in [(place, (60, 230, 60)) for place in KEEP] + [(DROP, (255, 60, 60))]:
+    for (x, y), color in [(place, (60, 230, 60)) for place in KEEP] + [(place, (255, 60, 60)) for place in DROP]:
         ImageDraw.Draw(clicks).ellipse((x - 14, y - 14, x + 14, y + 14), fill=color, outline=(255, 255, 255), width=4)
     white = np.where(inside[..., None], np.asarray(photo), 255).astype(np.uint8)
     save_grid([[labelled(clicks, "--keep (green), --drop (red)"), labelled(Image.fromarray(white), "what the mask keeps"),
