@@ -68,8 +68,8 @@ Request request_of(const std::optional<double>& threshold, const Segments& segme
     r.params.distance = word_value("distance", distance, distance_choices()).value_or(r.params.distance);
     r.params.quality = word_value("quality", quality, segment_quality_choices()).value_or(r.params.quality);
     if (quality && (superpixels || r.params.distance == DistanceRule::kPaper))
-        refuse(superpixels ? "quality: means something without superpixels only"
-                           : "quality: means something without the paper's distance only");
+        refuse(superpixels ? "quality: means nothing with superpixels"
+                           : "quality: means nothing with the paper's distance");
     r.level = level;
     return r;
 }
@@ -195,7 +195,7 @@ constexpr char kSegment[] =
 
 Cuts the image of a level into regions, as imgmesh-segment does. The default is threshold=8.
 
-threshold    merge regions that are closer than this, in L*u*v*
+threshold    merge across contours weaker than this; 4 leaves many regions, 10 few
 segments     merge until this many regions are left; "auto": near the default threshold, where regions are clearest
 superpixels  make this many regions of similar size that follow edges
 min_size     the least number of pixels of a region

@@ -132,7 +132,7 @@ void print(const Report& report, std::ostream& out) {
     TextTable table;
     const bool superpixels = report["distance"] == "superpixels";  // which follow pixels, not patches
     table.add("regions", superpixels ? cat(report["regions"], " superpixels")
-                                     : cat(report["regions"], " of ", report["cells"], " connected patches"));
+                                     : cat(report["regions"], " of ", report["cells"], " cells"));
     table.add("sizes", cat(report["min_pixels"], " to ", report["max_pixels"], " pixels"));
     if (!superpixels)
         table.add("distance", cat(report["distance"].get<std::string>(), ", merged up to ",

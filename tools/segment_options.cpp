@@ -70,7 +70,8 @@ void add_segment_options(CLI::App& app, SegmentOptions& o) {
     const SegmentParams usual;
     const std::string regions = "Regions", files = "Files";
     in_group(add_number(app, "--threshold", o.threshold, {0, kNoLimit, true},
-                        {"Merge regions that are closer than this, in L*u*v*", cat(usual.threshold)}),
+                        {"Merge across contours weaker than this; 4 leaves many regions, 10 few",
+                         cat(usual.threshold)}),
              regions);
     in_group(add_value(
                  app, "--segments", "N",
@@ -165,8 +166,8 @@ void check_segment_options(const SegmentOptions& o) {
                                                  ": expected one of them"));
     if (o.quality && (o.params.superpixels || o.distance == DistanceRule::kPaper))
         throw Error(ErrorKind::kBadArgument,
-                    cat("--quality: means something without ",
-                        o.params.superpixels ? "--superpixels" : "--distance paper", " only"));
+                    cat("--quality: means nothing with ",
+                        o.params.superpixels ? "--superpixels" : "--distance paper"));
     if (o.compactness && !o.params.superpixels)
         throw Error(ErrorKind::kBadArgument, "--compactness: means something with --superpixels only");
     if (!can_write_labels(o.output))

@@ -61,7 +61,7 @@ constexpr Example kWarp[] = {
 constexpr Example kSegment[] = {
     {"imgmesh-segment photo.glb -o labels.png --segments 20", "20 regions, as a label for each pixel"},
     {"imgmesh-segment photo.glb -o labels.exr --threshold 8 --outlines borders.png --image photo.png",
-     "Regions that differ by 8 in L*u*v*, and their borders drawn over the image"},
+     "Regions with contours of at least 8 between them, drawn over the image"},
     {"imgmesh-segment photo.glb -o cells.png --superpixels 50", "50 superpixels that follow edges"},
     {"imgmesh-segment photo.glb -o labels.png --keep 20,20 --drop 0,0 --mask object.png",
      "The object that pixel 20,20 is inside, and pixel 0,0 is not, as a mask for imgmesh-build"},
