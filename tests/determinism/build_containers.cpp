@@ -1,6 +1,7 @@
 // build-containers FOLDER PART PARTS: containers of small images with every preset, metric, solver and kind
-// of map, as FOLDER/NAME.glb. Of all containers it writes those whose number leaves PART when divided by
-// PARTS. Builds of it by other compilers, and without AVX2, write the same bytes (compare_builds.py).
+// of map, as FOLDER/NAME.glb, and the contours and superpixels of two of them. Of all containers it writes
+// those whose number leaves PART when divided by PARTS. Builds of it by other compilers, and without AVX2,
+// write the same bytes (compare_builds.py).
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -11,9 +12,13 @@
 #include <vector>
 
 #include "formats/container/container.h"
+#include "formats/export/contour_files.h"
+#include "formats/export/label_files.h"
 #include "formats/picture/image_io.h"
 #include "libcore/pipeline/build.h"
 #include "libcore/pipeline/presets.h"
+#include "libcore/segment/contour_map.h"
+#include "libcore/segment/segment.h"
 
 using namespace imgmesh;
 
@@ -97,6 +102,19 @@ std::vector<Case> make_cases(const Image& photo, const Image& gray) {
     return cases;
 }
 
+// The heights of all contours, and superpixels, as arrays.
+void write_regions(const std::filesystem::path& folder, const std::string& name, const Level& level) {
+    const FeatureImage picture = reconstruct_luv(level);
+    const Segmentation contours = segment(level, picture, {});
+    const ContourMap map = contour_map(contours.cells, contours.hierarchy);
+    write_contours((folder / (name + "-contours.npy")).string(), map.width, map.height, map.values, 1, false);
+    SegmentParams params;
+    params.superpixels = 150;
+    const LabelImage labels = segment(level, picture, params).labels;
+    write_labels((folder / (name + "-superpixels.npy")).string(), labels.width, labels.height, labels.values,
+                 false);
+}
+
 void write_part(const std::filesystem::path& folder, std::size_t part, std::size_t parts) {
     const Image photo = make_photo(), gray = green_of(photo);
     std::vector<Case> cases = make_cases(photo, gray);
@@ -104,6 +122,8 @@ void write_part(const std::filesystem::path& folder, std::size_t part, std::size
         Case& c = cases[i];
         const BuildResult result = build_mesh_image(*c.image, c.params, {}, std::move(c.mask));
         write_container((folder / (c.name + ".glb")).string(), result.mesh_image, {.draco = c.draco});
+        if (c.name == "preset-default" || c.name == "mask")
+            write_regions(folder, c.name, result.mesh_image.levels[0]);
     }
 }
 
