@@ -11,6 +11,7 @@
 #include "formats/picture/image_io.h"
 #include "libcore/image/color.h"
 #include "libcore/image/feature_space.h"
+#include "libcore/segment/contour_hierarchy.h"
 #include "libcore/segment/contour_map.h"
 #include "libcore/segment/draw_regions.h"
 #include "libcore/segment/region_colors.h"
@@ -50,6 +51,13 @@ FeatureImage picture_of(const SegmentOptions& o, const MeshImage& mesh_image, co
                      Range::kClipped);
 }
 
+double bytes_a_pixel(const SegmentOptions& o, const Level& level) {
+    const bool measured =
+        !o.params.superpixels && o.distance != DistanceRule::kPaper && o.quality != SegmentQuality::kFast;
+    return kSegmentBytes + (lower_extension(o.ucm) == ".mat" ? kMatBytes : 0) +
+           (measured ? contour_memory(level.map) / double(level.map.pixel_count()) : 0);
+}
+
 Report segment_one(const SegmentOptions& o, Context& context) {
     for (const std::string& output : outputs_of(o)) check_output(output, context.overwrite);
 
@@ -64,8 +72,7 @@ Report segment_one(const SegmentOptions& o, Context& context) {
     check_level("--level", o.level, o.input, mesh_image);
     const Level& level = mesh_image.levels[static_cast<std::size_t>(o.level)];
 
-    context.memory.take_for(o.input, mesh_image,
-                            kSegmentBytes + (lower_extension(o.ucm) == ".mat" ? kMatBytes : 0));
+    context.memory.take_for(o.input, mesh_image, bytes_a_pixel(o, level));
     SegmentParams params = o.params;
     params.threshold = o.threshold.value_or(params.threshold);
     params.compactness = o.compactness.value_or(params.compactness);

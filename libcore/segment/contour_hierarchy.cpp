@@ -94,6 +94,12 @@ Hierarchy joined(const Cells& cells, const LabelImage& regions, Hierarchy inside
 
 }  // namespace
 
+double contour_memory(const GridSize& size) {
+    constexpr double kBytes = 150;  // of filters' answers, sums and codes for each pixel that is measured
+    const double factor = measuring_factor(size);
+    return kBytes * double(size.pixel_count()) / (factor * factor);
+}
+
 CellHierarchy contour_hierarchy(const PixelMap& map, const FeatureImage& image, SegmentQuality quality,
                                 std::int64_t min_size, const Progress& progress) {
     const auto tell = [&](double fraction, std::string_view stage) {

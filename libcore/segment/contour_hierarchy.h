@@ -16,6 +16,11 @@ struct CellHierarchy {
     Hierarchy hierarchy;
 };
 
+/// Returns about how much memory measuring the contours of the second stage takes, for an image of that size,
+/// beside the image, its map and what the first stage has had [bytes]. It grows with the image only up to
+/// 0.35 million pixels; larger ones are measured at a smaller size.
+double contour_memory(const GridSize& size);
+
 /// Merges the patches of a map, closest first, by contour_distance, in two stages. First, cells merge by the
 /// contrasts of squares (pair_contrasts.h) until 1500 regions are left. Their outlines are smoothed, the
 /// contrast along them is measured with texture and direction (contours/), and merging goes on. The cells of
