@@ -9,7 +9,8 @@ namespace {
 struct Candidate {
     bool waits;  // until the merges forced by min_size are done
     float distance;
-    Id a, b;  // as in Border
+    float pixels;  // of both regions
+    Id a, b;       // as in Border
     Id border;
     std::uint32_t version;
 
@@ -17,6 +18,7 @@ struct Candidate {
     bool operator<(const Candidate& other) const {
         if (waits != other.waits) return waits;
         if (distance != other.distance) return distance > other.distance;
+        if (pixels != other.pixels) return pixels > other.pixels;
         return a != other.a ? a > other.a : b > other.b;
     }
 };
@@ -63,8 +65,8 @@ class Merger {
         const Border& border = graph_.borders[e];
         const RegionSums &a = graph_.regions[border.a], &b = graph_.regions[border.b];
         const auto distance = static_cast<float>(distance_(a, b, border));
-        queue_.push(
-            {std::min(a.pixels, b.pixels) >= min_size_, distance, border.a, border.b, e, version_[e]});
+        queue_.push({std::min(a.pixels, b.pixels) >= min_size_, distance,
+                     static_cast<float>(a.pixels + b.pixels), border.a, border.b, e, version_[e]});
     }
 
     // Region b becomes part of a; a < b.

@@ -13,10 +13,11 @@ namespace imgmesh {
 using RegionDistance = std::function<double(const RegionSums&, const RegionSums&, const Border&)>;
 
 /// Merges the two closest neighbours until none are left, and computes the distances of the new region anew
-/// (paper sec. 4.1, "repeatedly"). In a tie the border of the lower regions comes first; the number of a
-/// region is that of its first cell. If `min_size` > 1, regions with fewer pixels merge first, closest first,
-/// at height 0, so no region is smaller at any threshold, except islands that are smaller as a whole. Other
-/// merges end when `least` regions are left.
+/// (paper sec. 4.1, "repeatedly"). In a tie the smaller regions merge first, so that in a flat area none
+/// grows by one neighbour at a time; then those with the lower numbers; the number of a region is that of its
+/// first cell. If `min_size` > 1, regions with fewer pixels merge first, closest first, at height 0, so no
+/// region is smaller at any threshold, except islands that are smaller as a whole. Other merges end when
+/// `least` regions are left.
 ///
 /// Takes O(borders log borders) time, times the mean number of neighbours of a region when it merges.
 Hierarchy merge_regions(RegionGraph graph, const RegionDistance& distance, std::int64_t min_size = 1,

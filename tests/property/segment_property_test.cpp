@@ -112,11 +112,12 @@ std::vector<std::vector<Id>> slow_merges(const Sample& s, const RegionDistance& 
     for (;;) {
         const RegionGraph graph = region_graph(cells, s.level.map, s.picture, contrasts);
         const Border* best = nullptr;
-        std::pair<bool, double> least;
+        std::tuple<bool, float, double> least;
         for (const Border& border : graph.borders) {
             const RegionSums &a = graph.regions[border.a], &b = graph.regions[border.b];
-            const std::pair<bool, double> key = {std::min(a.pixels, b.pixels) >= double(min_size),
-                                                 distance(a, b, border)};
+            const std::tuple<bool, float, double> key = {std::min(a.pixels, b.pixels) >= double(min_size),
+                                                         static_cast<float>(distance(a, b, border)),
+                                                         a.pixels + b.pixels};
             if (best && least <= key) continue;
             best = &border;
             least = key;
