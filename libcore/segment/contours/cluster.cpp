@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <random>
 
 #include "libcore/base/parallel.h"
@@ -146,10 +147,14 @@ Codes cluster(const std::vector<Plane>& planes, const Grid<std::uint8_t>& inside
     return codes;
 }
 
+float rounded(float value, float step) {
+    return std::round(value / step) * step;
+}
+
 Codes palette(const SmallImage& image) {
     std::vector<Plane> planes(3, Plane(image.inside.size()));
     for (std::size_t i = 0; i < image.inside.size(); ++i)
-        for (std::size_t c = 0; c < 3; ++c) planes[c][i] = image.luv.pixel(i)[c];
+        for (std::size_t c = 0; c < 3; ++c) planes[c][i] = rounded(image.luv.pixel(i)[c], kColorStep);
     return cluster(planes, image.inside);
 }
 

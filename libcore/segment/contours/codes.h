@@ -25,6 +25,13 @@ using Plane = std::vector<float>;
 /// planes  at least one, each of the mask's size; every pixel is a point with one coordinate from each
 Codes cluster(const std::vector<Plane>& planes, const Grid<std::uint8_t>& inside);
 
+/// Differences that nobody sees, such as the rounding of a reconstruction, are no texture: colours are
+/// rounded to this step before they are clustered [L*u*v*], and the answers of filters to that of L* / 100.
+inline constexpr float kColorStep = 1.0f / 16;
+
+/// Returns the multiple of `step` nearest to a value.
+float rounded(float value, float step);
+
 /// Textons (Malik et al. 2001): what the image looks like within some pixels. Clusters of the lightness as
 /// seen by 17 filters: first and second derivatives of Gaussians, three times as long as wide, in eight
 /// directions, and the difference of two round ones.

@@ -196,6 +196,8 @@ Codes textons(const SmallImage& image) {
                 std::tie(planes[at], planes[at + 1]) = oriented(d, size, std::numbers::pi * k / kDirections);
         }
     });
+    for (Plane& plane : planes)
+        for (float& value : plane) value = rounded(value, kColorStep / 100);
     return cluster(planes, image.inside);
 }
 
