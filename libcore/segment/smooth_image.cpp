@@ -140,12 +140,12 @@ Image smooth_image(const Level& level, const FeatureImage& features, const Image
     parallel_blocks(0, image.height, kGrainRows, [&](int first, int last) {
         for (int y = first; y < last; ++y)
             for (int x = 0; x < image.width; ++x) {
+                if (outside(level.map.at(x, y))) continue;  // nobody can see what was cut off
                 float* to = out.pixel(x, y);
                 const std::size_t i = values.index(x, y);
                 for (int c = 0; c < 3; ++c) to[c] = from_lightness(values.plane(c)[i], linear);
                 if (!clear) continue;
-                const float alpha = channels.alpha < 0 ? 1 : image.pixel(x, y)[channels.alpha];
-                to[3] = outside(level.map.at(x, y)) ? 0 : alpha;
+                to[3] = channels.alpha < 0 ? 1 : image.pixel(x, y)[channels.alpha];
             }
     });
     if (progress) progress(1, "done");
