@@ -93,6 +93,8 @@ def main():
             subprocess.run([bin_folder / "imgmesh-convert", f"{name}.glb", "-o", scene, "--image", f"{name}.png", "-q",
                             *options], cwd=folder, check=True)
             scenes[scene] = f"{name}.png"
+        # Godot 3 would import it, cannot read Draco, and sometimes dies of that.
+        (folder / f"{name}.glb").unlink()
 
     def run_godot(*arguments):
         environment = dict(os.environ, HOME=str(folder), XDG_CONFIG_HOME=str(folder / "home"),
