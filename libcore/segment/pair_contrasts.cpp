@@ -64,18 +64,6 @@ Squares square_sums(const FeatureImage& image, const Cells& cells, int radius) {
     return squares;
 }
 
-float contrast(const Sums& a, const Sums& b) {
-    Vec3d mean_a, mean_b, variance_a, variance_b;
-    for (int c = 0; c < 3; ++c) {
-        const std::size_t k = as_index(c);
-        mean_a[c] = double(a[1 + k]) / double(a[0]);
-        mean_b[c] = double(b[1 + k]) / double(b[0]);
-        variance_a[c] = std::max(0.0, double(a[4 + k]) / double(a[0]) - mean_a[c] * mean_a[c]);
-        variance_b[c] = std::max(0.0, double(b[4 + k]) / double(b[0]) - mean_b[c] * mean_b[c]);
-    }
-    return static_cast<float>(1 - std::exp(-population_distance(mean_a, variance_a, mean_b, variance_b)));
-}
-
 }  // namespace
 
 double population_distance(const Vec3d& mean_a, const Vec3d& variance_a, const Vec3d& mean_b,
@@ -95,6 +83,17 @@ double color_equivalent(double population_distance) {
     return kUniformDeviation * std::sqrt(8 * population_distance);
 }
 
+float sums_contrast(const float* a, const float* b) {
+    Vec3d mean_a, mean_b, variance_a, variance_b;
+    for (int c = 0; c < 3; ++c) {
+        mean_a[c] = double(a[1 + c]) / double(a[0]);
+        mean_b[c] = double(b[1 + c]) / double(b[0]);
+        variance_a[c] = std::max(0.0, double(a[4 + c]) / double(a[0]) - mean_a[c] * mean_a[c]);
+        variance_b[c] = std::max(0.0, double(b[4 + c]) / double(b[0]) - mean_b[c] * mean_b[c]);
+    }
+    return static_cast<float>(1 - std::exp(-population_distance(mean_a, variance_a, mean_b, variance_b)));
+}
+
 PairContrasts pair_contrasts(const FeatureImage& image, const Cells& cells) {
     PairContrasts contrasts{std::vector<float>(cells.size(), 0.0f), std::vector<float>(cells.size(), 0.0f)};
     const auto differs = [&](Id cell, int x, int y) {
@@ -110,11 +109,12 @@ PairContrasts pair_contrasts(const FeatureImage& image, const Cells& cells) {
                     const Id cell = cells[i];
                     if (cell == kNone) continue;
                     if (differs(cell, x + 1, y))
-                        contrasts.right[i] += share * contrast(squares.clamped(x - radius, y),
-                                                               squares.clamped(x + 1 + radius, y));
+                        contrasts.right[i] +=
+                            share * sums_contrast(squares.clamped(x - radius, y).data(),
+                                                  squares.clamped(x + 1 + radius, y).data());
                     if (differs(cell, x, y + 1))
-                        contrasts.down[i] += share * contrast(squares.clamped(x, y - radius),
-                                                              squares.clamped(x, y + 1 + radius));
+                        contrasts.down[i] += share * sums_contrast(squares.clamped(x, y - radius).data(),
+                                                                   squares.clamped(x, y + 1 + radius).data());
                 }
         });
     }

@@ -20,6 +20,10 @@ double population_distance(const Vec3d& mean_a, const Vec3d& variance_a, const V
 /// For populations without deviation of their own this is the distance of their means.
 double color_equivalent(double population_distance);
 
+/// Returns 1 - exp(-population_distance) of two sets of pixels, in [0, 1). Each is given by seven sums: the
+/// number of its pixels, above 0, their colours and the squares of these.
+float sums_contrast(const float* a, const float* b);
+
 /// Returns the contrast of every pair of neighbours in different cells: 1 - exp(-d), mean over r = 2, 4, 8. d
 /// is the population distance of the two squares of (2r+1)^2 pixels that meet between them, as far as they
 /// are inside the mask. In [0, 1). The result is the same for any number of threads.

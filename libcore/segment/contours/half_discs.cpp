@@ -40,18 +40,6 @@ std::pair<T, T> halves(const std::array<T, kWedges>& wedges, std::size_t directi
     return sides;
 }
 
-float color_difference(const Eigen::Array<float, 8, 1>& a, const Eigen::Array<float, 8, 1>& b) {
-    if (a[0] == 0 || b[0] == 0) return 0;
-    Vec3d mean_a, mean_b, variance_a, variance_b;
-    for (int c = 0; c < 3; ++c) {
-        mean_a[c] = double(a[1 + c]) / double(a[0]);
-        mean_b[c] = double(b[1 + c]) / double(b[0]);
-        variance_a[c] = std::max(0.0, double(a[4 + c]) / double(a[0]) - mean_a[c] * mean_a[c]);
-        variance_b[c] = std::max(0.0, double(b[4 + c]) / double(b[0]) - mean_b[c] * mean_b[c]);
-    }
-    return static_cast<float>(1 - std::exp(-population_distance(mean_a, variance_a, mean_b, variance_b)));
-}
-
 // Half the sum of (a - b)^2 / (a + b) over the bins of two histograms that are first made to sum to 1.
 float chi_square(const std::uint16_t* a, const std::uint16_t* b) {
     int total_a = 0, total_b = 0;
@@ -138,7 +126,7 @@ float HalfDiscs::contrast(const Crack& crack, double normal) const {
             if (weight == 0) continue;
             if (ring < kColorRings) {
                 const auto [a, b] = halves(sums, direction);
-                color += weight * color_difference(a, b);
+                if (a[0] > 0 && b[0] > 0) color += weight * sums_contrast(a.data(), b.data());
             }
             if (ring >= kFirstCodeRing) {
                 const auto [a, b] = halves(histograms, direction);
