@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "libcore/base/error.h"
 #include "libcore/base/index.h"
 
 namespace imgmesh {
@@ -11,6 +12,19 @@ std::size_t merges_below(const Hierarchy& hierarchy, double threshold) {
     const auto end = std::partition_point(hierarchy.merges.begin(), hierarchy.merges.end(),
                                           [&](const Merge& m) { return double(m.height) < threshold; });
     return as_index(end - hierarchy.merges.begin());
+}
+
+std::size_t merges_to_count(const Hierarchy& hierarchy, std::int64_t count, std::string_view source,
+                            std::string& missed) {
+    const std::size_t wanted = as_index(count), least = hierarchy.cells - hierarchy.merges.size(),
+                      most = hierarchy.cells - hierarchy.forced;
+    if (wanted > most)
+        missed = cat(count, " regions were wanted, at most ", most,
+                     hierarchy.forced > 0 ? " of that size can be had from " : " can be had from ", source);
+    if (wanted < least)
+        missed = cat(count, count == 1 ? " region was wanted, " : " regions were wanted, ", least,
+                     " are the fewest: so many islands has the mask");
+    return hierarchy.cells - std::clamp(wanted, least, most);
 }
 
 std::size_t clearest_merges(const Hierarchy& hierarchy, double low, double high) {

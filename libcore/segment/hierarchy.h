@@ -2,6 +2,9 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include "libcore/base/types.h"
@@ -25,6 +28,12 @@ struct Hierarchy {
 
 /// Returns the number of merges whose height is below `threshold`. Takes O(log merges) time.
 std::size_t merges_below(const Hierarchy& hierarchy, double threshold);
+
+/// Returns the number of merges that leaves `count` >= 1 regions, or as near as possible: there are never
+/// more than after the forced merges, nor fewer than islands. `missed` then tells why; `source` is what more
+/// regions would have to come from, such as "9 pixels".
+std::size_t merges_to_count(const Hierarchy& hierarchy, std::int64_t count, std::string_view source,
+                            std::string& missed);
 
 /// Returns the number of merges to do if the threshold may be anything from `low` to `high`, 0 < low <= high:
 /// where it could move farthest, by its factor, without a change. Noise then changes the regions least. The

@@ -33,20 +33,6 @@ void check(const Level& level, const FeatureImage& image, const SegmentParams& p
                     cat("the image has ", image.channels, " channels, expected L*, u*, v*"));
 }
 
-std::size_t merges_to_count(const Hierarchy& hierarchy, std::int64_t count, std::string& missed) {
-    const std::size_t wanted = as_index(count);
-    const std::size_t least = hierarchy.cells - hierarchy.merges.size(),
-                      most = hierarchy.cells - hierarchy.forced;
-    if (wanted > most)
-        missed = cat(count, " regions were wanted, at most ", most,
-                     hierarchy.forced > 0 ? " of that size can be had from " : " can be had from ",
-                     hierarchy.cells, " connected patches, of which a mesh with more faces has more");
-    if (wanted < least)
-        missed = cat(count, count == 1 ? " region was wanted, " : " regions were wanted, ", least,
-                     " are the fewest: so many islands has the mask");
-    return hierarchy.cells - std::clamp(wanted, least, most);
-}
-
 }  // namespace
 
 FeatureImage reconstruct_luv(const Level& level) {
@@ -87,7 +73,10 @@ Segmentation segment(const Level& level, const FeatureImage& image, const Segmen
                                          params.min_size);
     }
     if (params.segments)
-        result.merges = merges_to_count(result.hierarchy, *params.segments, result.missed);
+        result.merges = merges_to_count(
+            result.hierarchy, *params.segments,
+            cat(result.hierarchy.cells, " connected patches, of which a mesh with more faces has more"),
+            result.missed);
     else if (params.clearest)
         result.merges = clearest_merges(result.hierarchy, params.threshold / kClearestRange,
                                         params.threshold * kClearestRange);

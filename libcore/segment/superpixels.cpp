@@ -39,21 +39,6 @@ Cells cells_of(const LabelImage& labels, const PixelMap& map) {
     return cells;
 }
 
-// Tells in `missed` why the number wanted cannot be had.
-std::size_t merges_to_count(const Hierarchy& hierarchy, std::int64_t count, double pixels,
-                            std::string& missed) {
-    const std::size_t wanted = as_index(count), least = hierarchy.cells - hierarchy.merges.size(),
-                      most = hierarchy.cells - hierarchy.forced;
-    if (wanted > most)
-        missed = cat(count, " regions were wanted, at most ", most,
-                     hierarchy.forced > 0 ? " of that size can be had from " : " can be had from ", pixels,
-                     pixels == 1 ? " pixel" : " pixels");
-    if (wanted < least)
-        missed = cat(count, count == 1 ? " region was wanted, " : " regions were wanted, ", least,
-                     " are the fewest: so many islands has the mask");
-    return hierarchy.cells - std::clamp(wanted, least, most);
-}
-
 }  // namespace
 
 Segmentation superpixels(const Level& level, const Cells& patches, const FeatureImage& image,
@@ -86,8 +71,10 @@ Segmentation superpixels(const Level& level, const Cells& patches, const Feature
     tell(0.6, "merge");
     hierarchy = merged(cells, params.min_size, wanted);
     Segmentation result;
-    result.labels = labels_after(cells, hierarchy,
-                                 merges_to_count(hierarchy, *params.superpixels, pixels, result.missed));
+    result.labels =
+        labels_after(cells, hierarchy,
+                     merges_to_count(hierarchy, *params.superpixels,
+                                     cat(pixels, pixels == 1 ? " pixel" : " pixels"), result.missed));
     tell(0.7, "outlines");
     result.cells = refine(result.labels, params.min_size);
     tell(0.9, "merge");
