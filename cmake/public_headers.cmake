@@ -48,6 +48,7 @@ set(IMGMESH_PUBLIC_HEADERS
 
   libcore/warp/arap.h
   libcore/warp/displacement.h
+  libcore/warp/injective.h
   libcore/warp/retarget.h
   libcore/warp/solve_edits.h
   libcore/warp/warp_edits.h
