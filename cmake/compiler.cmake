@@ -24,7 +24,9 @@ target_compile_options(imgmesh_compiler INTERFACE -fno-trapping-math -fno-math-e
 # headers with the libraries.
 set(CMAKE_CXX_VISIBILITY_PRESET hidden)
 set(CMAKE_VISIBILITY_INLINES_HIDDEN ON)
-target_compile_options(imgmesh_compiler INTERFACE -fPIC -fno-semantic-interposition)
+if(NOT EMSCRIPTEN)
+  target_compile_options(imgmesh_compiler INTERFACE -fPIC -fno-semantic-interposition)
+endif()
 if(IMGMESH_WERROR)
   target_compile_options(imgmesh_compiler INTERFACE -Werror)
 endif()

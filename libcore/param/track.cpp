@@ -130,7 +130,8 @@ bool PixelTracker::collapse(Id kept, Id removed, const Vec2f& position, std::spa
 
     pixel_[kept] = pixel_[removed] = kNone;
     mesh_.collapse(rings[1], kept);
-    std::copy(merged_.begin(), merged_.end(), points_.begin() + std::ptrdiff_t{kept} * dimensions_);
+    std::copy(merged_.begin(), merged_.end(),
+              points_.begin() + static_cast<std::ptrdiff_t>(kept) * dimensions_);
     OneRing& merged = rings[0];
     if (params_.space == TrackSpace::kPlane || resting != std::array<Id, 2>{kNone, kNone})
         mesh_.ring(kept, merged);
@@ -157,7 +158,7 @@ void PixelTracker::put_at(const OneRing& ring, Id pixel) {
 // The face and the weights in moved_ by the pixel's place in the image.
 void PixelTracker::find_in_plane(const OneRing& ring) {
     const auto place = [&](Id v) {
-        const float* p = points_.data() + std::ptrdiff_t{v} * dimensions_;
+        const float* p = points_.data() + static_cast<std::ptrdiff_t>(v) * dimensions_;
         return Vec2d(double(p[0]), -double(p[1]));  // y up, as fans have it
     };
     std::array<Vec2d, kMaxFlatRing> around;
