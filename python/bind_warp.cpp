@@ -60,9 +60,18 @@ OutputSize size_of(const std::optional<std::pair<int, int>>& size) {
 
 using Size = std::optional<std::pair<int, int>>;
 
-// Returns the field of the moves, and the drawing's size.
-DisplacementField field_of(const MeshImage& mesh_image, const WarpEdits& edits, const Size& retarget) {
-    DisplacementField field = displacement_field(mesh_image, solve_edits(mesh_image, edits));
+// Returns the moves of the edits, and adds to `warnings` which handles are not where they should be.
+std::vector<VertexMoves> moves_of(const MeshImage& mesh_image, const WarpEdits& edits,
+                                  std::vector<std::string>& warnings) {
+    const EditSolution solution = edit_solution(mesh_image, edits);
+    warnings = missed_places(solution);
+    for (std::string& text : warnings) text = "edits: " + text;
+    return solution.moves;
+}
+
+DisplacementField field_of(const MeshImage& mesh_image, const WarpEdits& edits, const Size& retarget,
+                           std::vector<std::string>& warnings) {
+    DisplacementField field = displacement_field(mesh_image, moves_of(mesh_image, edits, warnings));
     if (retarget) add_field(field, retarget_field(mesh_image, size_of(retarget)));
     return field;
 }
@@ -89,17 +98,22 @@ std::shared_ptr<ImageValue> warp(const MeshValue& mesh, const py::object& image,
     const WarpEdits all = edits_from(edits);
     const MeshImage& mesh_image = mesh.mesh_image();
     const ImagePointer source = source_image(image, mesh_image);
-    return without_gil(threads, [&] {
-        return std::make_shared<ImageValue>(ImageValue{
-            warp_image(source->image, field_of(mesh_image, all, retarget), drawn), mesh.container.metadata});
+    std::vector<std::string> warnings;
+    const auto drawing = without_gil(threads, [&] {
+        return std::make_shared<ImageValue>(
+            ImageValue{warp_image(source->image, field_of(mesh_image, all, retarget, warnings), drawn),
+                       mesh.container.metadata});
     });
+    warn(warnings);
+    return drawing;
 }
 
 MeshPointer warp_mesh(const MeshValue& mesh, const py::object& edits, const std::optional<int>& threads) {
     const WarpEdits all = edits_from(edits);
-    return without_gil(threads, [&] {
+    std::vector<std::string> warnings;
+    const MeshPointer result = without_gil(threads, [&] {
         const auto warped = std::make_shared<MeshValue>(MeshValue{mesh.container});
-        const std::vector<VertexMoves> moves = solve_edits(mesh.mesh_image(), all);
+        const std::vector<VertexMoves> moves = moves_of(mesh.mesh_image(), all, warnings);
         MeshImage& mesh_image = warped->container.mesh_image;
         mesh_image = warp_mesh_image(std::move(mesh_image), moves);
         mesh_image.generator = kGenerator;
@@ -107,11 +121,16 @@ MeshPointer warp_mesh(const MeshValue& mesh, const py::object& edits, const std:
         warped->container.facts.draco = mesh.container.facts.draco;
         return warped;
     });
+    warn(warnings);
+    return result;
 }
 
 py::array displacement(const MeshValue& mesh, const py::object& edits, const std::optional<int>& threads) {
     const WarpEdits all = edits_from(edits);
-    Image map = without_gil(threads, [&] { return forward_map_image(field_of(mesh.mesh_image(), all, {})); });
+    std::vector<std::string> warnings;
+    Image map = without_gil(
+        threads, [&] { return forward_map_image(field_of(mesh.mesh_image(), all, {}, warnings)); });
+    warn(warnings);
     const py::ssize_t height = map.height, width = map.width;
     return array_of(std::move(map.data), {height, width, 2});
 }
@@ -122,12 +141,14 @@ py::array st_map(const MeshValue& mesh, const py::object& edits, const py::objec
     const WarpEdits all = edits_from(edits);
     const MeshImage& mesh_image = mesh.mesh_image();
     const ImagePointer source = image.is_none() ? nullptr : source_image(image, mesh_image);
+    std::vector<std::string> warnings;
     Image map = without_gil(threads, [&] {
         const InverseMap inverse =
-            inverse_map(field_of(mesh_image, all, retarget),
+            inverse_map(field_of(mesh_image, all, retarget, warnings),
                         source ? alpha_of(source->image) : std::vector<float>(), drawn);
         return st_map_image(inverse, mesh_image.source.width, mesh_image.source.height);
     });
+    warn(warnings);
     const py::ssize_t height = map.height, width = map.width, channels = map.channels;
     return array_of(std::move(map.data), {height, width, channels});
 }
@@ -143,7 +164,7 @@ size      (width, height) of the drawing; None: that of the image
 retarget  (width, height): detail keeps its proportions and the rest of the image gives way
 
 Raises BadFileError for edits that are not as they must be, an image of another size, and a vertex or level that
-does not exist.)";
+does not exist. Warns where a handle of an injective edit cannot get where it should.)";
 
 }  // namespace
 

@@ -120,11 +120,11 @@ WarpEdits all_edits(const Options& o) {
     return edits;
 }
 
-// Calls solve_edits(). Mistakes of the command line become usage errors.
-std::vector<VertexMoves> solve(const MeshImage& mesh_image, const WarpEdits& edits, const Options& o) {
+// Calls edit_solution(). Mistakes of the command line become usage errors.
+EditSolution solve(const MeshImage& mesh_image, const WarpEdits& edits, const Options& o) {
     if (handle_edit(o.handles)) check_level("--level", o.handles.edit.level, o.input, mesh_image);
     try {
-        return solve_edits(mesh_image, edits);
+        return edit_solution(mesh_image, edits);
     } catch (const Error& e) {
         const std::string text = e.what();
         const bool of_file = !o.edits.empty() && text.starts_with(o.edits + ": ");
@@ -191,7 +191,10 @@ Report warp_one(const Options& o, Context& context) {
     for (const std::string& text : far_points(edits, source))
         context.warnings.push_back(cat(o.input, ": ", text));
     context.progress(0.3, "solve");
-    const std::vector<VertexMoves> moves = solve(mesh_image, edits, o);
+    const EditSolution solution = solve(mesh_image, edits, o);
+    const std::vector<VertexMoves>& moves = solution.moves;
+    for (const std::string& text : missed_places(solution))
+        context.warnings.push_back(cat(o.input, ": ", text));
     DisplacementField field = displacement_field(mesh_image, moves);
     if (o.retarget) add_field(field, retarget_field(mesh_image, o.size));
     Report report = {{"input", o.input},
@@ -199,6 +202,8 @@ Report warp_one(const Options& o, Context& context) {
                      {"moved_vertices", moved_vertices(moves)},
                      {"largest_move", largest_move(field)},
                      {"folded_cells", folded_cells(field)}};
+    if (std::ranges::any_of(edits, [](const WarpEdit& e) { return e.solver == WarpSolver::kInjective; }))
+        report["unreached"] = std::ranges::max(solution.left);
     context.progress(0.5, "draw");
     std::vector<std::string> written = {o.output};
     JointFiles together;

@@ -70,8 +70,11 @@ void add_handle_options(CLI::App& app, HandleOptions& o) {
                                          "Level of the pyramid that handles and pins are of, 0 the finest");
     CLI::Option* const solver = add_choice(
         app, "--solver", o.solver,
-        Choices<WarpSolver>{{"direct", WarpSolver::kDirect}, {"arap", WarpSolver::kArap}},
-        {"What moves beside the handles' vertices: nothing, or all but pins, as rigidly as possible",
+        Choices<WarpSolver>{{"direct", WarpSolver::kDirect},
+                            {"arap", WarpSolver::kArap},
+                            {"injective", WarpSolver::kInjective}},
+        {"What moves beside the handles' vertices: nothing, or all but pins, as rigidly as possible, or so "
+         "that no face turns over",
          "direct, with pins arap"});
     in_group(handle, group);
     for (CLI::Option* const option : {pin, border, level, solver}) needs(in_group(option, group), handle);

@@ -162,8 +162,10 @@ WarpEdit edit(const Node& node) {
     if (node.has("solver")) {
         if (node["solver"].is_text("arap"))
             e.solver = WarpSolver::kArap;
+        else if (node["solver"].is_text("injective"))
+            e.solver = WarpSolver::kInjective;
         else if (!node["solver"].is_text("direct"))
-            node["solver"].refuse("expected \"direct\" or \"arap\"");
+            node["solver"].refuse("expected \"direct\", \"arap\" or \"injective\"");
     }
     if (!node.has("handles")) node.refuse("member \"handles\" is missing");
     for (const Node& item : node["handles"].items()) e.handles.push_back(handle(item));

@@ -6,6 +6,7 @@
 
 #include "libcore/base/error.h"
 #include "libcore/warp/arap.h"
+#include "libcore/warp/injective.h"
 
 namespace imgmesh {
 namespace {
@@ -105,50 +106,111 @@ void apply_handle(const BaseMesh& mesh, int level, const WarpHandle& handle, std
     }
 }
 
-std::vector<Vec2d> solve_edit(const BaseMesh& mesh, const WarpEdit& edit) {
-    std::vector<Vec2d> moves(mesh.vertex_count(), Vec2d(0, 0));
-    std::vector<char> fixed(mesh.vertex_count(), 0);
-    for (const WarpHandle& handle : edit.handles) apply_handle(mesh, edit.level, handle, moves, fixed);
-    std::vector<char> held = fixed;
+// What an edit says of the vertices of its level.
+struct Held {
+    std::vector<Vec2d> moves;  // of handles; 0 for others
+    std::vector<char> held;    // whether a vertex is in a handle or a pin
+
+    explicit Held(std::size_t vertices) : moves(vertices, Vec2d(0, 0)), held(vertices, 0) {}
+    void add(const Held& other) {
+        for (std::size_t v = 0; v < moves.size(); ++v) moves[v] += other.moves[v];
+        for (std::size_t v = 0; v < held.size(); ++v) held[v] |= other.held[v];
+    }
+    std::vector<Id> ids() const {
+        std::vector<Id> all;
+        for (Id v = 0; v < held.size(); ++v)
+            if (held[v]) all.push_back(v);
+        return all;
+    }
+    std::vector<Vec2d> held_moves() const {
+        std::vector<Vec2d> all;
+        for (std::size_t v = 0; v < held.size(); ++v)
+            if (held[v]) all.push_back(moves[v]);
+        return all;
+    }
+};
+
+Held held_by(const BaseMesh& mesh, const WarpEdit& edit) {
+    Held all(mesh.vertex_count());
+    for (const WarpHandle& handle : edit.handles) apply_handle(mesh, edit.level, handle, all.moves, all.held);
+    const std::vector<char> in_handle = all.held;
     for (const VertexSelection& pin : edit.pins)
         for (const Id v : selected(mesh, edit.level, pin)) {
             // A border is pinned where it is free: handles on it are what pulls.
-            if (fixed[v] && !pin.border)
+            if (in_handle[v] && !pin.border)
                 fail(pin.where, cat("vertex ", v, " is also in a handle of this edit"));
-            held[v] = 1;
+            all.held[v] = 1;
         }
-    if (edit.solver == WarpSolver::kDirect) return moves;
-    std::vector<Id> ids;
-    std::vector<Vec2d> held_moves;
-    for (Id v = 0; v < held.size(); ++v) {
-        if (!held[v]) continue;
-        ids.push_back(v);
-        held_moves.push_back(moves[v]);
-    }
-    return ArapSolver(mesh, ids).solve(held_moves).moves;
+    return all;
 }
+
+// All edits of one level.
+struct LevelSum {
+    explicit LevelSum(std::size_t vertices) : moves(vertices, Vec2d(0, 0)), injective(vertices) {}
+
+    void add(const BaseMesh& mesh, const WarpEdit& edit) {
+        const Held held = held_by(mesh, edit);
+        if (edit.solver == WarpSolver::kInjective)
+            injective.add(held);
+        else if (edit.solver == WarpSolver::kArap)
+            add(ArapSolver(mesh, held.ids()).solve(held.held_moves()).moves);
+        else
+            add(held.moves);
+    }
+    // Returns how far handles stay from their places.
+    double solve_injective(const BaseMesh& mesh) {
+        const std::vector<Id> ids = injective.ids();
+        if (ids.empty()) return 0;
+        const InjectiveSolver::Result result = InjectiveSolver(mesh, ids).solve(injective.held_moves());
+        for (std::size_t v = 0; v < moves.size(); ++v) moves[v] += result.moves[v].cast<double>();
+        return result.left;
+    }
+
+    std::vector<Vec2d> moves;
+
+  private:
+    void add(const std::vector<Vec2d>& more) {
+        for (std::size_t v = 0; v < moves.size(); ++v) moves[v] += more[v];
+    }
+
+    Held injective;
+};
 
 }  // namespace
 
-std::vector<VertexMoves> solve_edits(const MeshImage& mesh_image, const WarpEdits& edits) {
-    std::vector<std::vector<Vec2d>> sums(mesh_image.levels.size());
+EditSolution edit_solution(const MeshImage& mesh_image, const WarpEdits& edits) {
+    std::vector<LevelSum> sums;
+    for (const Level& level : mesh_image.levels) sums.emplace_back(level.mesh.vertex_count());
     for (const WarpEdit& edit : edits) {
         if (edit.level < 0 || edit.level >= as_int(sums.size()))
             fail(edit.where,
                  cat("level ", edit.level, " is not there; the container has levels 0 to ", sums.size() - 1));
-        const auto level = as_index(edit.level);
-        const std::vector<Vec2d> moves = solve_edit(mesh_image.levels[level].mesh, edit);
-        sums[level].resize(moves.size(), Vec2d(0, 0));
-        for (std::size_t v = 0; v < moves.size(); ++v) sums[level][v] += moves[v];
+        sums[as_index(edit.level)].add(mesh_image.levels[as_index(edit.level)].mesh, edit);
     }
-    std::vector<VertexMoves> all(sums.size());
+    EditSolution solution;
+    solution.moves.resize(sums.size());
     for (std::size_t level = 0; level < sums.size(); ++level) {
-        const bool still =
-            std::all_of(sums[level].begin(), sums[level].end(), [](const Vec2d& m) { return m.isZero(0); });
-        if (still) continue;
-        for (const Vec2d& m : sums[level]) all[level].push_back(m.cast<float>());
+        solution.left.push_back(sums[level].solve_injective(mesh_image.levels[level].mesh));
+        const std::vector<Vec2d>& moves = sums[level].moves;
+        if (std::ranges::all_of(moves, [](const Vec2d& m) { return m.isZero(0); })) continue;
+        for (const Vec2d& m : moves) solution.moves[level].push_back(m.cast<float>());
     }
-    return all;
+    return solution;
+}
+
+std::vector<std::string> missed_places(const EditSolution& solution) {
+    std::vector<std::string> lines;
+    for (std::size_t level = 0; level < solution.left.size(); ++level)
+        if (solution.left[level] > 0)
+            lines.push_back(
+                cat("level ", level, ": a handle stays ", std::ceil(solution.left[level] * 100) / 100,
+                    " pixels short of its place: no mesh without folds was found that has it there; "
+                    "smaller moves, fewer pins or a finer level may do"));
+    return lines;
+}
+
+std::vector<VertexMoves> solve_edits(const MeshImage& mesh_image, const WarpEdits& edits) {
+    return edit_solution(mesh_image, edits).moves;
 }
 
 }  // namespace imgmesh

@@ -32,8 +32,9 @@ struct WarpHandle {
 };
 
 enum class WarpSolver {
-    kDirect,  ///< only the vertices of the handles move
-    kArap     ///< all vertices except the pins move, so that the mesh stays as rigid as possible
+    kDirect,    ///< only the vertices of the handles move
+    kArap,      ///< all vertices except the pins move, so that the mesh stays as rigid as possible
+    kInjective  ///< as kArap, but no face turns over; handles may stay short of their places for it
 };
 
 /// One edit of one level. Handles that share a vertex add up.
@@ -47,7 +48,9 @@ struct WarpEdit {
     std::string where;  ///< its name in messages, e.g. "edits.json: /edits/0"
 };
 
-/// All edits count from the unedited image and add up, whatever their levels and their order.
+/// All edits count from the unedited image and add up, whatever their levels and their order. Injective ones
+/// of one level are one edit with all their handles and pins: the sum of two could fold. A vertex that is a
+/// handle in one of them and a pin in another moves.
 using WarpEdits = std::vector<WarpEdit>;
 
 }  // namespace imgmesh

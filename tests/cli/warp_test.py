@@ -123,6 +123,24 @@ class Warp(CliCase):
         self.assertFalse(moved[:8].any())
         self.assertTrue(moved[40:].any())
 
+    def test_injective(self):
+        """A pull that folds the mesh by one solver is a container by the other; one that no mesh allows is told of."""
+        pull = ["--handle", "24,16:17,0", "--pin-border"]
+        self.assert_error(TOOL, ["c.glb", "-o", "x.glb", *pull], 5, "turn over")
+        report = self.report(TOOL, "c.glb", "-o", "w.glb", *pull, "--solver", "injective")
+        self.assertEqual(report["unreached"], 0)
+        self.assertNotIn("warnings", report)
+        self.assertTrue(self.report("imgmesh-info", "w.glb", "--validate")["valid"])
+        image = self.warp(*pull, "--solver", "injective")[1]
+        self.edits({"solver": "injective", "handles": [{"near": [24, 16], "move": [17, 0]}], "pins": [{"border": True}]})
+        np.testing.assert_array_equal(self.warp("--edits", "e.json")[1], image)
+        self.assertNotIn("unreached", self.warp("--handle", "24,16:1,0")[0])
+        report, image = self.warp("--handle", "24,16:400,0", "--pin-border", "--solver", "injective")
+        self.assertGreater(report["unreached"], 300)
+        self.assertEqual(len(report["warnings"]), 1)
+        self.assertIn("c.glb: level 0: a handle stays ", report["warnings"][0])
+        self.assertEqual(image.shape, (32, 48, 3))
+
     def test_size(self):
         report, image = self.warp("--size", "24x16")
         self.assertEqual((report["width"], report["height"], image.shape), (24, 16, (16, 24, 3)))

@@ -179,6 +179,8 @@ class Same(CliCase):
         for options, parameters in ((("--edits", "edits.json"), {"edits": edits}),
                                     (("--edits", "edits.json"), {"edits": self.folder / "edits.json"}),
                                     (("--edits", "edits.json", "--size", "70x40"), {"edits": edits, "size": (70, 40)}),
+                                    (("--handle", "24,14:3,1", "--solver", "injective"),
+                                     {"edits": [{"solver": "injective", "handles": edits[0]["handles"]}]}),
                                     (("--retarget", "36x32"), {"retarget": (36, 32)})):
             with self.subTest(options):
                 self.run_ok("imgmesh-warp", "a.glb", "--image", "in.png", "-o", "a.png", "-q", *options)
@@ -186,6 +188,11 @@ class Same(CliCase):
                 self.assertEqual((self.folder / "python.png").read_bytes(), (self.folder / "a.png").read_bytes())
         self.run_ok("imgmesh-warp", "a.glb", "-o", "b.glb", "-q", "--edits", "edits.json")
         self.assertEqual(self.write(mesh.warp_mesh(edits), "python.glb"), (self.folder / "b.glb").read_bytes())
+        far = [{"solver": "injective", "handles": [{"near": [24, 14], "move": [900, 0]}], "pins": [{"border": True}]}]
+        for call in (lambda: mesh.warp(self.color, far), lambda: mesh.warp_mesh(far), lambda: mesh.displacement(far),
+                     lambda: mesh.st_map(far)):
+            with self.assertWarnsRegex(imgmesh.Warning, "^edits: level 0: a handle stays "):
+                call()
 
     def test_comparison(self):
         self.png(self.color)

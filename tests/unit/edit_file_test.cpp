@@ -48,22 +48,24 @@ TEST_CASE("edits_from_json: the examples are judged as the schema judges them") 
 
 TEST_CASE("edits_from_json: every member arrives") {
     const WarpEdits edits = edits_from_json(R"({"edits": [
+        {"handles": [], "solver": "injective"},
         {"handles": []},
         {"name": "n", "level": 3, "solver": "arap",
          "handles": [{"vertices": [5, 2.0], "move": [1.5, -2], "rotate": 30, "scale": [2, 0.5], "center": [7, 8]},
                      {"near": [1, 2], "scale": 3}],
          "pins": [{"circle": [1, 2, 3]}, {"box": [4, 5, 6, 7]}, {"border": true}, {"vertex": 9}, {"beyond": [9, 8, 7]}]}]})",
                                             "e.json");
-    REQUIRE(edits.size() == 2);
-    CHECK(edits[0].level == 0);
-    CHECK(edits[0].solver == WarpSolver::kDirect);
-    const WarpEdit& e = edits[1];
+    REQUIRE(edits.size() == 3);
+    CHECK(edits[0].solver == WarpSolver::kInjective);
+    CHECK(edits[1].level == 0);
+    CHECK(edits[1].solver == WarpSolver::kDirect);
+    const WarpEdit& e = edits[2];
     CHECK(e.level == 3);
-    CHECK(e.where == "e.json: /edits/1/level");
+    CHECK(e.where == "e.json: /edits/2/level");
     CHECK(e.solver == WarpSolver::kArap);
     REQUIRE(e.handles.size() == 2);
     CHECK(e.handles[0].vertices.vertices == std::vector<Id>{5, 2});
-    CHECK(e.handles[0].vertices.where == "e.json: /edits/1/handles/0/vertices");
+    CHECK(e.handles[0].vertices.where == "e.json: /edits/2/handles/0/vertices");
     CHECK(e.handles[0].move == Vec2d(1.5, -2));
     CHECK(e.handles[0].rotate_deg == 30);
     CHECK(e.handles[0].scale == Vec2d(2, 0.5));

@@ -196,12 +196,57 @@ TEST_CASE("warp_image: pulling one side of an annulus leaves the far side untouc
 
 TEST_CASE("solve_edits: every vertex moved by whole numbers moves every pixel so") {
     const MeshImage m = grid_pyramid(33, 21, {4});
-    for (const WarpSolver solver : {WarpSolver::kDirect, WarpSolver::kArap}) {
+    for (const WarpSolver solver : {WarpSolver::kDirect, WarpSolver::kArap, WarpSolver::kInjective}) {
         WarpEdit edit = move_near({0, 0}, {7, -5}, 0, solver);
         edit.handles[0].vertices = {};
         edit.handles[0].vertices.box = {0, 0, 32, 20};
         for (const Vec2f& d : displacement_field(m, solve_edits(m, {edit})).move) CHECK(d == Vec2f(7, -5));
     }
+}
+
+// Each alone folds nothing, but their sum would: both push the same vertices, and the second pin is pushed
+// away.
+TEST_CASE("edit_solution: injective edits of a level are one") {
+    const MeshImage m = grid_pyramid(61, 61, {10, 3});
+    WarpEdit first = move_near({18, 30}, {20, 0}, 0, WarpSolver::kInjective),
+             second = move_near({30, 42}, {0, -20}, 0, WarpSolver::kInjective);
+    first.pins.resize(1);
+    first.pins[0].border = true;
+    second.pins.resize(1);
+    second.pins[0].near = {42, 30};
+    const WarpEdit coarse = move_near({30, 30}, {2, 3}, 1, WarpSolver::kInjective);
+    const EditSolution solution = edit_solution(m, {first, coarse, second});
+    CHECK(solution.left == std::vector<double>{0, 0});
+    CHECK(missed_places(solution).empty());
+    WarpEdit both = first;
+    both.handles.push_back(second.handles[0]);
+    both.pins.push_back(second.pins[0]);
+    CHECK(solve_edits(m, {both})[0] == solution.moves[0]);
+    CHECK(solve_edits(m, {second, first})[0] == solution.moves[0]);
+    CHECK(solve_edits(m, {coarse})[1] == solution.moves[1]);
+    CHECK_NOTHROW(warp_mesh_image(m, {solution.moves[0], {}}));
+    for (const Vec2f& p : m.levels[0].mesh.position)
+        if (p.minCoeff() == 0 || p.maxCoeff() == 60)
+            CHECK(solution.moves[0][as_index(&p - m.levels[0].mesh.position.data())] == Vec2f(0, 0));
+    // What other solvers do is added.
+    const WarpEdit direct = move_near({60, 60}, {1, 2});
+    const VertexMoves sum = solve_edits(m, {direct, first, second})[0];
+    CHECK(sum.back() == Vec2f(1, 2));
+    CHECK(VertexMoves(sum.begin(), sum.end() - 1) ==
+          VertexMoves(solution.moves[0].begin(), solution.moves[0].end() - 1));
+}
+
+TEST_CASE("edit_solution: tells by level how far a handle stays from its place") {
+    const MeshImage m = grid_pyramid(31, 31, {3, 1});
+    WarpEdit edit = move_near({0, 0}, {40, 40}, 1, WarpSolver::kInjective);
+    edit.pins.resize(1);
+    edit.pins[0].border = true;
+    const EditSolution solution = edit_solution(m, {edit});
+    CHECK(solution.left[0] == 0);
+    CHECK(solution.left[1] > 20);
+    CHECK_NOTHROW(warp_mesh_image(m, solution.moves));
+    REQUIRE(missed_places(solution).size() == 1);
+    CHECK(missed_places(solution)[0].starts_with("level 1: a handle stays "));
 }
 
 TEST_CASE("ArapSolver: fixed vertices turned rigidly turn the mesh") {
