@@ -1,0 +1,89 @@
+// Builds what is served and what is published, from web/ and the engine that the preset web has built:
+//
+//     node web/build.mjs package          web/package/dist, so that web/package can be packed
+//     node web/build.mjs studio OUT       the page, as static files in OUT
+//     node web/build.mjs check            only checks the types
+import { execFileSync } from "node:child_process";
+import { copyFileSync, cpSync, existsSync, mkdirSync, rmSync } from "node:fs";
+import { dirname, join, resolve } from "node:path";
+import { fileURLToPath } from "node:url";
+import * as esbuild from "esbuild";
+
+const web = dirname(fileURLToPath(import.meta.url));
+const root = dirname(web);
+const engine = process.env.IMGMESH_ENGINE ?? join(root, "build/web/bin");
+
+function fail(text) {
+  console.error(`build.mjs: error: ${text}`);
+  process.exit(1);
+}
+
+function checkEngine() {
+  for (const name of ["engine.mjs", "engine.wasm"])
+    if (!existsSync(join(engine, name))) fail(`${join(engine, name)} is not there; ./run build web makes it`);
+}
+
+function tsc(...options) {
+  try {
+    execFileSync(process.execPath, [join(web, "node_modules/typescript/bin/tsc"), ...options], { stdio: "inherit" });
+  } catch {
+    fail("the types do not agree");
+  }
+}
+
+function check() {
+  tsc("-p", join(web, "tsconfig.json"));
+}
+
+function buildPackage() {
+  checkEngine();
+  const folder = join(web, "package"), dist = join(folder, "dist");
+  rmSync(dist, { recursive: true, force: true });
+  tsc("-p", join(folder, "tsconfig.json"));
+  copyFileSync(join(folder, "src/engine.d.mts"), join(dist, "engine.d.mts"));
+  for (const name of ["engine.mjs", "engine.wasm"]) copyFileSync(join(engine, name), join(dist, name));
+  copyFileSync(join(root, "LICENSE"), join(folder, "LICENSE"));
+}
+
+// The package's sources name the loader as it lies beside them once they are built.
+const findEngine = {
+  name: "engine",
+  setup(build) {
+    build.onResolve({ filter: /^\.\/engine\.mjs$/ }, () => ({ path: join(engine, "engine.mjs") }));
+  },
+};
+
+async function buildStudio(out) {
+  checkEngine();
+  check();
+  const studio = join(web, "studio"), assets = join(out, "assets");
+  mkdirSync(assets, { recursive: true });
+  await esbuild.build({
+    entryPoints: { main: join(studio, "src/main.ts"), worker: join(studio, "src/worker/worker.ts") },
+    outdir: assets,
+    bundle: true,
+    format: "esm",
+    target: ["chrome100", "firefox114", "safari16.4"],
+    minify: true,
+    sourcemap: process.env.IMGMESH_SOURCEMAP === "1",
+    legalComments: "none",
+    tsconfig: join(web, "tsconfig.json"),
+    plugins: [findEngine],
+    logLevel: "warning",
+  });
+  await esbuild.build({
+    entryPoints: { style: join(studio, "styles/main.css") },
+    outdir: assets,
+    bundle: true,
+    minify: true,
+    logLevel: "warning",
+  });
+  copyFileSync(join(engine, "engine.wasm"), join(assets, "engine.wasm"));
+  cpSync(join(studio, "static"), out, { recursive: true });
+}
+
+const [what, out] = process.argv.slice(2);
+if (what === "check") check();
+else if (what === "package") buildPackage();
+else if (what === "studio" && out) await buildStudio(resolve(out));
+else fail("expected one of: check, package, studio OUT");

@@ -1,0 +1,41 @@
+// The engine with a friendly surface.
+import { startEngine, type Engine, type EngineSource } from "./engine.js";
+import { Mesh } from "./mesh.js";
+import type { BuildOptions, BuildParameters, Parameter, Pixels } from "./types.js";
+
+/** One instance of the engine. It has memory of its own, which never shrinks while the instance lives. */
+export class Imgmesh {
+  /** For the other classes of this package. */
+  readonly engine: Engine;
+
+  constructor(engine: Engine) {
+    this.engine = engine;
+  }
+
+  get version(): string {
+    return this.engine.version;
+  }
+
+  /** Bytes of memory that the instance has taken. */
+  get memory(): number {
+    return this.engine.HEAPU8.byteLength;
+  }
+
+  /** All parameters that build() takes. */
+  parameters(): Parameter[] {
+    return this.engine.buildParameters();
+  }
+
+  /**
+   * Meshes pixels, as imgmesh-build does: the same mesh and the same pixel map, to the bit. Blocks until it is
+   * done; terminate the worker to stop it. Throws ImgmeshError.
+   */
+  build(pixels: Pixels, parameters: BuildParameters = {}, options: BuildOptions = {}): Mesh {
+    return new Mesh(this.engine.build(pixels, parameters, options, options.onProgress ?? null));
+  }
+}
+
+/** Starts an instance from `source`: where engine.wasm is, its bytes, or a compiled module. */
+export async function startImgmesh(source: EngineSource): Promise<Imgmesh> {
+  return new Imgmesh(await startEngine(source));
+}
