@@ -3,6 +3,7 @@
 
 #include "formats/export/mesh_export.h"
 #include "libcore/base/error.h"
+#include "libcore/image/feature_space.h"
 #include "libcore/metrics/compare_images.h"
 #include "libcore/metrics/metrics.h"
 #include "libcore/recon/draw.h"
@@ -37,6 +38,11 @@ val facts(const MeshValue& mesh) {
         facts.set("width", m.source.width);
         facts.set("height", m.source.height);
         facts.set("hasMask", m.source.has_mask);
+        val channels = val::array();
+        for (const std::string& name : m.source.channel_names) channels.call<void>("push", name);
+        facts.set("channels", channels);
+        facts.set("hasColor", !split_names(m.source.channel_names).color.empty());
+        facts.set("alphaFeature", alpha_feature(m.source));
         facts.set("generator", m.generator);
         val levels = val::array();
         for (std::size_t k = 0; k < m.levels.size(); ++k) {

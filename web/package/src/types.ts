@@ -50,6 +50,12 @@ export interface MeshFacts {
   width: number;
   height: number;
   hasMask: boolean;
+  /** The channels that the mesh is made of, by their names in the file. */
+  channels: string[];
+  /** Whether features begin with a colour, L*, u* and v*. */
+  hasColor: boolean;
+  /** The feature that is alpha, or -1. */
+  alphaFeature: number;
   generator: string;
   /** Level 0 is the finest. */
   levels: LevelFacts[];

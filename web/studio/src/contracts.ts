@@ -100,8 +100,8 @@ export interface ImageView {
   readonly transform: ViewTransform;
   /** Shows two layers beside the split; null shows nothing there. Equal layers hide the split. */
   setSides(left: Layer | null, right: Layer | null): void;
-  /** Returns the function that takes the overlay away. Later overlays lie above, and are asked first. */
-  addOverlay(overlay: Overlay): () => void;
+  /** Returns the function that takes the overlay away. Later overlays lie above, and are asked first; `below` puts one under all. */
+  addOverlay(overlay: Overlay, below?: boolean): () => void;
   /** Draws again before the next frame. */
   invalidate(): void;
   /** Shows the whole image. */

@@ -1,17 +1,61 @@
 // Puts the page together.
 import { App } from "./app";
 import type { Panel } from "./contracts";
+import { makeMeshPanel } from "./mesh/mesh_panel";
+import { decodePicture } from "./open/decode";
+import { addIncoming } from "./open/incoming";
+import { loadEngine } from "./session";
 import { byId } from "./ui/dom";
+import { makeStatusBar } from "./ui/messages";
 import { addTabs } from "./ui/tabs";
+import { makeViewBar } from "./ui/view_bar";
 import { CanvasView } from "./view/image_view";
 
-const view = new CanvasView();
-const status = byId("status");
-const app = new App(view, {
-  tell: (text) => (status.textContent = text),
-  fail: (text) => (status.textContent = text),
-});
+const status = makeStatusBar();
+const view = new CanvasView(() => bar.zoomed());
+const app = new App(view, status);
+const bar = makeViewBar(app, view);
+const meshPanel = makeMeshPanel(app, status.progress);
+bar.onLevel = () => meshPanel.showLevel(bar.level);
+const panels: Panel[] = [meshPanel];
+
 byId("stage").append(view.element);
-const panels: Panel[] = [];
-if (panels.length > 0) addTabs(byId("tabs"), byId("panels"), panels);
-app.tell("Ready.");
+byId("view-bar").append(bar.element);
+addTabs(byId("tabs"), byId("panels"), panels);
+app.on("picture", () => {
+  byId("file-name").textContent = app.picture ? app.picture.name : "";
+});
+
+let opening = 0;
+/** Opens what came in, and meshes it. What was open stays if it cannot be read. */
+async function open(files: File[]): Promise<void> {
+  const mine = ++opening;
+  try {
+    const file = files[0]!;
+    app.tell(`Reading ${file.name} …`);
+    const picture = await decodePicture(file, file.name);
+    if (mine !== opening) return picture.bitmap.close(); // another file came in the meantime
+    app.setPicture(picture);
+    await meshPanel.build();
+  } catch (error) {
+    if (mine === opening) app.fail(error);
+  }
+}
+addIncoming(byId<HTMLInputElement>("open"), (files) => void open(files));
+
+window.addEventListener("keydown", (e) => {
+  if (e.key === "Escape" && !e.defaultPrevented && app.stop()) app.tell("Stopped.");
+});
+
+/** The picture that is there from the start. */
+async function openSample(): Promise<void> {
+  const response = await fetch(new URL("../sample.jpg", import.meta.url));
+  if (!response.ok) throw new Error("The first image could not be loaded; open one of your own.");
+  const picture = await decodePicture(await response.blob(), "sample.jpg");
+  if (opening > 0) return picture.bitmap.close();
+  app.setPicture(picture);
+  // The engine may take a while on a slow connection: the image is seen first.
+  await meshPanel.build();
+}
+loadEngine().catch((error: unknown) => app.fail(error));
+openSample().catch((error: unknown) => app.fail(error));

@@ -49,8 +49,9 @@ export class CanvasView implements ImageView {
     this.invalidate();
   }
 
-  addOverlay(overlay: Overlay): () => void {
-    this.overlays.push(overlay);
+  addOverlay(overlay: Overlay, below = false): () => void {
+    if (below) this.overlays.unshift(overlay);
+    else this.overlays.push(overlay);
     this.invalidate();
     return () => {
       const at = this.overlays.indexOf(overlay);

@@ -1,0 +1,40 @@
+// Image files as pictures.
+import type { Picture } from "../contracts";
+import { readPixels } from "./read_pixels";
+
+/** Twice what fits into the memory that the engine can have is refused before it is decoded into pixels. */
+export const kLargestPixels = 40e6;
+
+/**
+ * Decodes what the browser knows: turned as EXIF says, converted to sRGB where the file has a colour profile.
+ * Throws an Error of one line.
+ */
+export async function decodePicture(file: Blob, name: string): Promise<Picture> {
+  if (file.size === 0) throw new Error(`${name} is empty.`);
+  let bitmap: ImageBitmap;
+  try {
+    bitmap = await createImageBitmap(file, {
+      premultiplyAlpha: "none",
+      imageOrientation: "from-image",
+      colorSpaceConversion: "default",
+    });
+  } catch {
+    throw new Error(`${name} is not an image that this browser can read; PNG, JPEG, WebP and AVIF are.`);
+  }
+  const { width, height } = bitmap;
+  if (width * height > kLargestPixels) {
+    bitmap.close();
+    const millions = Math.round((width * height) / 1e6);
+    throw new Error(
+      `${name} has ${width} × ${height} pixels, ${millions} million. A page has memory for ${kLargestPixels / 1e6} million; imgmesh-build takes any size.`,
+    );
+  }
+  try {
+    return { name, pixels: await readPixels(bitmap), bitmap, original: true };
+  } catch (error) {
+    bitmap.close();
+    if (error instanceof RangeError)
+      throw new Error(`${name} has ${width} × ${height} pixels, for which there is not enough memory.`);
+    throw error;
+  }
+}

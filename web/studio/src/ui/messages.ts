@@ -1,0 +1,47 @@
+// The status bar: what has happened, what is being done, and what went wrong.
+import type { Messages } from "../app";
+import { byId, h, icon } from "./dom";
+import { kIcons } from "./icons";
+
+/** Stages of a build as the engine calls them, in words for everybody. */
+const kStages: Record<string, string> = {
+  collapse: "merging vertices",
+  refine: "moving vertices to lower the error",
+  map: "finding a place for every pixel",
+};
+
+export interface StatusBar extends Messages {
+  /** Shows how far a build is; null when none runs. */
+  progress(fraction: number | null, stage: string): void;
+}
+
+export function makeStatusBar(): StatusBar {
+  const status = byId("status"), problem = byId("problem"), bar = byId<HTMLProgressElement>("progress");
+  const clear = (): void => problem.replaceChildren();
+  let said = ""; // screen readers hear a stage once, not every step of it
+  return {
+    tell(text) {
+      clear();
+      said = "";
+      status.textContent = text;
+    },
+    fail(text) {
+      status.textContent = "";
+      const line = /[.!?]$/.test(text) ? text : `${text}.`;
+      problem.replaceChildren(
+        h("p", {}, line.charAt(0).toUpperCase() + line.slice(1)),
+        h("button", { type: "button", class: "quiet", "aria-label": "Hide this message", click: clear }, icon(kIcons.close)),
+      );
+    },
+    progress(fraction, stage) {
+      bar.hidden = fraction === null;
+      if (fraction === null) return;
+      bar.value = fraction;
+      const text = `Building: ${kStages[stage] ?? stage}. Escape stops it.`;
+      if (text === said) return;
+      if (fraction === 0) clear();
+      said = text;
+      status.textContent = text;
+    },
+  };
+}
