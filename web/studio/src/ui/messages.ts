@@ -10,6 +10,13 @@ const kStages: Record<string, string> = {
   map: "finding a place for every pixel",
 };
 
+/** The engine's messages begin small and have no full stop. Names of files stay as they are. */
+function sentence(text: string): string {
+  const word = text.split(" ", 1)[0]!;
+  const begun = word.includes(".") ? text : text.charAt(0).toUpperCase() + text.slice(1);
+  return /[.!?]$/.test(begun) ? begun : `${begun}.`;
+}
+
 export interface StatusBar extends Messages {
   /** Shows how far a build is; null when none runs. */
   progress(fraction: number | null, stage: string): void;
@@ -27,9 +34,8 @@ export function makeStatusBar(): StatusBar {
     },
     fail(text) {
       status.textContent = "";
-      const line = /[.!?]$/.test(text) ? text : `${text}.`;
       problem.replaceChildren(
-        h("p", {}, line.charAt(0).toUpperCase() + line.slice(1)),
+        h("p", {}, sentence(text)),
         h("button", { type: "button", class: "quiet", "aria-label": "Hide this message", click: clear }, icon(kIcons.close)),
       );
     },
