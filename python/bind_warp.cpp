@@ -60,18 +60,17 @@ OutputSize size_of(const std::optional<std::pair<int, int>>& size) {
 
 using Size = std::optional<std::pair<int, int>>;
 
-// Returns the moves of the edits, and adds to `warnings` which handles are not where they should be.
-std::vector<VertexMoves> moves_of(const MeshImage& mesh_image, const WarpEdits& edits,
-                                  std::vector<std::string>& warnings) {
-    const EditSolution solution = edit_solution(mesh_image, edits);
+// Solves the edits, and tells in `warnings` which handles are not where they should be.
+EditSolution solve(const MeshImage& mesh_image, const WarpEdits& edits, std::vector<std::string>& warnings) {
+    EditSolution solution = edit_solution(mesh_image, edits);
     warnings = missed_places(solution);
     for (std::string& text : warnings) text = "edits: " + text;
-    return solution.moves;
+    return solution;
 }
 
 DisplacementField field_of(const MeshImage& mesh_image, const WarpEdits& edits, const Size& retarget,
                            std::vector<std::string>& warnings) {
-    DisplacementField field = displacement_field(mesh_image, moves_of(mesh_image, edits, warnings));
+    DisplacementField field = edit_field(mesh_image, solve(mesh_image, edits, warnings));
     if (retarget) add_field(field, retarget_field(mesh_image, size_of(retarget)));
     return field;
 }
@@ -113,7 +112,7 @@ MeshPointer warp_mesh(const MeshValue& mesh, const py::object& edits, const std:
     std::vector<std::string> warnings;
     const MeshPointer result = without_gil(threads, [&] {
         const auto warped = std::make_shared<MeshValue>(MeshValue{mesh.container});
-        const std::vector<VertexMoves> moves = moves_of(mesh.mesh_image(), all, warnings);
+        const std::vector<VertexMoves> moves = solve(mesh.mesh_image(), all, warnings).moves;
         MeshImage& mesh_image = warped->container.mesh_image;
         mesh_image = warp_mesh_image(std::move(mesh_image), moves);
         mesh_image.generator = kGenerator;

@@ -195,7 +195,7 @@ Report warp_one(const Options& o, Context& context) {
     const std::vector<VertexMoves>& moves = solution.moves;
     for (const std::string& text : missed_places(solution))
         context.warnings.push_back(cat(o.input, ": ", text));
-    DisplacementField field = displacement_field(mesh_image, moves);
+    DisplacementField field = edit_field(mesh_image, solution);
     if (o.retarget) add_field(field, retarget_field(mesh_image, o.size));
     Report report = {{"input", o.input},
                      {"edits", edits.size()},

@@ -4,6 +4,7 @@
 
 #include "libcore/base/parallel.h"
 #include "libcore/mesh/grid_area.h"
+#include "libcore/warp/cover.h"
 
 namespace imgmesh {
 namespace {
@@ -65,24 +66,24 @@ std::vector<std::size_t> outside_beside(const DisplacementField& field,
     return found;
 }
 
-}  // namespace
-
-DisplacementField displacement_field(const MeshImage& mesh_image, const std::vector<VertexMoves>& moves) {
+// maps  through which the pixels of each level move
+DisplacementField field_through(const MeshImage& mesh_image, const std::vector<VertexMoves>& moves,
+                                const std::vector<const PixelMap*>& maps) {
     const SourceInfo& source = mesh_image.source;
     DisplacementField field{source, std::vector<Vec2f>(source.pixel_count(), Vec2f(0, 0)),
                             std::vector<PixelRole>(source.pixel_count(), PixelRole::kInside),
                             source.has_mask};
     std::vector<LevelMove> levels;
-    std::vector<const PixelMap*> maps;
+    std::vector<const PixelMap*> through;
     for (std::size_t k = 0; k < moves.size(); ++k) {
         if (moves[k].empty()) continue;
         levels.push_back(level_move(mesh_image.levels[k].mesh, moves[k]));
-        maps.push_back(&mesh_image.levels[k].map);
+        through.push_back(maps[k]);
     }
     parallel_blocks(0, field.height, kGrainRows, [&](int first, int last) {
         for (int y = first; y < last; ++y) {
             for (std::size_t k = 0; k < levels.size(); ++k)
-                add_row(levels[k], maps[k]->row(y), field.move.data() + field.row_begin(y));
+                add_row(levels[k], through[k]->row(y), field.move.data() + field.row_begin(y));
             if (!field.has_mask) continue;
             PixelRole* role = field.role.data() + field.row_begin(y);
             for (const PixelCoord& c : mesh_image.levels[0].map.row(y))
@@ -90,6 +91,25 @@ DisplacementField displacement_field(const MeshImage& mesh_image, const std::vec
         }
     });
     return field;
+}
+
+}  // namespace
+
+DisplacementField displacement_field(const MeshImage& mesh_image, const std::vector<VertexMoves>& moves) {
+    std::vector<const PixelMap*> maps;
+    for (const Level& level : mesh_image.levels) maps.push_back(&level.map);
+    return field_through(mesh_image, moves, maps);
+}
+
+DisplacementField edit_field(const MeshImage& mesh_image, const EditSolution& solution) {
+    std::vector<PixelMap> by_place(solution.moves.size());
+    std::vector<const PixelMap*> maps;
+    for (std::size_t k = 0; k < mesh_image.levels.size(); ++k) {
+        const bool is_by_place = solution.injective[k] && !solution.moves[k].empty();
+        if (is_by_place) by_place[k] = map_by_place(mesh_image.levels[k]);
+        maps.push_back(is_by_place ? &by_place[k] : &mesh_image.levels[k].map);
+    }
+    return field_through(mesh_image, solution.moves, maps);
 }
 
 void extend_outside(DisplacementField& field, std::vector<float>& alpha) {

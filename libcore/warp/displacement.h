@@ -33,6 +33,11 @@ struct DisplacementField : GridSize {
 /// The result is the same for any number of threads. Takes O(pixels) time for each level with moves.
 DisplacementField displacement_field(const MeshImage& mesh_image, const std::vector<VertexMoves>& moves);
 
+/// As displacement_field(mesh_image, solution.moves), but pixels move with the face that covers them where a
+/// level has injective edits: through the pixel map, which follows edges of the image, pixels would fold on
+/// faces that do not. Throws Error(kUnsupported) for faces of such a level that lie over one another.
+DisplacementField edit_field(const MeshImage& mesh_image, const EditSolution& solution);
+
 /// Gives pixels outside the mask a move, ring by ring outwards: the mean of their (up to eight) neighbours
 /// that have one. The first ring becomes kGhost. A pixel outside whose own alpha is neither 0 nor 1 is a soft
 /// boundary: it becomes kInside, and the ring goes around it. `alpha` (size W * H, or empty) becomes 0 for

@@ -157,6 +157,7 @@ struct LevelSum {
         else
             add(held.moves);
     }
+    bool has_injective() const { return std::ranges::count(injective.held, 1) > 0; }
     // Returns how far handles stay from their places.
     double solve_injective(const BaseMesh& mesh) {
         const std::vector<Id> ids = injective.ids();
@@ -190,6 +191,7 @@ EditSolution edit_solution(const MeshImage& mesh_image, const WarpEdits& edits) 
     EditSolution solution;
     solution.moves.resize(sums.size());
     for (std::size_t level = 0; level < sums.size(); ++level) {
+        solution.injective.push_back(sums[level].has_injective());
         solution.left.push_back(sums[level].solve_injective(mesh_image.levels[level].mesh));
         const std::vector<Vec2d>& moves = sums[level].moves;
         if (std::ranges::all_of(moves, [](const Vec2d& m) { return m.isZero(0); })) continue;

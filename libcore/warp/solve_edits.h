@@ -27,6 +27,7 @@ struct EditSolution {
     /// Of each level: the largest distance of a handle of its injective edits from where they ask it to go
     /// [pixels]. Not 0 only where no mesh without folds was found.
     std::vector<double> left;
+    std::vector<bool> injective;  ///< of each level: whether it has injective edits
 };
 EditSolution edit_solution(const MeshImage& mesh_image, const WarpEdits& edits);
 

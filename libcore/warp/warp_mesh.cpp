@@ -4,8 +4,7 @@
 #include <cmath>
 
 #include "libcore/base/error.h"
-#include "libcore/mesh/bounded_raster.h"
-#include "libcore/mesh/trivial_map.h"
+#include "libcore/warp/cover.h"
 
 namespace imgmesh {
 namespace {
@@ -13,42 +12,18 @@ namespace {
 // The range that docs/format.md allows.
 constexpr float kFarthest = 131072;
 
-// Returns the pixel with a face nearest to a point, searched in growing squares; of equal ones the first.
-std::size_t nearest_pixel(const PixelMap& map, const Vec2f& p) {
-    const int cx = std::clamp(as_int(std::lround(p.x())), 0, map.width - 1),
-              cy = std::clamp(as_int(std::lround(p.y())), 0, map.height - 1);
-    std::size_t best = 0;
-    float least = INFINITY;
-    for (int r = 0; r <= std::max(map.width, map.height) && least == INFINITY; ++r)
-        for (int y = std::max(cy - r, 0); y <= std::min(cy + r, map.height - 1); ++y)
-            for (int x = std::max(cx - r, 0); x <= std::min(cx + r, map.width - 1); ++x) {
-                const std::size_t i = map.index(x, y);
-                const float distance = (Vec2f(static_cast<float>(x), static_cast<float>(y)) - p).norm();
-                if (map[i].face == kNone || distance >= least) continue;
-                least = distance;
-                best = i;
-            }
-    return best;
-}
-
 // Adds the moves that the mesh of `level` has at the places `at`. They are linear over each of its faces, in
 // the face that covers the pixel nearest to the place. The pixel map is not used: it follows edges of the
 // image closely and so changes too fast for vertices. Fine faces would turn over where coarse ones are merely
 // stretched.
 void add_moves(const Level& level, const VertexMoves& moves, const std::vector<Vec2f>& at,
                std::vector<Vec2f>& sum) {
-    check_cover(level.mesh, sample_grid(level.map.width, level.map.height, 1));
-    const PixelMap cover = trivial_map(level.mesh, level.map.width, level.map.height);
+    const PixelMap cover = cover_of(level);
     for (std::size_t i = 0; i < at.size(); ++i) {
-        const PixelCoord& c = cover[nearest_pixel(cover, at[i])];
+        const PixelCoord c = coord_near(level.mesh, cover, at[i]);
         if (c.face == kNone) continue;
         const auto [ia, ib, ic] = level.mesh.faces[c.face];
-        const Vec2f &pa = level.mesh.position[ia], &pb = level.mesh.position[ib],
-                    &pc = level.mesh.position[ic];
-        const double area = signed_area2(pa, pb, pc);
-        const auto u = static_cast<float>(signed_area2(at[i], pc, pa) / area),
-                   v = static_cast<float>(signed_area2(at[i], pa, pb) / area);
-        sum[i] += moves[ia] + u * (moves[ib] - moves[ia]) + v * (moves[ic] - moves[ia]);
+        sum[i] += moves[ia] + c.u * (moves[ib] - moves[ia]) + c.v * (moves[ic] - moves[ia]);
     }
 }
 

@@ -236,6 +236,58 @@ TEST_CASE("edit_solution: injective edits of a level are one") {
           VertexMoves(solution.moves[0].begin(), solution.moves[0].end() - 1));
 }
 
+// A pixel map that crowds pixels at one corner of each face folds them where faces are stretched unevenly; by
+// their place they do not.
+TEST_CASE("edit_field: pixels of injective edits move with the face that covers them") {
+    MeshImage m = grid_pyramid(61, 61, {6, 2});
+    WarpEdit edit = move_near({30, 30}, {14, 6}, 0, WarpSolver::kInjective);
+    edit.pins.resize(1);
+    edit.pins[0].border = true;
+    const EditSolution solution = edit_solution(m, {edit});
+    const DisplacementField expected = displacement_field(m, solution.moves);
+    CHECK(folded_cells(expected) == 0);
+    PixelMap& map = m.levels[0].map;
+    for (std::size_t i = 0; i < map.pixel_count(); ++i)
+        map[i] = {map[i].face, map[i].u * map[i].u, map[i].v * map[i].v};
+    CHECK(folded_cells(displacement_field(m, solution.moves)) > 0);
+    CHECK(edit_field(m, solution).move == expected.move);
+    edit.solver = WarpSolver::kArap;
+    const EditSolution rigid = edit_solution(m, {edit});
+    CHECK(edit_field(m, rigid).move == displacement_field(m, rigid.moves).move);
+}
+
+// Pixels of the mask that no face covers move as the face beside them does.
+TEST_CASE("edit_field: a pixel beside the mesh moves along") {
+    MeshImage m = grid_pyramid(41, 41, {4});
+    Level& level = m.levels[0];
+    std::erase_if(level.mesh.faces, [&](const Face& face) {
+        return std::ranges::all_of(face, [&](Id v) { return level.mesh.position[v].x() > 25; });
+    });
+    m.source.has_mask = true;
+    const PixelMap cover = trivial_map(level.mesh, 41, 41);
+    std::size_t beside = 0;
+    for (std::size_t i = 0; i < cover.pixel_count(); ++i) {
+        if (cover[i].face != kNone) continue;
+        level.map[i] = {};
+        // Two columns of pixels on no face are in the mask.
+        if (cover.x_of(i) > 1 && cover[i - 2].face != kNone) {
+            level.map[i] = {cover[i - 2].face, 0, 0};
+            ++beside;
+        }
+    }
+    REQUIRE(beside > 30);
+    WarpEdit edit = move_near({0, 20}, {-6, 2}, 0, WarpSolver::kInjective);
+    edit.pins.resize(1);
+    edit.pins[0].box = {19, 0, 21, 40};
+    const DisplacementField field = edit_field(m, edit_solution(m, {edit}));
+    for (std::size_t i = 0; i < field.move.size(); ++i)
+        if (field.role[i] == PixelRole::kInside && cover.x_of(i) > 0) {
+            const bool left_inside = field.role[i - 1] == PixelRole::kInside;
+            if (left_inside) CHECK((field.move[i] - field.move[i - 1]).norm() < 0.9f);
+        }
+    CHECK(folded_cells(field) == 0);
+}
+
 TEST_CASE("edit_solution: tells by level how far a handle stays from its place") {
     const MeshImage m = grid_pyramid(31, 31, {3, 1});
     WarpEdit edit = move_near({0, 0}, {40, 40}, 1, WarpSolver::kInjective);
