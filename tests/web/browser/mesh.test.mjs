@@ -86,7 +86,7 @@ test("files are dropped and chosen; what cannot be read is one line, and the pag
   assert.match(await problem(page), /broken\.png is not an image/);
   await drop(page, file("empty.png", Buffer.alloc(0)));
   await page.locator("#problem", { hasText: "empty.png is empty." }).waitFor();
-  assert.equal(await page.locator("#file-name").textContent(), "sample.jpg");
+  assert.equal(await page.locator("#file-name").textContent(), "sample.jpg, 768 × 512");
   for (const [name, bytes] of [["disc.png", disc(90)], ["dot.png", png(1, 1, () => [9, 99, 199, 255])], ["line.png", png(1, 60, (x, y) => [y, y, y, 255])]]) {
     await drop(page, file(name, bytes));
     await page.locator("#file-name", { hasText: name }).waitFor();

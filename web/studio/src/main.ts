@@ -23,7 +23,8 @@ byId("stage").append(view.element);
 byId("view-bar").append(bar.element);
 addTabs(byId("tabs"), byId("panels"), panels);
 app.on("picture", () => {
-  byId("file-name").textContent = app.picture ? app.picture.name : "";
+  const { picture } = app;
+  byId("file-name").textContent = picture ? `${picture.name}, ${picture.pixels.width} × ${picture.pixels.height}` : "";
 });
 
 let opening = 0;

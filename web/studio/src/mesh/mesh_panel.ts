@@ -159,8 +159,9 @@ export function makeMeshPanel(app: App, progress: (fraction: number | null, stag
     title: "Mesh",
     element: h(
       "div", { class: "panel" }, figures.element, warnings,
-      h("form", { submit: (e: Event) => e.preventDefault() }, vertices.element, preset.element, shape.element, smoothness.element, alpha.element, levels.element),
-      h("div", { class: "actions" }, main, h("label", { class: "check" }, live, "Build whenever a setting changes")),
+      h("form", { submit: (e: Event) => e.preventDefault() }, vertices.element, preset.element, shape.element, smoothness.element, alpha.element, levels.element,
+        h("label", { class: "check" }, live, "Build whenever a setting changes")),
+      h("div", { class: "actions" }, main),
     ),
     show: () => {},
     hide: () => {},

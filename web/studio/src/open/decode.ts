@@ -2,8 +2,8 @@
 import type { Picture } from "../contracts";
 import { readPixels } from "./read_pixels";
 
-/** Twice what fits into the memory that the engine can have is refused before it is decoded into pixels. */
-export const kLargestPixels = 40e6;
+/** What fits into the 4 GB that the engine can have: it takes 105 bytes a pixel, and more with alpha. */
+export const kLargestPixels = 32e6;
 
 /**
  * Decodes what the browser knows: turned as EXIF says, converted to sRGB where the file has a colour profile.

@@ -1,10 +1,23 @@
 // The bar under the view: what the two sides show, the wireframe, the level, and the zoom.
 import type { App } from "../app";
-import type { Layer } from "../contracts";
+import type { Layer, Overlay } from "../contracts";
 import { kChoices, MeshLayers, type Choice } from "../layers/choices";
 import type { CanvasView } from "../view/image_view";
 import { h, icon } from "./dom";
 import { kIcons } from "./icons";
+
+/** An overlay that is drawn on the right of the split alone. */
+function rightOf(view: CanvasView, overlay: Overlay): Overlay {
+  return {
+    draw(context, t) {
+      const from = view.splitAt();
+      context.beginPath();
+      context.rect(from, 0, t.width - from, t.height);
+      context.clip();
+      overlay.draw?.(context, t);
+    },
+  };
+}
 
 export interface ViewBar {
   readonly element: HTMLElement;
@@ -23,7 +36,10 @@ export function makeViewBar(app: App, view: CanvasView): ViewBar {
     return list;
   };
   const left = select("Left of the split", "picture"), right = select("Right of the split", "gouraud");
-  const wire = h("input", { type: "checkbox", id: "wire" });
+  const wire = h("select", { id: "wire", "aria-label": "Wireframe", title: "The edges of the triangles" },
+    h("option", { value: "none" }, "No wireframe"), h("option", { value: "right" }, "Wireframe right"),
+    h("option", { value: "both" }, "Wireframe on both"));
+  wire.value = "right";
   const level = h("select", { "aria-label": "Level of the mesh", title: "Level of the mesh: 1 is the finest", hidden: true });
   const zoom = h("output", { class: "zoom", title: "Size of an image pixel on the screen" });
   const button = (label: string, path: string, action: () => void): HTMLButtonElement =>
@@ -41,10 +57,11 @@ export function makeViewBar(app: App, view: CanvasView): ViewBar {
   async function apply(): Promise<void> {
     const mine = ++request;
     const [a, b] = await Promise.all([layerOf(left.value as Choice), layerOf(right.value as Choice)]);
-    const overlay = wire.checked && layers ? await layers.wire() : null;
+    const where = wire.value;
+    const edges = where !== "none" && layers ? await layers.wire() : null;
     if (mine !== request) return;
     removeWire?.();
-    removeWire = overlay ? view.addOverlay(overlay, true) : null;
+    removeWire = edges ? view.addOverlay(where === "right" ? rightOf(view, edges) : edges, true) : null;
     view.setSides(a, b);
   }
   const show = (): void => {
@@ -55,8 +72,7 @@ export function makeViewBar(app: App, view: CanvasView): ViewBar {
     element: h(
       "div", { class: "view-bar", role: "group", "aria-label": "View" },
       h("div", { class: "sides" }, left, button("Swap the sides", kIcons.swap, swap), right),
-      h("label", { class: "check" }, wire, "Wireframe"),
-      level,
+      h("div", { class: "more" }, wire, level),
       h("div", { class: "zooms" }, button("Zoom out", kIcons.minus, () => view.zoom(1 / 1.25)), zoom,
         button("Zoom in", kIcons.plus, () => view.zoom(1.25)), button("Show all of the image", kIcons.fit, () => view.fit())),
     ),

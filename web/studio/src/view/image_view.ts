@@ -77,6 +77,11 @@ export class CanvasView implements ImageView {
     this.invalidate();
   }
 
+  /** Where the right side begins, in CSS pixels: at 0 where there is only one. */
+  splitAt(): number {
+    return this.split.element.hidden ? 0 : this.split.place(this.transform);
+  }
+
   private resize(): void {
     const ratio = window.devicePixelRatio || 1;
     const { clientWidth, clientHeight } = this.element;
