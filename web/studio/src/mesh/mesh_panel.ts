@@ -3,13 +3,16 @@ import type { App } from "../app";
 import type { Panel } from "../contracts";
 import { choiceField, sliderField } from "../ui/fields";
 import { h } from "../ui/dom";
+import { sentence } from "../ui/messages";
 import { makeFigures } from "./figures";
 import {
-  hasAlpha, kLeastVertices, kPresets, mostVertices, parametersOf, usualVertices, type AlphaUse, type PresetName, type Settings,
+  hasAlpha, kAlphaUses, kLeastVertices, kPresets, mostVertices, parametersOf, usualVertices, type AlphaUse, type PresetName, type Settings,
 } from "./settings";
 
 /** Images up to this size are meshed again whenever a setting changes. */
 const kQuickPixels = 3e6;
+/** How long a setting must rest before it is used, in ms. */
+const kPause = 200;
 const kMostShape = 2;
 const kLeastSmoothness = 1, kMostSmoothness = 1000;
 
@@ -29,8 +32,11 @@ export function makeMeshPanel(app: App, progress: (fraction: number | null, stag
   live.checked = true;
   let level = 0;
 
+  // Keys that are held down change a setting many times a second.
+  let soon = 0;
   const changed = (done = true): void => {
-    if (done && live.checked && app.picture) void build();
+    window.clearTimeout(soon);
+    if (done && live.checked && app.picture) soon = window.setTimeout(() => void build(), kPause);
     else main.classList.toggle("waiting", done);
   };
 
@@ -77,12 +83,7 @@ export function makeMeshPanel(app: App, progress: (fraction: number | null, stag
     showPreset();
     changed();
   });
-  const alpha = choiceField<AlphaUse>("Transparency", [
-    { id: "auto", label: "Automatic", help: "Soft transparency is kept; where it only cuts out, it is a mask." },
-    { id: "keep", label: "Keep it soft", help: "Transparency is part of the mesh, as colour is." },
-    { id: "cut", label: "Cut out", help: "Only what is opaque enough is meshed." },
-    { id: "ignore", label: "Ignore it", help: "The whole rectangle is meshed by its colours." },
-  ], (value) => {
+  const alpha = choiceField<AlphaUse>("Transparency", kAlphaUses, (value) => {
     settings.alpha = value;
     changed();
   });
@@ -114,6 +115,7 @@ export function makeMeshPanel(app: App, progress: (fraction: number | null, stag
   }
 
   async function build(): Promise<void> {
+    window.clearTimeout(soon);
     main.classList.remove("waiting");
     if (!app.picture) return app.tell("Open an image first.");
     progress(0, "starting");
@@ -147,7 +149,7 @@ export function makeMeshPanel(app: App, progress: (fraction: number | null, stag
   };
   app.on("mesh", () => {
     level = Math.min(level, (app.facts?.levels.length ?? 1) - 1);
-    const lines = app.facts?.warnings ?? [];
+    const lines = (app.facts?.warnings ?? []).map(inWordsOfThePage);
     warnings.replaceChildren(...lines.map((line) => h("li", {}, line)));
     warnings.hidden = lines.length === 0;
     showFigures();
@@ -171,6 +173,12 @@ export function makeMeshPanel(app: App, progress: (fraction: number | null, stag
       showFigures();
     },
   };
+}
+
+/** The engine names settings as its callers in JavaScript write them. */
+function inWordsOfThePage(line: string): string {
+  const label = (id: string): string => kAlphaUses.find((use) => use.id === id)?.label ?? id;
+  return sentence(line.replace(/\balpha: "(\w+)"/g, (_, id: string) => `Transparency “${label(id)}”`));
 }
 
 /** A slider whose steps are factors. */

@@ -20,6 +20,13 @@ export const kPresets: readonly {
 
 export type AlphaUse = NonNullable<BuildOptions["alpha"]>;
 
+export const kAlphaUses: readonly { id: AlphaUse; label: string; help: string }[] = [
+  { id: "auto", label: "Automatic", help: "Soft transparency is kept; where it only cuts out, it is a mask." },
+  { id: "keep", label: "Keep it soft", help: "Transparency is part of the mesh, as colour is." },
+  { id: "cut", label: "Cut out", help: "Only what is opaque enough is meshed." },
+  { id: "ignore", label: "Ignore it", help: "The whole rectangle is meshed by its colours." },
+];
+
 export interface Settings {
   preset: PresetName;
   /** null: 1 % of the pixels, as imgmesh-build takes where nothing is said. */

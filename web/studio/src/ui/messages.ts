@@ -11,7 +11,7 @@ const kStages: Record<string, string> = {
 };
 
 /** The engine's messages begin small and have no full stop. Names of files stay as they are. */
-function sentence(text: string): string {
+export function sentence(text: string): string {
   const word = text.split(" ", 1)[0]!;
   const begun = word.includes(".") ? text : text.charAt(0).toUpperCase() + text.slice(1);
   return /[.!?]$/.test(begun) ? begun : `${begun}.`;

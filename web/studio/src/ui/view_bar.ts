@@ -38,7 +38,7 @@ export function makeViewBar(app: App, view: CanvasView): ViewBar {
   const left = select("Left of the split", "picture"), right = select("Right of the split", "gouraud");
   const wire = h("select", { id: "wire", "aria-label": "Wireframe", title: "The edges of the triangles" },
     h("option", { value: "none" }, "No wireframe"), h("option", { value: "right" }, "Wireframe right"),
-    h("option", { value: "both" }, "Wireframe on both"));
+    h("option", { value: "both" }, "Wireframe both"));
   wire.value = "right";
   const level = h("select", { "aria-label": "Level of the mesh", title: "Level of the mesh: 1 is the finest", hidden: true });
   const zoom = h("output", { class: "zoom", title: "Size of an image pixel on the screen" });

@@ -26,8 +26,8 @@ async function start(module: WebAssembly.Module): Promise<Methods> {
 
 function plain(error: unknown): PlainError {
   if (!(error instanceof Error)) return { name: "Error", message: String(error) };
-  // The engine's way to say that it has no memory left, where no exception of C++ can be thrown any more.
-  if (error instanceof WebAssembly.RuntimeError || error instanceof RangeError)
+  // Arrays of JavaScript that do not fit either.
+  if (error instanceof RangeError)
     return { name: "ImgmeshError", kind: "memory", message: "the image needs more memory than there is" };
   return { name: error.name, message: error.message, kind: (error as { kind?: string }).kind };
 }
@@ -53,7 +53,10 @@ async function call(id: number, name: string, args: unknown): Promise<void> {
     const value = await method(args as never, report);
     scope.postMessage({ type: "result", id, value }, [...buffersIn(value)]);
   } catch (error) {
-    scope.postMessage({ type: "error", id, error: plain(error) });
+    // The engine has stopped in the middle of its work, and cannot be used any more.
+    const lost = error instanceof WebAssembly.RuntimeError;
+    if (lost) scope.postMessage({ type: "lost", error: { name: "SessionLost", message: `The engine has failed: ${error.message}` } });
+    else scope.postMessage({ type: "error", id, error: plain(error) });
   }
 }
 
