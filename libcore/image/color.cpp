@@ -1,7 +1,6 @@
 // Sources: IEC 61966-2-1 (sRGB), ITU-R BT.709, Adobe RGB (1998), SMPTE EG 432-1 (P3); CIE 15 for L*u*v*.
 #include "libcore/image/color.h"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <array>
 #include <cctype>
@@ -61,22 +60,46 @@ double encode_curve(ColorSpace space, double x) {
 
 using Matrix = Eigen::Matrix3d;
 
+// Eigen sums three products in another order where it has vector instructions than where it has none. These
+// sum from left to right, so that colours are the same on any machine, WebAssembly's too.
+Vec3d times(const Matrix& m, const Vec3d& v) {
+    Vec3d out;
+    for (int r = 0; r < 3; ++r) out[r] = m(r, 0) * v[0] + m(r, 1) * v[1] + m(r, 2) * v[2];
+    return out;
+}
+Matrix times(const Matrix& a, const Matrix& b) {
+    Matrix out;
+    for (int c = 0; c < 3; ++c) out.col(c) = times(a, Vec3d(b.col(c)));
+    return out;
+}
+// By the transposed cofactors.
+Matrix inverse(const Matrix& m) {
+    Matrix adjoint;
+    for (int r = 0; r < 3; ++r)
+        for (int c = 0; c < 3; ++c) {
+            const int i = (c + 1) % 3, j = (c + 2) % 3, k = (r + 1) % 3, l = (r + 2) % 3;
+            adjoint(r, c) = m(i, k) * m(j, l) - m(i, l) * m(j, k);
+        }
+    const double determinant = m(0, 0) * adjoint(0, 0) + m(0, 1) * adjoint(1, 0) + m(0, 2) * adjoint(2, 0);
+    return adjoint / determinant;
+}
+
 // Linear RGB of the space's primaries -> XYZ, white D65 (0.9505, 1, 1.089) at RGB = 1.
 Matrix xyz_matrix(double rx, double ry, double gx, double gy, double bx, double by) {
     Matrix m;
     m << rx / ry, gx / gy, bx / by, 1, 1, 1, (1 - rx - ry) / ry, (1 - gx - gy) / gy, (1 - bx - by) / by;
     const Vec3d white(kWhiteX / kWhiteY, 1.0, (1 - kWhiteX - kWhiteY) / kWhiteY);
-    const Vec3d scale = m.inverse() * white;
+    const Vec3d scale = times(inverse(m), white);
     return m * scale.asDiagonal();
 }
 
 struct Matrices {
     Matrix srgb_to_xyz = xyz_matrix(0.64, 0.33, 0.30, 0.60, 0.15, 0.06);
-    Matrix xyz_to_srgb = srgb_to_xyz.inverse();
-    Matrix adobe_to_srgb = xyz_to_srgb * xyz_matrix(0.64, 0.33, 0.21, 0.71, 0.15, 0.06);
-    Matrix srgb_to_adobe = adobe_to_srgb.inverse();
-    Matrix p3_to_srgb = xyz_to_srgb * xyz_matrix(0.680, 0.320, 0.265, 0.690, 0.150, 0.060);
-    Matrix srgb_to_p3 = p3_to_srgb.inverse();
+    Matrix xyz_to_srgb = inverse(srgb_to_xyz);
+    Matrix adobe_to_srgb = times(xyz_to_srgb, xyz_matrix(0.64, 0.33, 0.21, 0.71, 0.15, 0.06));
+    Matrix srgb_to_adobe = inverse(adobe_to_srgb);
+    Matrix p3_to_srgb = times(xyz_to_srgb, xyz_matrix(0.680, 0.320, 0.265, 0.690, 0.150, 0.060));
+    Matrix srgb_to_p3 = inverse(p3_to_srgb);
 };
 const Matrices& matrices() {
     static const Matrices kMatrices;
@@ -108,15 +131,15 @@ Vec3f linear_from_encoded(ColorSpace space, const Vec3f& encoded) {
     Vec3d linear;
     for (int c = 0; c < 3; ++c)
         linear[c] = std::copysign(decode_curve(space, std::abs(double(encoded[c]))), double(encoded[c]));
-    if (space == ColorSpace::kAdobeRgb) linear = matrices().adobe_to_srgb * linear;
-    if (space == ColorSpace::kDisplayP3) linear = matrices().p3_to_srgb * linear;
+    if (space == ColorSpace::kAdobeRgb) linear = times(matrices().adobe_to_srgb, linear);
+    if (space == ColorSpace::kDisplayP3) linear = times(matrices().p3_to_srgb, linear);
     return linear.cast<float>();
 }
 
 Vec3f encoded_from_linear(ColorSpace space, const Vec3f& linear) {
     Vec3d x = linear.cast<double>();
-    if (space == ColorSpace::kAdobeRgb) x = matrices().srgb_to_adobe * x;
-    if (space == ColorSpace::kDisplayP3) x = matrices().srgb_to_p3 * x;
+    if (space == ColorSpace::kAdobeRgb) x = times(matrices().srgb_to_adobe, x);
+    if (space == ColorSpace::kDisplayP3) x = times(matrices().srgb_to_p3, x);
     Vec3f encoded;
     for (int c = 0; c < 3; ++c)
         encoded[c] = static_cast<float>(std::copysign(encode_curve(space, std::abs(x[c])), x[c]));
@@ -125,13 +148,13 @@ Vec3f encoded_from_linear(ColorSpace space, const Vec3f& linear) {
 
 Eigen::Matrix3d rgb_from_xyz(ColorSpace space) {
     const Matrices& m = matrices();
-    if (space == ColorSpace::kAdobeRgb) return m.srgb_to_adobe * m.xyz_to_srgb;
-    if (space == ColorSpace::kDisplayP3) return m.srgb_to_p3 * m.xyz_to_srgb;
+    if (space == ColorSpace::kAdobeRgb) return times(m.srgb_to_adobe, m.xyz_to_srgb);
+    if (space == ColorSpace::kDisplayP3) return times(m.srgb_to_p3, m.xyz_to_srgb);
     return m.xyz_to_srgb;
 }
 
 Vec3f luv_from_linear(const Vec3f& linear) {
-    const Vec3d xyz = matrices().srgb_to_xyz * linear.cast<double>();
+    const Vec3d xyz = times(matrices().srgb_to_xyz, Vec3d(linear.cast<double>()));
     const double y = xyz[1];
     const double lightness = y > kLinearLimit ? 116 * std::cbrt(y) - 16 : kLinearSlope * y;
     const double sum = xyz[0] + 15 * y + 3 * xyz[2];
@@ -153,7 +176,7 @@ Vec3f linear_from_luv(const Vec3f& luv) {
     constexpr double kLeastV = 1e-3;
     v = std::max(v, kLeastV);
     const Vec3d xyz(y * 9 * u / (4 * v), y, y * (12 - 3 * u - 20 * v) / (4 * v));
-    return (matrices().xyz_to_srgb * xyz).cast<float>();
+    return times(matrices().xyz_to_srgb, xyz).cast<float>();
 }
 
 namespace {

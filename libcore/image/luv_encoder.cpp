@@ -67,11 +67,15 @@ void LuvEncoder::encode_row(std::span<const float> luv, int count, float* out, i
                 for (int i = 0; i < n; ++i) dst[i * stride] = channel[i];
                 continue;
             }
-            channel = channel.max(0.0f).min(1.0f).sqrt() * float(kCurveSteps);
+            float place[kBlock] = {};  // in the curve
+            Eigen::Map<Plane>(place, n) = channel.max(0.0f).min(1.0f);
+            // Eigen's own square root of several floats is the processor's estimate, which each maker has of
+            // its own.
+            for (float& x : place) x = std::sqrt(x) * float(kCurveSteps);
             for (int i = 0; i < n; ++i) {
-                const int step = static_cast<int>(channel[i]);
+                const int step = static_cast<int>(place[i]);
                 const float* entry = curve_.data() + step;
-                dst[i * stride] = entry[0] + (channel[i] - static_cast<float>(step)) * (entry[1] - entry[0]);
+                dst[i * stride] = entry[0] + (place[i] - static_cast<float>(step)) * (entry[1] - entry[0]);
             }
         }
     }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "libcore/base/dot.h"
 #include "libcore/base/for_each_id.h"
 #include "libcore/image/color.h"
 #include "libcore/mesh/vertex_coloring.h"
@@ -116,8 +117,8 @@ void Refiner::fit_colors() {
         double e = sums[f].ee;
         for (std::size_t i = 0; i < 3; ++i) {
             const Vec3d& di = change[mesh_.face(f)[i]];
-            e += 2 * di.dot(sums[f].we[i]);
-            for (std::size_t j = 0; j < 3; ++j) e += sums[f].ww[i][j] * di.dot(change[mesh_.face(f)[j]]);
+            e += 2 * dot(di, sums[f].we[i]);
+            for (std::size_t j = 0; j < 3; ++j) e += sums[f].ww[i][j] * dot(di, change[mesh_.face(f)[j]]);
         }
         error_[f] = std::max(0.0, e);
     });
@@ -142,7 +143,7 @@ bool Refiner::place(const OneRing& ring, const Vec2f& position, const Vec3f& col
     const Vec3d change = (out.color - color).cast<double>();
     for (std::size_t k = 0; k < ring.faces; ++k) {
         out.face_error[k] =
-            std::max(0.0, sums[k].ee + 2 * change.dot(sums[k].we) + sums[k].ww * change.squaredNorm());
+            std::max(0.0, sums[k].ee + 2 * dot(change, sums[k].we) + sums[k].ww * dot(change, change));
         out.cost.error += out.face_error[k];
     }
     return true;
@@ -170,10 +171,10 @@ Vec2f Refiner::newton_step(const OneRing& ring, Id v) const {
         const Vec3d db = (b.color - own.color).cast<double>(), dc = (c.color - own.color).cast<double>();
         const double det = pb.x() * pc.y() - pb.y() * pc.x();
         const Vec3d gx = (pc.y() * db - pb.y() * dc) / det, gy = (pb.x() * dc - pc.x() * db) / det;
-        hxx += sums.ww * gx.squaredNorm();
-        hxy += sums.ww * gx.dot(gy);
-        hyy += sums.ww * gy.squaredNorm();
-        rhs += Vec2d(gx.dot(sums.we), gy.dot(sums.we));
+        hxx += sums.ww * dot(gx, gx);
+        hxy += sums.ww * dot(gx, gy);
+        hyy += sums.ww * dot(gy, gy);
+        rhs += Vec2d(dot(gx, sums.we), dot(gy, sums.we));
         mx += sums.ww * gx;
         my += sums.ww * gy;
         we += sums.we;
@@ -181,10 +182,10 @@ Vec2f Refiner::newton_step(const OneRing& ring, Id v) const {
         center += pb + pc;
     }
     center /= static_cast<double>(2 * ring.faces);
-    hxx -= mx.squaredNorm() / ww;
-    hxy -= mx.dot(my) / ww;
-    hyy -= my.squaredNorm() / ww;
-    rhs -= Vec2d(mx.dot(we), my.dot(we)) / ww;
+    hxx -= dot(mx, mx) / ww;
+    hxy -= dot(mx, my) / ww;
+    hyy -= dot(my, my) / ww;
+    rhs -= Vec2d(dot(mx, we), dot(my, we)) / ww;
     // A pull to the ring's centre: the weight of shape, and a little where colours give no direction.
     const double pull =
         1e-3 * (hxx + hyy) + 1e-6 + (ring.closed ? shape_unit_ / (1 + center.squaredNorm()) : 0);

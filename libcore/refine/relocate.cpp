@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "libcore/base/dot.h"
 #include "libcore/base/for_each_id.h"
 #include "libcore/refine/refiner.h"
 
@@ -93,7 +94,7 @@ void Refiner::try_insertion(Id f, int edge, const Vec2f& position, Insertion& be
     }
     const Vec3f chosen = allowed(color - (we / ww).cast<float>());
     const Vec3d change = (chosen - color).cast<double>();
-    after.error += 2 * change.dot(we) + (ww - 1e-3) * change.squaredNorm();
+    after.error += 2 * dot(change, we) + (ww - 1e-3) * dot(change, change);
     const double gain = before.error - after.error + shape_unit_ * (before.shape - after.shape);
     if (gain > best.gain) best = {f, edge, position, chosen, gain, edge >= 0 && count == 2};
 }

@@ -3,6 +3,8 @@
 #include <array>
 #include <cmath>
 
+#include "libcore/base/dot.h"
+
 namespace imgmesh {
 namespace {
 
@@ -86,6 +88,10 @@ class Mover {
         }
     };
 
+    static double distance2(const Features& a, const Features& b) {
+        const Features step = a - b;
+        return dot(step, step);
+    }
     static std::ptrdiff_t as_signed(std::size_t n) { return static_cast<std::ptrdiff_t>(n); }
 
     std::size_t framed(int x, int y) const { return as_index(y + 1) * stride_ + as_index(x + 1); }
@@ -113,15 +119,15 @@ class Mover {
         if (!kStaysConnected[same] || from.pixels <= min_size_) return;
         const Features pixel = features(x, y);
         // What the pixel costs where it is: the sum of squares falls by this when it leaves.
-        double least = from.pixels / (from.pixels - 1) * (pixel - from.mean).squaredNorm() +
-                       price_ * line_length(around, own);
+        double least =
+            from.pixels / (from.pixels - 1) * distance2(pixel, from.mean) + price_ * line_length(around, own);
         Id best = own;
         for (std::size_t k = 0; k < kNeighbors; k += 2) {
             const Id other = around[k];
             if (other == kNone || other == own || other == best) continue;
             const Region& to = regions_[other];
-            const double cost = to.pixels / (to.pixels + 1) * (pixel - to.mean).squaredNorm() +
-                                price_ * line_length(around, other);
+            const double cost =
+                to.pixels / (to.pixels + 1) * distance2(pixel, to.mean) + price_ * line_length(around, other);
             if (cost >= least) continue;
             least = cost;
             best = other;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "libcore/base/dot.h"
 #include "libcore/segment/pair_contrasts.h"
 
 namespace imgmesh {
@@ -29,11 +30,16 @@ double harmonic(double a, double b) {
     return a * b / (a + b);
 }
 
+// The squared length of a colour.
+double square(const Vec3d& color) {
+    return dot(color, color);
+}
+
 }  // namespace
 
 RegionDistance paper_distance() {
     return [](const RegionSums& a, const RegionSums& b, const Border&) {
-        return (a.paper_color() - b.paper_color()).norm();
+        return std::sqrt(square(a.paper_color() - b.paper_color()));
     };
 }
 
@@ -51,7 +57,7 @@ RegionDistance contour_distance(double pixels) {
 RegionDistance superpixel_distance(double compactness, double spacing) {
     const double scale = compactness / spacing;
     return [scale](const RegionSums& a, const RegionSums& b, const Border&) {
-        const double color = huber((a.mean_color() - b.mean_color()).squaredNorm());
+        const double color = huber(square(a.mean_color() - b.mean_color()));
         const double place = (a.mean_place() - b.mean_place()).squaredNorm();
         return harmonic(a.pixels, b.pixels) * (color + scale * scale * place);
     };
