@@ -1,7 +1,12 @@
 #include "libcore/segment/merge_regions.h"
 
 #include <algorithm>
+#include <numeric>
 #include <queue>
+#include <span>
+#include <utility>
+
+#include "libcore/base/index.h"
 
 namespace imgmesh {
 namespace {
@@ -13,6 +18,7 @@ struct Candidate {
     Id a, b;       // as in Border
     Id border;
     std::uint32_t version;
+    Id list;  // where the candidates that follow this one are
 
     // The queue's top is the greatest candidate.
     bool operator<(const Candidate& other) const {
@@ -31,11 +37,19 @@ class Merger {
           min_size_(double(min_size)),
           version_(graph_.borders.size(), 0),
           borders_of_(graph_.regions.size()),
+          list_of_(graph_.regions.size()),
+          lists_(graph_.regions.size()),
           found_(graph_.regions.size(), kNone) {
+        std::iota(list_of_.begin(), list_of_.end(), Id{0});
+        std::vector<Id> own;  // borders with regions of higher numbers
         for (Id e = 0; e < graph_.borders.size(); ++e) {
-            borders_of_[graph_.borders[e].a].push_back(e);
-            borders_of_[graph_.borders[e].b].push_back(e);
-            file(e);
+            const Border& border = graph_.borders[e];
+            borders_of_[border.a].push_back(e);
+            borders_of_[border.b].push_back(e);
+            own.push_back(e);
+            if (e + 1 < graph_.borders.size() && graph_.borders[e + 1].a == border.a) continue;
+            file(border.a, own);
+            own.clear();
         }
     }
 
@@ -45,7 +59,10 @@ class Merger {
         while (!queue_.empty()) {
             const Candidate next = queue_.top();
             queue_.pop();
-            if (next.version != version_[next.border]) continue;
+            if (next.version != version_[next.border]) {
+                queue_next(next.list);
+                continue;
+            }
             // Regions only grow: once no merge is forced, none will be.
             if (next.waits && hierarchy.cells - hierarchy.merges.size() <= least) break;
             if (next.waits)
@@ -61,12 +78,56 @@ class Merger {
   private:
     static constexpr std::uint32_t kDead = 0xFFFFFFFFu;
 
-    void file(Id e) {
+    // Candidates of one region without the closest, which is in the queue. The queue would otherwise hold a
+    // candidate of every border anew after every merge, nearly all of which are stale before they come up.
+    struct List {
+        std::vector<Candidate> candidates;
+        bool is_heap = false;
+    };
+
+    Candidate candidate(Id e, Id list) const {
         const Border& border = graph_.borders[e];
         const RegionSums &a = graph_.regions[border.a], &b = graph_.regions[border.b];
         const auto distance = static_cast<float>(distance_(a, b, border));
-        queue_.push({std::min(a.pixels, b.pixels) >= min_size_, distance,
-                     static_cast<float>(a.pixels + b.pixels), border.a, border.b, e, version_[e]});
+        return {.waits = std::min(a.pixels, b.pixels) >= min_size_,
+                .distance = distance,
+                .pixels = static_cast<float>(a.pixels + b.pixels),
+                .a = border.a,
+                .b = border.b,
+                .border = e,
+                .version = version_[e],
+                .list = list};
+    }
+
+    // Puts the closest candidate of a list into the queue. A list has no order until it is needed: most
+    // are made anew before.
+    void queue_next(Id list) {
+        std::vector<Candidate>& rest = lists_[list].candidates;
+        if (!lists_[list].is_heap) std::make_heap(rest.begin(), rest.end());
+        lists_[list].is_heap = true;
+        while (!rest.empty()) {
+            std::pop_heap(rest.begin(), rest.end());
+            const Candidate next = rest.back();
+            rest.pop_back();
+            if (next.version != version_[next.border]) continue;
+            queue_.push(next);
+            return;
+        }
+    }
+
+    // Makes a region's list anew, of candidates with `borders`.
+    void file(Id region, std::span<const Id> borders) {
+        std::vector<Candidate> all = std::exchange(lists_[list_of_[region]].candidates, {});
+        list_of_[region] = as_id(lists_.size());
+        lists_.emplace_back();
+        if (borders.empty()) return;
+        all.clear();
+        for (const Id e : borders) all.push_back(candidate(e, list_of_[region]));
+        const auto closest = std::max_element(all.begin(), all.end());
+        queue_.push(*closest);
+        *closest = all.back();
+        all.pop_back();
+        lists_.back().candidates = std::move(all);
     }
 
     // Region b becomes part of a; a < b.
@@ -91,11 +152,12 @@ class Merger {
             kept.push_back(e);
         }
         borders_of_[b] = {};
+        lists_[list_of_[b]] = {};
         for (const Id e : kept) {
             found_[other_end(e, a)] = kNone;
             ++version_[e];
-            file(e);
         }
+        file(a, kept);
     }
 
     Id other_end(Id e, Id end) const {
@@ -108,6 +170,8 @@ class Merger {
     double min_size_;
     std::vector<std::uint32_t> version_;  // of each border; candidates with an older version are stale
     std::vector<std::vector<Id>> borders_of_;
+    std::vector<Id> list_of_;  // of each region; older lists of it are empty
+    std::vector<List> lists_;
     std::vector<Id> found_;  // during a merge: the border that leads to each region
     std::priority_queue<Candidate> queue_;
 };

@@ -19,7 +19,8 @@ using RegionDistance = std::function<double(const RegionSums&, const RegionSums&
 /// region is smaller at any threshold, except islands that are smaller as a whole. Other merges end when
 /// `least` regions are left.
 ///
-/// Takes O(borders log borders) time, times the mean number of neighbours of a region when it merges.
+/// Takes O(borders log borders) time, and computes the distances of every region that grows anew: a region
+/// with very many neighbours costs one look at each of them whenever it grows.
 Hierarchy merge_regions(RegionGraph graph, const RegionDistance& distance, std::int64_t min_size = 1,
                         std::size_t least = 1);
 
