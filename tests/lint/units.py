@@ -12,6 +12,7 @@ UNIT_FILES = 16
 LARGE_HEADERS = ("<Eigen/Core>", "<nlohmann/json.hpp>", "<CLI/CLI.hpp>", "<pybind11/pybind11.h>", "<lcms2.h>")
 
 CONSTANT = re.compile("k[A-Z]")
+MACRO_CALL = re.compile("[A-Z][A-Z0-9_]+")  # TEST_CASE and the like
 PLAIN_ENUM = re.compile(r"^enum (?!class)[^{;]*{([^}]*)}", re.M)
 INCLUDE = re.compile(r'^\s*#\s*include\s+(?:"([^"]+)"|<([^>]+)>)', re.M)
 # In our layout what stands outside functions and types begins its line. An alias may be told twice, all else may not.
@@ -47,7 +48,7 @@ def definitions(file):
     for match in DEFINITION.finditer(file.read_text()):
         if match["alias"]:
             found[re.findall(r"\w+", match["alias"].split("=")[0])[-1]] = match["alias"]
-        else:
+        elif not MACRO_CALL.fullmatch(match["name"] or ""):
             found[match["type"] or match["macro"] or match["name"]] = None
     for name in ("main", "static_assert", "__attribute__"):
         found.pop(name, None)
@@ -62,10 +63,11 @@ class Names:
         self.headers = {name for name in headers_read(file, root) if (root / name.strip('"')).exists()}
         self.of_headers = header_names
 
-    def clash(self, other):
-        """Whether the compiler would refuse or confuse names where both files are read together."""
+    def clash(self, other, rename):
+        """Whether the compiler would refuse or confuse names where both files are read together. With `rename`, constants
+        that both define have names of their own there."""
         for name, line in self.own.items():
-            if name in other.own and not (line and line == other.own[name]) and not CONSTANT.match(name):
+            if name in other.own and not (line and line == other.own[name]) and not (rename and CONSTANT.match(name)):
                 return True
         return (self.hidden_by(other.headers) or other.hidden_by(self.headers) or
                 bool(self.constants(self.headers - other.headers) & self.constants(other.headers - self.headers)))
@@ -77,20 +79,20 @@ class Names:
         return {name for header in headers for name in self.of_headers[header] if CONSTANT.match(name)}
 
 
-def units(files, root):
-    """Lists of files of one layer, of about equal length; in each no name is defined twice."""
+def units(files, root, most=UNIT_FILES, rename=True):
+    """Lists of up to `most` files of one layer, of about equal length; in each no name is defined twice."""
     out = []
     header_names = HeaderNames(root)
     by_layer = collections.defaultdict(list)
     for file in files:
         by_layer[layer(file, root)].append(file)
     for members in by_layer.values():
-        limit = -(-len(members) // -(-len(members) // UNIT_FILES))
+        limit = -(-len(members) // -(-len(members) // most))
         open_units = []
         for file in members:
             names = Names(file, root, header_names)
             for unit in open_units:
-                if len(unit) < limit and not any(names.clash(other) for _, other in unit):
+                if len(unit) < limit and not any(names.clash(other, rename) for _, other in unit):
                     break
             else:
                 unit = []
