@@ -13,11 +13,8 @@ export async function decodePicture(file: Blob, name: string): Promise<Picture> 
   if (file.size === 0) throw new Error(`${name} is empty.`);
   let bitmap: ImageBitmap;
   try {
-    bitmap = await createImageBitmap(file, {
-      premultiplyAlpha: "none",
-      imageOrientation: "from-image",
-      colorSpaceConversion: "default",
-    });
+    // The orientation of EXIF is followed where nothing is said; some browsers know no word for it.
+    bitmap = await createImageBitmap(file, { premultiplyAlpha: "none", colorSpaceConversion: "default" });
   } catch {
     throw new Error(`${name} is not an image that this browser can read; PNG, JPEG, WebP and AVIF are.`);
   }

@@ -108,7 +108,10 @@ export function makeViewBar(app: App, view: CanvasView): ViewBar {
   app.on("picture", () => {
     const shown = app.picture;
     picture = shown && { width: shown.pixels.width, height: shown.pixels.height, source: shown.bitmap };
-    if (shown) view.describe(`${shown.name}, ${shown.pixels.width} by ${shown.pixels.height} pixels`);
+    if (!shown) return;
+    view.setSides(picture, picture);
+    view.fit();
+    view.describe(`${shown.name}, ${shown.pixels.width} by ${shown.pixels.height} pixels`);
   });
   app.on("mesh", () => {
     const count = app.facts?.levels.length ?? 1, was = bar.level;
