@@ -107,7 +107,7 @@ export function makeMeshPanel(app: App, progress: (fraction: number | null, stag
   function showPercent(): void {
     const { picture } = app;
     if (!picture) return;
-    const share = (100 * (settings.vertices ?? usualVertices(picture.pixels))) / (picture.pixels.width * picture.pixels.height);
+    const share = (100 * (settings.vertices ?? app.facts?.levels[0]?.vertices ?? usualVertices(picture.pixels))) / (picture.pixels.width * picture.pixels.height);
     vertices.note.textContent = `${share < 0.1 ? share.toPrecision(1) : share.toFixed(share < 10 ? 1 : 0)} % of the pixels`;
   }
   function stop(): void {
@@ -152,6 +152,9 @@ export function makeMeshPanel(app: App, progress: (fraction: number | null, stag
     const lines = (app.facts?.warnings ?? []).map(inWordsOfThePage);
     warnings.replaceChildren(...lines.map((line) => h("li", {}, line)));
     warnings.hidden = lines.length === 0;
+    // Where nothing is said, 1 % of the pixels inside a mask are taken.
+    if (settings.vertices === null && app.facts) vertices.set(app.facts.levels[0]!.vertices);
+    showPercent();
     showFigures();
   });
   showPreset();
@@ -160,7 +163,9 @@ export function makeMeshPanel(app: App, progress: (fraction: number | null, stag
     id: "mesh",
     title: "Mesh",
     element: h(
-      "div", { class: "panel" }, figures.element, warnings,
+      "div", { class: "panel" },
+      h("p", { class: "intro" }, "A small mesh of triangles takes the place of the pixels, and follows what is in the image."),
+      figures.element, warnings,
       h("form", { submit: (e: Event) => e.preventDefault() }, vertices.element, preset.element, shape.element, smoothness.element, alpha.element, levels.element,
         h("label", { class: "check" }, live, "Build whenever a setting changes")),
       h("div", { class: "actions" }, main),

@@ -11,12 +11,12 @@ const kTile = 2048;
 export async function readPixels(bitmap: ImageBitmap): Promise<Pixels> {
   const { width, height } = bitmap;
   const data = new Uint8ClampedArray(4 * width * height);
-  if (!readOpaque(bitmap, data)) await readTransparent(bitmap, data);
+  if (!(await readOpaque(bitmap, data))) await readTransparent(bitmap, data);
   return { width, height, data };
 }
 
 /** Fills `data`, and returns true if every pixel is opaque: only then the colours are those of the image. */
-function readOpaque(bitmap: ImageBitmap, data: Uint8ClampedArray): boolean {
+async function readOpaque(bitmap: ImageBitmap, data: Uint8ClampedArray): Promise<boolean> {
   const { width, height } = bitmap;
   const rows = Math.max(1, Math.min(height, Math.floor(kBand / width)));
   const context = new OffscreenCanvas(width, rows).getContext("2d", { willReadFrequently: true });
@@ -28,6 +28,8 @@ function readOpaque(bitmap: ImageBitmap, data: Uint8ClampedArray): boolean {
     const band = context.getImageData(0, 0, width, count).data;
     for (let i = 3; i < band.length; i += 4) if (band[i] !== 255) return false;
     data.set(band, 4 * width * y);
+    // The page goes on between bands.
+    if (y + rows < height) await new Promise((next) => setTimeout(next, 0));
   }
   return true;
 }

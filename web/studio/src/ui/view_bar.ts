@@ -40,7 +40,7 @@ export function makeViewBar(app: App, view: CanvasView): ViewBar {
     h("option", { value: "none" }, "No wireframe"), h("option", { value: "right" }, "Wireframe right"),
     h("option", { value: "both" }, "Wireframe both"));
   wire.value = "right";
-  const level = h("select", { "aria-label": "Level of the mesh", title: "Level of the mesh: 1 is the finest", hidden: true });
+  const level = h("select", { "aria-label": "Level of the mesh", title: "Level of the mesh", hidden: true });
   const zoom = h("output", { class: "zoom", title: "Size of an image pixel on the screen" });
   const button = (label: string, path: string, action: () => void): HTMLButtonElement =>
     h("button", { type: "button", class: "quiet", "aria-label": label, title: label, click: action }, icon(path));
@@ -116,7 +116,7 @@ export function makeViewBar(app: App, view: CanvasView): ViewBar {
   app.on("mesh", () => {
     const count = app.facts?.levels.length ?? 1, was = bar.level;
     level.replaceChildren();
-    for (let k = 0; k < count; ++k) level.append(h("option", { value: k }, `Level ${k + 1}`));
+    for (let k = 0; k < count; ++k) level.append(h("option", { value: k }, k === 0 ? "Level 0, finest" : `Level ${k}`));
     level.value = String(was < count ? was : 0);
     level.hidden = count < 2;
     useMesh();
