@@ -42,3 +42,6 @@ foreach(_line IN LISTS _groups)
   set_target_properties(${_target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
   set_source_files_properties(${_source} DIRECTORY ${_folder} PROPERTIES UNITY_GROUP ${_group})
 endforeach()
+
+# A tool takes from a library the objects that it needs. Joined, they bring files that read images, to tools that read none.
+target_link_libraries(imgmesh_tool_common INTERFACE imgmesh_picture)
