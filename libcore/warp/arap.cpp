@@ -45,7 +45,8 @@ Vec2d turned(const Vec2d& rotation, const Vec2d& v) {
 
 // The rotation (cos, sin) from a sum of dot products and a sum of cross products.
 Vec2d rotation_of(double dot, double cross) {
-    const double length = std::hypot(dot, cross);
+    const double length =
+        std::sqrt(dot * dot + cross * cross);  // not hypot(), which libraries round differently
     return length > 0 ? Vec2d(dot / length, cross / length) : Vec2d(1, 0);
 }
 
@@ -205,8 +206,8 @@ ArapSolver::~ArapSolver() = default;
 ArapSolver::ArapSolver(ArapSolver&&) noexcept = default;
 ArapSolver& ArapSolver::operator=(ArapSolver&&) noexcept = default;
 
-ArapSolver::Result ArapSolver::solve(const std::vector<Vec2d>& moves, double tolerance,
-                                     int max_iterations) const {
+ArapSolver::Result ArapSolver::solve(const std::vector<Vec2d>& moves, double tolerance, int max_iterations,
+                                     const std::vector<Vec2d>& start) const {
     const State& s = *state_;
     Result result;
     result.moves.assign(s.rest.size(), Vec2d(0, 0));
@@ -216,6 +217,8 @@ ArapSolver::Result ArapSolver::solve(const std::vector<Vec2d>& moves, double tol
         for (const Id v : s.free) result.moves[v] = moves.front();
     } else {
         std::vector<Vec2d> place = s.rigid_guess(moves);
+        if (start.size() == place.size())
+            for (const Id v : s.free) place[v] = s.rest[v] + start[v];
         double change = tolerance + 1;
         for (; !s.free.empty() && change > tolerance && result.iterations < max_iterations;
              ++result.iterations) {

@@ -32,10 +32,14 @@ class ArapSolver {
     /// Returns the moves of all vertices for given moves of the fixed ones.
     ///
     /// moves  of the fixed vertices, in their order [pixels]
+    /// start  moves of all vertices to begin with, as from the last step of a drag; if empty, the rigid
+    ///        motion nearest to the given moves. Other starts may end in other minima.
+    ///
     /// Iterates until no vertex moves by more than `tolerance` [pixels] in an iteration, or for
     /// `max_iterations`. The result does not depend on earlier calls. If all moves are equal, the whole mesh
     /// moves by exactly that.
-    Result solve(const std::vector<Vec2d>& moves, double tolerance = 1e-3, int max_iterations = 200) const;
+    Result solve(const std::vector<Vec2d>& moves, double tolerance = 1e-3, int max_iterations = 200,
+                 const std::vector<Vec2d>& start = {}) const;
 
   private:
     struct State;

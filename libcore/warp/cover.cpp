@@ -29,9 +29,9 @@ std::size_t nearest_pixel(const PixelMap& map, const Vec2f& p) {
 
 }  // namespace
 
-PixelMap cover_of(const Level& level) {
-    check_cover(level.mesh, sample_grid(level.map.width, level.map.height, 1));
-    return trivial_map(level.mesh, level.map.width, level.map.height);
+PixelMap cover_of(const BaseMesh& mesh, const GridSize& size) {
+    check_cover(mesh, sample_grid(size.width, size.height, 1));
+    return trivial_map(mesh, size.width, size.height);
 }
 
 PixelCoord coord_near(const BaseMesh& mesh, const PixelMap& cover, const Vec2f& at) {
@@ -44,14 +44,25 @@ PixelCoord coord_near(const BaseMesh& mesh, const PixelMap& cover, const Vec2f& 
             static_cast<float>(signed_area2(at, pa, pb) / area)};
 }
 
-PixelMap map_by_place(const Level& level) {
-    const PixelMap cover = cover_of(level);
-    PixelMap map = cover;
+PixelMap map_by_place(const BaseMesh& mesh, const PixelMap& map) {
+    const PixelMap cover = cover_of(mesh, map);
+    PixelMap complete = cover;
     for (std::size_t i = 0; i < map.pixel_count(); ++i)
-        if (map[i].face == kNone && level.map[i].face != kNone)
-            map[i] = coord_near(level.mesh, cover,
-                                {static_cast<float>(map.x_of(i)), static_cast<float>(map.y_of(i))});
-    return map;
+        if (cover[i].face == kNone && map[i].face != kNone)
+            complete[i] =
+                coord_near(mesh, cover, {static_cast<float>(map.x_of(i)), static_cast<float>(map.y_of(i))});
+    return complete;
+}
+
+void add_moves_at(const Level& level, const VertexMoves& moves, const std::vector<Vec2f>& at,
+                  std::vector<Vec2f>& sum) {
+    const PixelMap cover = cover_of(level.mesh, level.map);
+    for (std::size_t i = 0; i < at.size(); ++i) {
+        const PixelCoord c = coord_near(level.mesh, cover, at[i]);
+        if (c.face == kNone) continue;
+        const auto [ia, ib, ic] = level.mesh.faces[c.face];
+        sum[i] += moves[ia] + c.u * (moves[ib] - moves[ia]) + c.v * (moves[ic] - moves[ia]);
+    }
 }
 
 }  // namespace imgmesh

@@ -5,6 +5,7 @@
 #include "libcore/base/parallel.h"
 #include "libcore/mesh/grid_area.h"
 #include "libcore/warp/cover.h"
+#include "libcore/warp/ordered_mesh.h"
 
 namespace imgmesh {
 namespace {
@@ -19,15 +20,28 @@ struct FaceMove {
 // What a level adds. Only faces that move cost more than a look at a byte.
 struct LevelMove {
     std::vector<FaceMove> face;
-    std::vector<std::uint8_t> moves;
+    std::vector<std::uint8_t> first;  // which corner FaceMove begins with, or kStill
 };
+constexpr std::uint8_t kStill = 3;
+
+// Returns the corner of a face to begin with. Containers rotate corners, and sums round differently in
+// another order.
+std::uint8_t first_corner(const BaseMesh& mesh, const Face& face) {
+    std::uint8_t first = 0;
+    for (const std::uint8_t k : {std::uint8_t{1}, std::uint8_t{2}})
+        if (is_above(mesh.position[face[k]], mesh.position[face[first]])) first = k;
+    return first;
+}
 
 LevelMove level_move(const BaseMesh& mesh, const VertexMoves& moves) {
     LevelMove level{std::vector<FaceMove>(mesh.faces.size()), std::vector<std::uint8_t>(mesh.faces.size())};
     for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
-        const Vec2f &a = moves[mesh.faces[f][0]], &b = moves[mesh.faces[f][1]], &c = moves[mesh.faces[f][2]];
+        const Face& face = mesh.faces[f];
+        const std::uint8_t first = first_corner(mesh, face);
+        const Vec2f &a = moves[face[first]], &b = moves[face[(first + 1u) % 3]],
+                    &c = moves[face[(first + 2u) % 3]];
         level.face[f] = {a.x(), a.y(), b.x() - a.x(), b.y() - a.y(), c.x() - a.x(), c.y() - a.y()};
-        level.moves[f] = !(a.isZero(0) && b.isZero(0) && c.isZero(0));
+        level.first[f] = a.isZero(0) && b.isZero(0) && c.isZero(0) ? kStill : first;
     }
     return level;
 }
@@ -37,10 +51,13 @@ LevelMove level_move(const BaseMesh& mesh, const VertexMoves& moves) {
 void add_row(const LevelMove& level, std::span<const PixelCoord> coords, Vec2f* out) {
     for (std::size_t x = 0; x < coords.size(); ++x) {
         const PixelCoord& c = coords[x];
-        if (c.face == kNone || !level.moves[c.face]) continue;
+        if (c.face == kNone || level.first[c.face] == kStill) continue;
         const FaceMove& m = level.face[c.face];
-        out[x].x() += m.x + c.u * m.ux + c.v * m.vx;
-        out[x].y() += m.y + c.u * m.uy + c.v * m.vy;
+        const std::uint8_t first = level.first[c.face];
+        const float w = 1 - c.u - c.v;  // exact where weights are multiples of a step, as in pixel maps
+        const float u = first == 0 ? c.u : first == 1 ? c.v : w, v = first == 0 ? c.v : first == 1 ? w : c.u;
+        out[x].x() += m.x + u * m.ux + v * m.vx;
+        out[x].y() += m.y + u * m.uy + v * m.vy;
     }
 }
 
@@ -66,24 +83,36 @@ std::vector<std::size_t> outside_beside(const DisplacementField& field,
     return found;
 }
 
-// maps  through which the pixels of each level move
-DisplacementField field_through(const MeshImage& mesh_image, const std::vector<VertexMoves>& moves,
-                                const std::vector<const PixelMap*>& maps) {
+// Calls visit(pixel) for the top left pixel of each cell that is turned over, in ascending order.
+template <typename Visit>
+void for_folded_cells(const DisplacementField& field, const Visit& visit) {
+    const auto at = [&](int x, int y) {
+        return Vec2d(Vec2d(x, y) + field.move[field.index(x, y)].cast<double>());
+    };
+    const auto inside = [&](int x, int y) { return field.role[field.index(x, y)] == PixelRole::kInside; };
+    for (int y = 0; y + 1 < field.height; ++y)
+        for (int x = 0; x + 1 < field.width; ++x) {
+            if (!inside(x, y) || !inside(x + 1, y) || !inside(x, y + 1) || !inside(x + 1, y + 1)) continue;
+            const Vec2d a = at(x, y), b = at(x + 1, y), c = at(x, y + 1), d = at(x + 1, y + 1);
+            if (!(grid_area2(a, b, d) > 0 && grid_area2(a, d, c) > 0)) visit(field.index(x, y));
+        }
+}
+
+// A level that moves, and the map through which its pixels do.
+struct MovedLevel {
+    LevelMove move;
+    const PixelMap* map;
+};
+
+DisplacementField field_of(const MeshImage& mesh_image, const std::vector<MovedLevel>& levels) {
     const SourceInfo& source = mesh_image.source;
     DisplacementField field{source, std::vector<Vec2f>(source.pixel_count(), Vec2f(0, 0)),
                             std::vector<PixelRole>(source.pixel_count(), PixelRole::kInside),
                             source.has_mask};
-    std::vector<LevelMove> levels;
-    std::vector<const PixelMap*> through;
-    for (std::size_t k = 0; k < moves.size(); ++k) {
-        if (moves[k].empty()) continue;
-        levels.push_back(level_move(mesh_image.levels[k].mesh, moves[k]));
-        through.push_back(maps[k]);
-    }
     parallel_blocks(0, field.height, kGrainRows, [&](int first, int last) {
         for (int y = first; y < last; ++y) {
-            for (std::size_t k = 0; k < levels.size(); ++k)
-                add_row(levels[k], through[k]->row(y), field.move.data() + field.row_begin(y));
+            for (const MovedLevel& level : levels)
+                add_row(level.move, level.map->row(y), field.move.data() + field.row_begin(y));
             if (!field.has_mask) continue;
             PixelRole* role = field.role.data() + field.row_begin(y);
             for (const PixelCoord& c : mesh_image.levels[0].map.row(y))
@@ -96,20 +125,31 @@ DisplacementField field_through(const MeshImage& mesh_image, const std::vector<V
 }  // namespace
 
 DisplacementField displacement_field(const MeshImage& mesh_image, const std::vector<VertexMoves>& moves) {
-    std::vector<const PixelMap*> maps;
-    for (const Level& level : mesh_image.levels) maps.push_back(&level.map);
-    return field_through(mesh_image, moves, maps);
+    std::vector<MovedLevel> levels;
+    for (std::size_t k = 0; k < moves.size(); ++k)
+        if (!moves[k].empty())
+            levels.push_back({level_move(mesh_image.levels[k].mesh, moves[k]), &mesh_image.levels[k].map});
+    return field_of(mesh_image, levels);
 }
 
 DisplacementField edit_field(const MeshImage& mesh_image, const EditSolution& solution) {
+    std::vector<MovedLevel> levels;
     std::vector<PixelMap> by_place(solution.moves.size());
-    std::vector<const PixelMap*> maps;
-    for (std::size_t k = 0; k < mesh_image.levels.size(); ++k) {
-        const bool is_by_place = solution.injective[k] && !solution.moves[k].empty();
-        if (is_by_place) by_place[k] = map_by_place(mesh_image.levels[k]);
-        maps.push_back(is_by_place ? &by_place[k] : &mesh_image.levels[k].map);
+    for (std::size_t k = 0; k < solution.moves.size(); ++k) {
+        const VertexMoves& moves = solution.moves[k];
+        const Level& level = mesh_image.levels[k];
+        if (moves.empty()) continue;
+        if (!solution.injective[k]) {
+            levels.push_back({level_move(level.mesh, moves), &level.map});
+            continue;
+        }
+        const OrderedMesh ordered = ordered_mesh(level.mesh);
+        VertexMoves renamed(moves.size());
+        for (std::size_t v = 0; v < moves.size(); ++v) renamed[ordered.rank[v]] = moves[v];
+        by_place[k] = map_by_place(ordered.mesh, level.map);
+        levels.push_back({level_move(ordered.mesh, renamed), &by_place[k]});
     }
-    return field_through(mesh_image, solution.moves, maps);
+    return field_of(mesh_image, levels);
 }
 
 void extend_outside(DisplacementField& field, std::vector<float>& alpha) {
@@ -147,16 +187,13 @@ void extend_outside(DisplacementField& field, std::vector<float>& alpha) {
 
 std::int64_t folded_cells(const DisplacementField& field) {
     std::int64_t folded = 0;
-    const auto at = [&](int x, int y) {
-        return Vec2d(Vec2d(x, y) + field.move[field.index(x, y)].cast<double>());
-    };
-    const auto inside = [&](int x, int y) { return field.role[field.index(x, y)] == PixelRole::kInside; };
-    for (int y = 0; y + 1 < field.height; ++y)
-        for (int x = 0; x + 1 < field.width; ++x) {
-            if (!inside(x, y) || !inside(x + 1, y) || !inside(x, y + 1) || !inside(x + 1, y + 1)) continue;
-            const Vec2d a = at(x, y), b = at(x + 1, y), c = at(x, y + 1), d = at(x + 1, y + 1);
-            folded += !(grid_area2(a, b, d) > 0 && grid_area2(a, d, c) > 0);
-        }
+    for_folded_cells(field, [&](std::size_t) { ++folded; });
+    return folded;
+}
+
+std::vector<std::size_t> list_folded_cells(const DisplacementField& field) {
+    std::vector<std::size_t> folded;
+    for_folded_cells(field, [&](std::size_t pixel) { folded.push_back(pixel); });
     return folded;
 }
 

@@ -49,4 +49,7 @@ void extend_outside(DisplacementField& field, std::vector<float>& alpha);
 /// part: there the warp folds. Takes O(pixels) time.
 std::int64_t folded_cells(const DisplacementField& field);
 
+/// Returns the top left pixels of these cells, ascending.
+std::vector<std::size_t> list_folded_cells(const DisplacementField& field);
+
 }  // namespace imgmesh

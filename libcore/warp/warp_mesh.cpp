@@ -1,8 +1,5 @@
 #include "libcore/warp/warp_mesh.h"
 
-#include <algorithm>
-#include <cmath>
-
 #include "libcore/base/error.h"
 #include "libcore/warp/cover.h"
 
@@ -11,21 +8,6 @@ namespace {
 
 // The range that docs/format.md allows.
 constexpr float kFarthest = 131072;
-
-// Adds the moves that the mesh of `level` has at the places `at`. They are linear over each of its faces, in
-// the face that covers the pixel nearest to the place. The pixel map is not used: it follows edges of the
-// image closely and so changes too fast for vertices. Fine faces would turn over where coarse ones are merely
-// stretched.
-void add_moves(const Level& level, const VertexMoves& moves, const std::vector<Vec2f>& at,
-               std::vector<Vec2f>& sum) {
-    const PixelMap cover = cover_of(level);
-    for (std::size_t i = 0; i < at.size(); ++i) {
-        const PixelCoord c = coord_near(level.mesh, cover, at[i]);
-        if (c.face == kNone) continue;
-        const auto [ia, ib, ic] = level.mesh.faces[c.face];
-        sum[i] += moves[ia] + c.u * (moves[ib] - moves[ia]) + c.v * (moves[ic] - moves[ia]);
-    }
-}
 
 void check_faces(const BaseMesh& mesh, std::size_t level) {
     for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
@@ -54,7 +36,7 @@ MeshImage warp_mesh_image(MeshImage mesh_image, const std::vector<VertexMoves>& 
         for (std::size_t j = 0; j < moves.size(); ++j) {
             if (moves[j].empty()) continue;
             if (j != k)
-                add_moves(mesh_image.levels[j], moves[j], rest, places[k]);
+                add_moves_at(mesh_image.levels[j], moves[j], rest, places[k]);
             else
                 for (Id v = 0; v < rest.size(); ++v) places[k][v] += moves[k][v];
         }

@@ -250,7 +250,10 @@ TEST_CASE("edit_field: pixels of injective edits move with the face that covers 
     for (std::size_t i = 0; i < map.pixel_count(); ++i)
         map[i] = {map[i].face, map[i].u * map[i].u, map[i].v * map[i].v};
     CHECK(folded_cells(displacement_field(m, solution.moves)) > 0);
-    CHECK(edit_field(m, solution).move == expected.move);
+    // On an edge, either face gives the same but for rounding.
+    const DisplacementField found = edit_field(m, solution);
+    for (std::size_t i = 0; i < map.pixel_count(); ++i)
+        CHECK((found.move[i] - expected.move[i]).norm() < 1e-4f);
     edit.solver = WarpSolver::kArap;
     const EditSolution rigid = edit_solution(m, {edit});
     CHECK(edit_field(m, rigid).move == displacement_field(m, rigid.moves).move);
