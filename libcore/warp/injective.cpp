@@ -45,6 +45,7 @@ struct InjectiveSolver::State {
     void extend(Search& search) const;
     bool untangle(Search& search, int most_steps) const;
     void follow(Search& search, int most_steps) const;
+    void approach(Search& search, int most_steps) const;
     void relax(Search& search, int most_steps) const;
     bool round(const Search& search, std::vector<Vec2f>& moves) const;
     bool is_there(const Search& search) const;
@@ -90,15 +91,15 @@ void InjectiveSolver::State::extend(Search& search) const {
 // Unfolds the faces with the fixed vertices where they are. Returns whether it came to that. The energy is
 // the smoother the more the worst face is turned over, as Garanzha et al. propose.
 bool InjectiveSolver::State::untangle(Search& search, int most_steps) const {
-    constexpr double kLeast = 1e-3, kShare = 0.2;
+    constexpr double kLeast = 5e-3, kShare = 0.2;
     // The cheap method unfolds most meshes within as many steps; what then still is folded is stiff, and
     // takes Newton's.
-    constexpr int kCheap = 60, kSameEnergy = 10;
+    constexpr int kCheap = 90, kSameEnergy = 30;
     FaceDescent descent(energies, factor, search.place);
     std::optional<HessianFactor> newton;
     double least = energies.least_determinant(search.place);
     for (int i = 0; !(least > 0); ++i, ++search.steps) {
-        if (i == most_steps) return false;
+        if (i >= most_steps) return false;
         if (i == kCheap) newton.emplace(energies, rest.size(), factor.free());
         if (newton || i % kSameEnergy == 0)
             descent.restart(
@@ -114,6 +115,8 @@ bool InjectiveSolver::State::untangle(Search& search, int most_steps) const {
 void InjectiveSolver::State::follow(Search& search, int most_steps) const {
     constexpr double kShare = 0.6;
     constexpr double kStuck = 1e-3;  // of the way that is left
+    // Of what a face has at rest. With less, there may be no room to round.
+    constexpr double kLeastArea = 0.05;
     constexpr int kRelaxing = 4, kPatience = 3;
     const int last = search.steps + most_steps;
     for (int stuck = 0; search.steps < last && stuck < kPatience; ++search.steps) {
@@ -123,10 +126,31 @@ void InjectiveSolver::State::follow(Search& search, int most_steps) const {
         for (std::size_t v = 0; v < from.size(); ++v) move.push_back(search.place[v] - from[v]);
         const double most = energies.largest_step(from, move);
         if (!(most < 1)) return;
-        for (std::size_t v = 0; v < from.size(); ++v) search.place[v] = from[v] + kShare * most * move[v];
-        stuck = most < kStuck ? stuck + 1 : 0;
+        const double least = std::min(kLeastArea, energies.least_determinant(from));
+        double share = kShare * most;
+        const auto go = [&] {
+            for (std::size_t v = 0; v < from.size(); ++v) search.place[v] = from[v] + share * move[v];
+        };
+        for (go(); share > kStuck && energies.least_determinant(search.place) < least; go()) share /= 2;
+        stuck = share <= kStuck ? stuck + 1 : 0;
         relax(search, std::min(kRelaxing, last - search.steps));
     }
+}
+
+// Follows with all fixed vertices, and where that ends, with one after the other: those whose way is free are
+// not to stay behind with those whose way is barred.
+void InjectiveSolver::State::approach(Search& search, int most_steps) const {
+    constexpr int kMostForOne = 40;
+    const int last = search.steps + most_steps;
+    follow(search, most_steps / 2);
+    const std::vector<Vec2d> target = search.target;
+    for (std::size_t i = 0; i < fixed.size(); ++i) {
+        if (search.place[fixed[i]] == target[i]) continue;
+        for (std::size_t k = 0; k < fixed.size(); ++k) search.target[k] = search.place[fixed[k]];
+        search.target[i] = target[i];
+        follow(search, std::min(kMostForOne, last - search.steps));
+    }
+    search.target = target;
 }
 
 void InjectiveSolver::State::relax(Search& search, int most_steps) const {
@@ -183,18 +207,22 @@ InjectiveSolver::Result InjectiveSolver::State::solve(const std::vector<Vec2d>& 
             if (used[v]) search.place[v] += start[v].cast<double>();
     const std::vector<Vec2d> safe = search.place;
 
-    if (!is_there(search)) {
-        if (is_warm)
-            extend(search);
-        else
-            guess(search, max_iterations / 2);
-        if (!untangle(search, max_iterations / 2 - search.steps)) {
-            search.place = safe;
-            follow(search, max_iterations - search.steps);
-        }
+    // The start unfolds fast or not at all; a guess from the mesh at rest may still find what it does not.
+    bool found = is_there(search);
+    if (!found && is_warm) {
+        extend(search);
+        found = untangle(search, max_iterations / 4);
+    }
+    if (!found) {
+        guess(search, max_iterations / 2 - search.steps);
+        found = untangle(search, max_iterations / 2 - search.steps);
+    }
+    if (!found) {
+        search.place = safe;
+        approach(search, (max_iterations - search.steps) * 3 / 4);
     }
     relax(search, std::min(kMostRelaxing, max_iterations - search.steps));
-    // Near the end of a way that is barred, there may be no room to round.
+    // There may be no room to round where faces are pressed together.
     constexpr double kBack = 0.5;
     for (double share = 1; !round(search, result.moves) && share > 0;) {
         share = share > 0.1 ? kBack * share : 0;
@@ -202,8 +230,8 @@ InjectiveSolver::Result InjectiveSolver::State::solve(const std::vector<Vec2d>& 
             search.place[v] = safe[v] + share * (search.place[v] - safe[v]);
     }
     for (std::size_t i = 0; i < fixed.size(); ++i) {
-        const Vec2f asked = moves[i].cast<float>(), found = result.moves[fixed[i]];
-        if (found != asked) result.left = std::max(result.left, (found.cast<double>() - moves[i]).norm());
+        const Vec2f asked = moves[i].cast<float>(), done = result.moves[fixed[i]];
+        if (done != asked) result.left = std::max(result.left, (done.cast<double>() - moves[i]).norm());
     }
     result.iterations = search.steps;
     return result;

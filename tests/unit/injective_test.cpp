@@ -195,6 +195,11 @@ TEST_CASE("InjectiveSolver: a drag in small steps folds nothing") {
         CHECK(result.left == 0);
         moves = result.moves;
     }
+    // Where the last step is no help, the mesh at rest may be: a handle back to its place from beyond the
+    // others.
+    const InjectiveSolver::Result back = solver.solve({Vec2d(0, 0), Vec2d(0, 0), Vec2d(0, 0)}, moves);
+    CHECK(folds(mesh, back.moves) == 0);
+    CHECK(back.left == 0);
     // A start with a fold, or for another mesh, does not count.
     const std::vector<Vec2d> asked = {Vec2d(0, 0), Vec2d(9, 7), Vec2d(3, 0)};
     moves[7] += Vec2f(300, 0);
@@ -209,8 +214,11 @@ TEST_CASE("InjectiveSolver: what cannot be reached is not, and the result says h
     Face face = mesh.faces[11];
     std::ranges::sort(face);
     const Vec2d a = mesh.position[face[0]].cast<double>(), b = mesh.position[face[1]].cast<double>();
-    const InjectiveSolver solver(mesh, {face[0], face[1], face[2]});
-    const InjectiveSolver::Result result = solver.solve({b - a, a - b, Vec2d(0, 0)});
+    // A handle far away is not held back by them.
+    REQUIRE(face[2] < 35);
+    const InjectiveSolver solver(mesh, {face[0], face[1], face[2], 35});
+    const InjectiveSolver::Result result = solver.solve({b - a, a - b, Vec2d(0, 0), Vec2d(4, -3)});
+    CHECK(result.moves[35] == Vec2f(4, -3));
     CHECK(folds(mesh, result.moves) == 0);
     CHECK(result.left > 1);
     CHECK(result.left < (b - a).norm());
