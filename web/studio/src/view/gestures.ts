@@ -21,6 +21,7 @@ export function addGestures({ canvas, transform, overlays, invalidate }: Gesture
   let taken: { overlay: Overlay; id: number } | null = null;
   let panning: number | null = null;
   let spaceHeld = false;
+  let overlaysLast = false; // whether an overlay took the last press
 
   const local = (e: MouseEvent): Point => {
     const box = canvas.getBoundingClientRect();
@@ -60,10 +61,12 @@ export function addGestures({ canvas, transform, overlays, invalidate }: Gesture
       taken = null;
     }
     if (touches.size > 1) return;
+    overlaysLast = false;
     if (e.button === 0 && !spaceHeld)
       for (const overlay of overlays())
         if (overlay.pointerDown?.(viewPointer(e))) {
           taken = { overlay, id: e.pointerId };
+          overlaysLast = true;
           return;
         }
     if (e.button === 1) e.preventDefault();
@@ -105,7 +108,7 @@ export function addGestures({ canvas, transform, overlays, invalidate }: Gesture
     },
     { passive: false },
   );
-  canvas.addEventListener("dblclick", () => change(() => transform.fit()));
+  canvas.addEventListener("dblclick", () => !overlaysLast && change(() => transform.fit()));
 
   canvas.addEventListener("keydown", (e) => {
     for (const overlay of overlays())
