@@ -207,13 +207,16 @@ InjectiveSolver::Result InjectiveSolver::State::solve(const std::vector<Vec2d>& 
             if (used[v]) search.place[v] += start[v].cast<double>();
     const std::vector<Vec2d> safe = search.place;
 
-    // The start unfolds fast or not at all; a guess from the mesh at rest may still find what it does not.
+    // A start unfolds fast or not at all. A guess from the mesh at rest may still find what it does not, but
+    // not within the few steps of a drag.
+    constexpr int kWorthGuessing = 100;
+    const bool guesses = !is_warm || max_iterations >= kWorthGuessing;
     bool found = is_there(search);
     if (!found && is_warm) {
         extend(search);
-        found = untangle(search, max_iterations / 4);
+        found = untangle(search, max_iterations / (guesses ? 4 : 2));
     }
-    if (!found) {
+    if (!found && guesses) {
         guess(search, max_iterations / 2 - search.steps);
         found = untangle(search, max_iterations / 2 - search.steps);
     }

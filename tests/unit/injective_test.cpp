@@ -208,6 +208,24 @@ TEST_CASE("InjectiveSolver: a drag in small steps folds nothing") {
     CHECK(InjectiveSolver(mesh, {0, 60, 120}).solve(asked).moves == solver.solve(asked).moves);
 }
 
+// A page allows few iterations for each picture of a drag. What lags behind comes nearer with each.
+TEST_CASE("InjectiveSolver: few iterations fold nothing either, and repeated they get there") {
+    const BaseMesh mesh = jittered_grid(0, 0, 200, 200, 10, 10, 2);
+    const InjectiveSolver solver(mesh, {0, 60, 120});
+    std::vector<Vec2f> moves;
+    double left = 1;
+    for (int i = 0; i < 60; ++i) {
+        const double far = std::min(90, 6 * i);
+        const InjectiveSolver::Result result =
+            solver.solve({Vec2d(0, 0), Vec2d(far, far / 2), Vec2d(0, 0)}, moves, 12);
+        CHECK(folds(mesh, result.moves) == 0);
+        CHECK(result.iterations <= 12);
+        moves = result.moves;
+        left = result.left;
+    }
+    CHECK(left == 0);
+}
+
 // Two corners of one face change places while the third stays: no mesh does that without turning the face.
 TEST_CASE("InjectiveSolver: what cannot be reached is not, and the result says how far it is") {
     const BaseMesh mesh = jittered_grid(0, 0, 60, 60, 5, 5, 3);
