@@ -1,5 +1,14 @@
 // What the package gives, wherever it runs.
 export { Imgmesh } from "./imgmesh.js";
 export { Mesh } from "./mesh.js";
+export { Regions, type SegmentationData } from "./regions.js";
+export {
+  Segmentation,
+  type ContourMap,
+  type RegionFacts,
+  type SeedLine,
+  type SegmentFacts,
+  type SegmentOptions,
+} from "./segment.js";
 export type { EngineSource } from "./engine.js";
 export * from "./types.js";

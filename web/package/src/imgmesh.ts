@@ -1,6 +1,7 @@
 // The engine with a friendly surface.
 import { startEngine, type Engine, type EngineSource } from "./engine.js";
 import { Mesh } from "./mesh.js";
+import { segmentMesh, type Segmentation, type SegmentOptions } from "./segment.js";
 import type { BuildOptions, BuildParameters, Parameter, Pixels } from "./types.js";
 
 /** One instance of the engine. It has memory of its own, which never shrinks while the instance lives. */
@@ -32,6 +33,14 @@ export class Imgmesh {
    */
   build(pixels: Pixels, parameters: BuildParameters = {}, options: BuildOptions = {}): Mesh {
     return new Mesh(this.engine.build(pixels, parameters, options, options.onProgress ?? null));
+  }
+
+  /**
+   * Cuts a level of a mesh into cells and merges them, as imgmesh-segment does: the same regions to the bit. Colours
+   * are measured on `pixels`, of the mesh's size, or on the reconstruction without them. Throws ImgmeshError.
+   */
+  segment(mesh: Mesh, pixels: Pixels | null = null, options: SegmentOptions = {}): Segmentation {
+    return segmentMesh(this.engine, mesh, pixels, options);
   }
 }
 
