@@ -10,5 +10,8 @@ export {
   type SegmentFacts,
   type SegmentOptions,
 } from "./segment.js";
+export {
+  WarpSession, type FloatMap, type VertexSelection, type WarpEdit, type WarpEdits, type WarpHandle, type WarpSolver,
+} from "./warp.js";
 export type { EngineSource } from "./engine.js";
 export * from "./types.js";

@@ -1,6 +1,6 @@
 // The page's state: one picture, its session, and what is being built.
 import type { BuildOptions, BuildParameters } from "imgmesh.wasm";
-import type { ImageView, MeshFacts, Picture, Report, Session, Studio } from "./contracts";
+import type { ImageView, Layer, MeshFacts, Picture, Report, Session, Studio } from "./contracts";
 import { startSession } from "./session";
 
 type Event = "picture" | "mesh" | "build";
@@ -22,6 +22,7 @@ export class App implements Studio {
   private readonly listeners: [Event, () => void][] = [];
   private readonly messages: Messages;
   showChosenSides: () => void = () => {};
+  showOwnSides: (left: Layer | null, right: Layer | null) => void = () => {};
 
   constructor(view: ImageView, messages: Messages) {
     this.view = view;

@@ -132,6 +132,8 @@ export interface Studio {
   save(name: string, bytes: Uint8Array | string, type: string): void;
   /** "picture": another image is there, without a mesh yet. "mesh": session and facts are new, or gone (null). */
   on(event: "picture" | "mesh", listener: () => void): void;
+  /** Shows a panel's own sides in place of those that the user chose, without their wireframe, until showChosenSides(). */
+  showOwnSides(left: Layer | null, right: Layer | null): void;
   /** Shows the sides that the user chose again, after a panel has shown its own. */
   showChosenSides(): void;
 }

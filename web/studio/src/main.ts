@@ -10,6 +10,7 @@ import { makeStatusBar } from "./ui/messages";
 import { addTabs } from "./ui/tabs";
 import { makeViewBar } from "./ui/view_bar";
 import { CanvasView } from "./view/image_view";
+import { makeWarpPanel } from "./warp/warp_panel";
 
 const status = makeStatusBar();
 const view = new CanvasView(() => bar.zoomed());
@@ -17,7 +18,7 @@ const app = new App(view, status);
 const bar = makeViewBar(app, view);
 const meshPanel = makeMeshPanel(app, status.progress);
 bar.onLevel = () => meshPanel.showLevel(bar.level);
-const panels: Panel[] = [meshPanel];
+const panels: Panel[] = [meshPanel, makeWarpPanel(app, (levels) => meshPanel.buildLevels(levels))];
 
 byId("stage").append(view.element);
 byId("view-bar").append(bar.element);

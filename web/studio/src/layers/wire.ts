@@ -34,15 +34,13 @@ void main() {
   result = vec4(vec3(core) * strength, alpha);
 }`;
 
-let program: { of: WebGL2RenderingContext; program: WebGLProgram } | null = null;
+const programs = new WeakMap<WebGL2RenderingContext, WebGLProgram>();
 
-function endPoints({ positions, edges }: MeshArrays): Float32Array {
-  const ends = new Float32Array(2 * edges.length);
+function putEndPoints(positions: Float32Array, edges: Uint32Array, ends: Float32Array): void {
   for (let i = 0; i < edges.length; ++i) {
     ends[2 * i] = positions[2 * edges[i]!]!;
     ends[2 * i + 1] = positions[2 * edges[i]! + 1]!;
   }
-  return ends;
 }
 
 /** How strong lines are: where they are closer than a few pixels, they would hide what is below. */
@@ -50,40 +48,51 @@ function strengthOf(spacing: number): number {
   return Math.min(Math.max((spacing - 1) / 9, 0.12), 0.9);
 }
 
+export interface MovableWire extends Overlay {
+  /** Draws the mesh with its vertices at other places. */
+  move(positions: Float32Array): void;
+  /** Draws into a canvas of the size of `context`'s. */
+  paint(gl: WebGL2RenderingContext, context: CanvasRenderingContext2D, t: ViewTransform): void;
+}
+
 /** The overlay of a mesh of an image with `area` pixels. */
-export function wireOverlay(arrays: MeshArrays, area: number): Overlay {
-  const ends = endPoints(arrays);
+export function wireOverlay(arrays: MeshArrays, area: number): MovableWire {
+  const ends = new Float32Array(2 * arrays.edges.length);
+  putEndPoints(arrays.positions, arrays.edges, ends);
   const count = ends.length / 4;
   const meanLength = Math.sqrt(area / Math.max(arrays.faces.length / 3, 1)) * 1.5;
-  let uploaded: { of: WebGL2RenderingContext; vao: WebGLVertexArrayObject } | null = null;
+  const uploaded = new WeakMap<WebGL2RenderingContext, { vao: WebGLVertexArrayObject; buffer: WebGLBuffer; version: number }>();
+  let at = arrays.positions, version = 0;
 
-  const byWebGl = (context: CanvasRenderingContext2D, t: ViewTransform): boolean => {
-    const shared = glCanvas();
-    if (!shared) return false;
-    const { gl } = shared;
-    if (program?.of !== gl) program = { of: gl, program: makeProgram(gl, kVertex, kFragment) };
-    if (uploaded?.of !== gl) {
-      const vao = gl.createVertexArray();
-      gl.bindVertexArray(vao);
-      gl.bindBuffer(gl.ARRAY_BUFFER, gl.createBuffer());
-      gl.bufferData(gl.ARRAY_BUFFER, ends, gl.STATIC_DRAW);
-      gl.enableVertexAttribArray(0);
-      gl.vertexAttribPointer(0, 4, gl.FLOAT, false, 16, 0);
-      gl.vertexAttribDivisor(0, 1);
-      uploaded = { of: gl, vao };
+  const upload = (gl: WebGL2RenderingContext) => {
+    const vao = gl.createVertexArray(), buffer = gl.createBuffer();
+    gl.bindVertexArray(vao);
+    gl.bindBuffer(gl.ARRAY_BUFFER, buffer);
+    gl.bufferData(gl.ARRAY_BUFFER, ends, gl.DYNAMIC_DRAW);
+    gl.enableVertexAttribArray(0);
+    gl.vertexAttribPointer(0, 4, gl.FLOAT, false, 16, 0);
+    gl.vertexAttribDivisor(0, 1);
+    const made = { vao, buffer, version };
+    uploaded.set(gl, made);
+    return made;
+  };
+  const paint = (gl: WebGL2RenderingContext, context: CanvasRenderingContext2D, t: ViewTransform): void => {
+    let program = programs.get(gl);
+    if (!program) programs.set(gl, (program = makeProgram(gl, kVertex, kFragment)));
+    const lines = uploaded.get(gl) ?? upload(gl);
+    if (lines.version !== version) {
+      gl.bindBuffer(gl.ARRAY_BUFFER, lines.buffer);
+      gl.bufferSubData(gl.ARRAY_BUFFER, 0, ends);
+      lines.version = version;
     }
-    const { vao } = uploaded;
-    paintOver(context, t, shared, () => {
-      gl.useProgram(program!.program);
-      setTransform(gl, program!.program, context, t);
-      gl.uniform1f(gl.getUniformLocation(program!.program, "ratio"), t.ratio);
-      gl.uniform1f(gl.getUniformLocation(program!.program, "strength"), strengthOf(meanLength * t.scale));
-      gl.enable(gl.BLEND);
-      gl.blendFunc(gl.ONE, gl.ONE_MINUS_SRC_ALPHA);
-      gl.bindVertexArray(vao);
-      gl.drawArraysInstanced(gl.TRIANGLE_STRIP, 0, 4, count);
-    });
-    return true;
+    gl.useProgram(program);
+    setTransform(gl, program, context, t);
+    gl.uniform1f(gl.getUniformLocation(program, "ratio"), t.ratio);
+    gl.uniform1f(gl.getUniformLocation(program, "strength"), strengthOf(meanLength * t.scale));
+    gl.enable(gl.BLEND);
+    gl.blendFunc(gl.ONE, gl.ONE_MINUS_SRC_ALPHA);
+    gl.bindVertexArray(lines.vao);
+    gl.drawArraysInstanced(gl.TRIANGLE_STRIP, 0, 4, count);
   };
 
   const byCanvas = (context: CanvasRenderingContext2D, t: ViewTransform): void => {
@@ -101,8 +110,17 @@ export function wireOverlay(arrays: MeshArrays, area: number): Overlay {
   };
 
   return {
+    move(positions) {
+      if (positions === at) return;
+      at = positions;
+      ++version;
+      putEndPoints(positions, arrays.edges, ends);
+    },
+    paint,
     draw(context, t) {
-      if (!byWebGl(context, t)) byCanvas(context, t);
+      const shared = glCanvas();
+      if (shared) paintOver(context, t, shared, () => paint(shared.gl, context, t));
+      else byCanvas(context, t);
     },
   };
 }

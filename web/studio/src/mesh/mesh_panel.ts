@@ -19,6 +19,8 @@ const kLeastSmoothness = 1, kMostSmoothness = 1000;
 export interface MeshPanel extends Panel {
   /** Builds with the settings as they are. */
   build(): Promise<void>;
+  /** Builds a pyramid of so many meshes. */
+  buildLevels(count: number): void;
   /** Shows the figures of another level. */
   showLevel(level: number): void;
 }
@@ -173,6 +175,11 @@ export function makeMeshPanel(app: App, progress: (fraction: number | null, stag
     show: () => {},
     hide: () => {},
     build,
+    buildLevels(count) {
+      settings.levels = count;
+      levels.set(String(count));
+      void build();
+    },
     showLevel(index) {
       level = index;
       showFigures();

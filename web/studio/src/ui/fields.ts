@@ -93,15 +93,22 @@ export function sliderField(options: SliderOptions): SliderField {
   };
 }
 
+export interface Choice<T extends string> {
+  id: T;
+  label: string;
+  help?: string;
+}
+
 /** A list of choices under a label; `help` is shown below it. */
 export function choiceField<T extends string>(
   label: string,
-  choices: readonly { id: T; label: string; help?: string }[],
+  choices: readonly Choice<T>[],
   changed: (value: T) => void,
-): { element: HTMLElement; set(value: T): void } {
+): { element: HTMLElement; set(value: T): void; setChoices(choices: readonly Choice<T>[]): void } {
   const id = `field-${next++}`;
   const list = h("select", { id, "aria-describedby": `${id}-help` });
-  for (const choice of choices) list.append(h("option", { value: choice.id }, choice.label));
+  const fill = (): void => list.replaceChildren(...choices.map((choice) => h("option", { value: choice.id }, choice.label)));
+  fill();
   const help = h("p", { class: "help", id: `${id}-help` });
   const explain = (): void => {
     help.textContent = choices.find((choice) => choice.id === list.value)?.help ?? "";
@@ -115,6 +122,11 @@ export function choiceField<T extends string>(
     element: h("div", { class: "field" }, h("div", { class: "field-head" }, h("label", { for: id }, label), list), help),
     set(value) {
       list.value = value;
+      explain();
+    },
+    setChoices(others) {
+      choices = others;
+      fill();
       explain();
     },
   };

@@ -49,6 +49,7 @@ export function makeViewBar(app: App, view: CanvasView): ViewBar {
   let layers: MeshLayers | null = null;
   let removeWire: (() => void) | null = null;
   let request = 0;
+  let own = false; // whether a panel shows sides of its own
 
   const layerOf = async (choice: Choice): Promise<Layer | null> =>
     choice === "picture" || !layers ? picture : layers.layer(choice);
@@ -56,6 +57,7 @@ export function makeViewBar(app: App, view: CanvasView): ViewBar {
   /** Shows what is chosen once it is there; what was shown before stays until then. */
   async function apply(): Promise<void> {
     const mine = ++request;
+    if (own) return;
     const [a, b] = await Promise.all([layerOf(left.value as Choice), layerOf(right.value as Choice)]);
     const where = wire.value;
     const edges = where !== "none" && layers ? await layers.wire() : null;
@@ -87,6 +89,11 @@ export function makeViewBar(app: App, view: CanvasView): ViewBar {
     },
   };
 
+  /** What chooses the sides has nothing to say while a panel does. */
+  function setOwn(on: boolean): void {
+    own = on;
+    bar.element.classList.toggle("own", on);
+  }
   function swap(): void {
     [left.value, right.value] = [right.value, left.value];
     show();
@@ -121,6 +128,16 @@ export function makeViewBar(app: App, view: CanvasView): ViewBar {
     level.hidden = count < 2;
     useMesh();
   });
-  app.showChosenSides = show;
+  app.showOwnSides = (a, b) => {
+    ++request;
+    setOwn(true);
+    removeWire?.();
+    removeWire = null;
+    view.setSides(a, b);
+  };
+  app.showChosenSides = () => {
+    setOwn(false);
+    show();
+  };
   return bar;
 }

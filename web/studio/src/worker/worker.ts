@@ -4,6 +4,7 @@ import type { Report, WorkerState } from "../contracts";
 import * as build from "./build";
 import type { Answer, PlainError, Question } from "./protocol";
 import * as view from "./view";
+import * as warp from "./warp";
 
 type AnyMethod = (args: never, report: Report) => unknown;
 type Methods = Record<string, AnyMethod>;
@@ -21,7 +22,7 @@ let queue: Promise<void> = Promise.resolve();
 
 async function start(module: WebAssembly.Module): Promise<Methods> {
   const state: WorkerState = { imgmesh: await loadImgmesh(module), pixels: null, mesh: null };
-  return { ...build.methods(state), ...view.methods(state) };
+  return { ...build.methods(state), ...view.methods(state), ...warp.methods(state) };
 }
 
 function plain(error: unknown): PlainError {
