@@ -1,20 +1,14 @@
 #include "formats/export/label_files.h"
 
-#include <OpenEXR/ImfChannelList.h>
-#include <OpenEXR/ImfFrameBuffer.h>
-#include <OpenEXR/ImfHeader.h>
-#include <OpenEXR/ImfOutputFile.h>
-
 #include <algorithm>
 #include <array>
 
 #include "formats/export/label_tiff.h"
 #include "formats/export/mat_file.h"
 #include "formats/export/npy.h"
-#include "formats/exr/memory_output.h"
+#include "formats/exr/exr_parts.h"
 #include "formats/files/atomic_file.h"
 #include "formats/files/extension.h"
-#include "formats/files/library_error.h"
 #include "formats/picture/image_io.h"
 #include "libcore/base/error.h"
 #include "libcore/base/index.h"
@@ -24,24 +18,6 @@ namespace {
 
 constexpr Id kPngNone = 65535;
 constexpr std::array kExtensions = {".exr", ".png", ".tif", ".tiff", ".npy", ".mat"};
-
-template <typename Value>
-void write_layer(const std::string& path, const std::string& channel, Imf::PixelType type, int width,
-                 int height, std::span<const Value> values, bool overwrite) {
-    AtomicFile target(path, overwrite);
-    MemoryOutput memory;
-    translate_errors(ErrorKind::kIo, cat(path, ": cannot write the EXR"), [&] {
-        Imf::Header header(width, height, 1, {0, 0}, 1, Imf::INCREASING_Y, Imf::ZIP_COMPRESSION);
-        header.channels().insert(channel, Imf::Channel(type));
-        Imf::FrameBuffer buffer;
-        buffer.insert(channel, Imf::Slice::Make(type, values.data(), {0, 0}, width, height));
-        Imf::OutputFile file(memory, header, /*numThreads=*/0);
-        file.setFrameBuffer(buffer);
-        file.writePixels(height);
-    });
-    target.write(memory.bytes);
-    target.commit();
-}
 
 // Label 0 is 1 there, and 0 is none.
 void write_segs(const std::string& path, std::size_t width, std::size_t height, std::span<const Id> labels,
@@ -75,7 +51,7 @@ void write_labels(const std::string& path, int width, int height, std::span<cons
                     cat(path, ": labels are written as .exr, .png, .tif, .npy or .mat"));
     const std::string extension = lower_extension(path);
     if (extension == ".exr") {
-        write_layer(path, "id", Imf::UINT, width, height, labels, overwrite);
+        write_exr_channel(path, "id", width, height, labels, overwrite);
         return;
     }
     if (extension == ".npy") {
@@ -107,7 +83,7 @@ void write_labels(const std::string& path, int width, int height, std::span<cons
 
 void write_float_layer(const std::string& path, const std::string& channel, int width, int height,
                        std::span<const float> values, bool overwrite) {
-    write_layer(path, channel, Imf::FLOAT, width, height, values, overwrite);
+    write_exr_channel(path, channel, width, height, values, overwrite);
 }
 
 }  // namespace imgmesh

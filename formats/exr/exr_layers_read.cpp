@@ -1,12 +1,5 @@
 #include "formats/exr/exr_layers.h"
 
-#include <ImfChannelList.h>
-#include <ImfFrameBuffer.h>
-#include <ImfHeader.h>
-#include <ImfInputPart.h>
-#include <ImfMultiPartInputFile.h>
-#include <ImfPartType.h>
-#include <ImfStringAttribute.h>
 #include <half.h>
 
 #include <algorithm>
@@ -15,8 +8,8 @@
 #include <string_view>
 
 #include "formats/exr/exr_header.h"
+#include "formats/exr/exr_input.h"
 #include "formats/exr/exr_part_checks.h"
-#include "formats/exr/memory_input.h"
 #include "formats/exr/zip_blocks.h"
 #include "formats/files/one_line.h"
 #include "formats/findings/findings.h"
@@ -29,24 +22,6 @@ namespace {
 // Deflate never packs more than this many bytes into one.
 constexpr std::uint64_t kMaxDeflateRatio = 1032;
 
-// A slice over one member of an array of structures of `stride` bytes.
-Imf::Slice slice(Imf::PixelType type, const void* first, std::size_t stride, int width) {
-    return Imf::Slice(type, static_cast<char*>(const_cast<void*>(first)), stride,
-                      stride * static_cast<std::size_t>(width));
-}
-
-// OpenEXR assembles tiles and converts HALF to FLOAT.
-void read_tiles(Imf::InputPart& in, LayerPart& part) {
-    const int width = part.map.width;
-    Imf::FrameBuffer frame;
-    frame.insert(kFace, slice(Imf::UINT, &part.map[0].face, sizeof(PixelCoord), width));
-    frame.insert(kU, slice(Imf::FLOAT, &part.map[0].u, sizeof(PixelCoord), width));
-    frame.insert(kV, slice(Imf::FLOAT, &part.map[0].v, sizeof(PixelCoord), width));
-    if (!part.visits.empty()) frame.insert(kVisits, slice(Imf::UINT, part.visits.data(), sizeof(Id), width));
-    in.setFrameBuffer(frame);
-    in.readPixels(0, part.map.height - 1);
-}
-
 template <typename T>
 T take(const std::uint8_t*& in) {
     T value;
@@ -57,12 +32,12 @@ T take(const std::uint8_t*& in) {
 
 // Reads the rows from `first` on from their block: row by row, in each row channel by channel, sorted by
 // name.
-void spread_block(const Imf::ChannelList& channels, const std::vector<std::uint8_t>& block, int first,
+void spread_block(const std::vector<ExrChannel>& channels, const std::vector<std::uint8_t>& block, int first,
                   int last, LayerPart& part) {
     const std::uint8_t* in = block.data();
     for (int y = first; y < last; ++y)
-        for (auto at = channels.begin(); at != channels.end(); ++at) {
-            const std::string_view name = at.name();
+        for (const ExrChannel& channel : channels) {
+            const std::string& name = channel.name;
             const std::span<PixelCoord> row = part.map.row(y);
             if (name == kVisits || name == kFace) {
                 Id* visits =
@@ -71,7 +46,7 @@ void spread_block(const Imf::ChannelList& channels, const std::vector<std::uint8
                 continue;
             }
             float PixelCoord::*const weight = name == kU ? &PixelCoord::u : &PixelCoord::v;
-            if (at.channel().type == Imf::HALF)
+            if (channel.type == ExrSample::kHalf)
                 for (PixelCoord& c : row) {
                     half value;
                     value.setBits(take<std::uint16_t>(in));
@@ -82,24 +57,23 @@ void spread_block(const Imf::ChannelList& channels, const std::vector<std::uint8
         }
 }
 
-// OpenEXR finds the blocks and checks their lengths; all threads unpack them. The compression is one of those
-// that check_part_header() allows.
-void read_scanlines(Imf::InputPart& in, LayerPart& part) {
+// The file finds the blocks and checks their lengths; all threads unpack them. The compression is one of
+// those that check_part_header() allows.
+void read_scanlines(ExrInput& file, std::size_t index, LayerPart& part) {
     constexpr int kGroupBlocks = 128;  // read at a time, before they are unpacked
-    const Imf::ChannelList& channels = in.header().channels();
-    const int rows = in.header().compression() == Imf::ZIP_COMPRESSION ? 16 : 1, height = part.map.height,
+    const ExrPartHeader& header = file.parts()[index];
+    const int rows = header.compression == kExrZip ? kExrZipRows : 1, height = part.map.height,
               blocks = (height + rows - 1) / rows;
     std::size_t row_bytes = 0;
-    for (auto at = channels.begin(); at != channels.end(); ++at)
-        row_bytes += static_cast<std::size_t>(part.map.width) * (at.channel().type == Imf::HALF ? 2 : 4);
+    for (const ExrChannel& channel : header.channels)
+        row_bytes +=
+            static_cast<std::size_t>(part.map.width) * static_cast<std::size_t>(sample_bytes(channel.type));
     std::vector<std::vector<std::uint8_t>> packed(static_cast<std::size_t>(std::min(blocks, kGroupBlocks)));
     for (int group = 0; group < blocks; group += kGroupBlocks) {
         const int end = std::min(blocks, group + kGroupBlocks);
         for (int b = group; b < end; ++b) {
-            const char* data = nullptr;
-            int size = 0;
-            in.rawPixelData(b * rows, data, size);
-            packed[static_cast<std::size_t>(b - group)].assign(data, data + size);
+            const std::span<const std::uint8_t> bytes = file.block(index, b * rows);
+            packed[static_cast<std::size_t>(b - group)].assign(bytes.begin(), bytes.end());
         }
         parallel_blocks(group, end, std::max(1, 16 / rows), [&](int first, int last) {
             ZipUnpacker unpacker;
@@ -108,66 +82,66 @@ void read_scanlines(Imf::InputPart& in, LayerPart& part) {
                 const int top = b * rows, bottom = std::min(height, top + rows);
                 block.resize(row_bytes * static_cast<std::size_t>(bottom - top));
                 if (!unpacker.unpack(packed[static_cast<std::size_t>(b - group)], block))
-                    throw Iex::InputExc(cat("the block of row ", top, " cannot be unpacked"));
-                spread_block(channels, block, top, bottom, part);
+                    throw ExrDataError(cat("the block of row ", top, " cannot be unpacked"));
+                spread_block(header.channels, block, top, bottom, part);
             }
         });
     }
 }
 
-LayerPart read_part(Imf::MultiPartInputFile& file, int index, const ExpectedLayers& expected,
-                    std::size_t which, Findings& findings) {
-    const Imf::Header& header = file.header(index);
+LayerPart read_part(ExrInput& file, std::size_t index, const ExpectedLayers& expected, std::size_t which,
+                    Findings& findings) {
+    const ExrPartHeader& header = file.parts()[index];
     const std::size_t pixels =
         static_cast<std::size_t>(expected.width) * static_cast<std::size_t>(expected.height);
     LayerPart part{
         expected.parts[which], {expected.width, expected.height, {}, WeightPrecision::kFloat}, {}, {}};
     part.map.values.resize(pixels);
-    if (header.channels().findChannel(kVisits)) part.visits.resize(pixels);
-    if (const auto* topology = header.findTypedAttribute<Imf::StringAttribute>(kTopologyName))
-        part.topology = topology->value();
+    if (header.channel(kVisits)) part.visits.resize(pixels);
+    if (header.topology)
+        part.topology = *header.topology;
     else
         findings.add("layers.unbound", cat("part ", part.name, " has no ", kTopologyName),
                      at_part(part.name));
-    Imf::InputPart in(file, index);
-    if (header.hasTileDescription())
-        read_tiles(in, part);
+    if (header.tiles)
+        file.read_tiles(index, part);
     else
-        read_scanlines(in, part);
+        read_scanlines(file, index, part);
     const bool stored_as_half =
-        header.channels()[kU].type == Imf::HALF && header.channels()[kV].type == Imf::HALF;
+        header.channel(kU)->type == ExrSample::kHalf && header.channel(kV)->type == ExrSample::kHalf;
     finish_part(part, stored_as_half, expected.faces[which], expected.has_mask, findings);
     return part;
 }
 
 std::vector<LayerPart> read_parts(std::span<const std::uint8_t> bytes, const ExpectedLayers& expected,
                                   Findings& findings) {
-    MemoryInput stream("layers", bytes);
-    Imf::MultiPartInputFile file(stream, /*numThreads=*/0, /*reconstructChunkOffsetTable=*/false);
-    if (file.parts() != static_cast<int>(expected.parts.size()))
-        refuse("layers.parts", cat("the EXR has ", file.parts(), " parts, expected ", expected.parts.size()));
-    const auto* version = file.header(0).findTypedAttribute<Imf::StringAttribute>(kVersionName);
-    if (!version || !version->value().starts_with("1."))
+    ExrInput file(bytes);
+    const std::vector<ExrPartHeader>& headers = file.parts();
+    if (headers.size() != expected.parts.size())
+        refuse("layers.parts",
+               cat("the EXR has ", headers.size(), " parts, expected ", expected.parts.size()));
+    const std::optional<std::string>& version = headers[0].version;
+    if (!version || !version->starts_with("1."))
         findings.add("layers.version",
-                     cat(kVersionName, " is ", version ? version->value() : "missing", ", expected 1.x"));
+                     cat(kVersionName, " is ", version ? *version : "missing", ", expected 1.x"));
     std::vector<LayerPart> parts(expected.parts.size());
     for (std::size_t which = 0; which < expected.parts.size(); ++which) {
         const std::string& name = expected.parts[which];
         parts[which].name = name;
-        int index = 0;
-        while (index < file.parts() && !(file.header(index).hasName() && file.header(index).name() == name))
-            ++index;
-        if (index == file.parts()) {
+        const auto index = static_cast<std::size_t>(
+            std::ranges::find_if(headers, [&](const ExrPartHeader& h) { return h.name == name; }) -
+            headers.begin());
+        if (index == headers.size()) {
             findings.add("layers.parts", cat("the EXR has no part ", name), at_part(name));
             continue;
         }
         const std::size_t before = findings.errors();
-        check_part_header(file.header(index), name, expected, findings);
+        check_part_header(headers[index], name, expected, findings);
         if (findings.errors() > before) continue;
         try {
             LayerPart part = read_part(file, index, expected, which, findings);
             if (findings.errors() == before) parts[which] = std::move(part);
-        } catch (const Iex::BaseExc& error) {
+        } catch (const ExrDataError& error) {
             findings.add("layers.data", cat("OpenEXR cannot read part ", name, ": ", error.what()),
                          at_part(name));
         }

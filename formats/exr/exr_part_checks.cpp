@@ -1,9 +1,5 @@
 #include "formats/exr/exr_part_checks.h"
 
-#include <ImfChannelList.h>
-#include <ImfPartType.h>
-#include <ImfTileDescriptionAttribute.h>
-
 #include <string_view>
 
 #include "formats/findings/findings.h"
@@ -13,18 +9,17 @@
 namespace imgmesh {
 namespace {
 
-constexpr int kMaxTileSide = 1024;
+constexpr unsigned kMaxTileSide = 1024;
 
-void check_channels(const Imf::Header& header, const std::string& name, Findings& findings) {
+void check_channels(const ExrPartHeader& header, const std::string& name, Findings& findings) {
     bool face = false, u = false, v = false;
-    for (auto it = header.channels().begin(); it != header.channels().end(); ++it) {
-        const std::string_view channel = it.name();
-        const Imf::Channel& c = it.channel();
+    for (const ExrChannel& c : header.channels) {
+        const std::string& channel = c.name;
         const bool is_weight = channel == kU || channel == kV;
         const bool is_id = channel == kFace || channel == kVisits;
-        const bool right_type = is_id ? c.type == Imf::UINT : is_weight && c.type != Imf::UINT;
-        const Place place = at_part(name, it.name());
-        if (!right_type || c.xSampling != 1 || c.ySampling != 1)
+        const bool right_type = is_id ? c.type == ExrSample::kUint : is_weight && c.type != ExrSample::kUint;
+        const Place place = at_part(name, channel);
+        if (!right_type || c.x_sampling != 1 || c.y_sampling != 1)
             findings.add(
                 "layers.channels",
                 cat("channel ", channel, " of part ", name, " is unknown, of another type or subsampled"),
@@ -42,33 +37,32 @@ void check_channels(const Imf::Header& header, const std::string& name, Findings
 
 }  // namespace
 
-void check_part_header(const Imf::Header& header, const std::string& name, const ExpectedLayers& expected,
+void check_part_header(const ExrPartHeader& header, const std::string& name, const ExpectedLayers& expected,
                        Findings& findings) {
     const Place place = at_part(name);
-    if (header.hasType() && header.type() != Imf::SCANLINEIMAGE && header.type() != Imf::TILEDIMAGE)
-        findings.add("layers.type", cat("part ", name, " is of type ", header.type()), place);
-    if (header.hasTileDescription()) {
-        const Imf::TileDescription& tiles = header.tileDescription();
-        if (tiles.mode != Imf::ONE_LEVEL || tiles.xSize > kMaxTileSide || tiles.ySize > kMaxTileSide)
+    if (header.type && *header.type != "scanlineimage" && *header.type != "tiledimage")
+        findings.add("layers.type", cat("part ", name, " is of type ", *header.type), place);
+    if (header.tiles) {
+        const ExrTiles& tiles = *header.tiles;
+        if (!tiles.has_one_level || tiles.width > kMaxTileSide || tiles.height > kMaxTileSide)
             findings.add("layers.tiles",
-                         cat("part ", name, " has tiles of ", tiles.xSize, "x", tiles.ySize,
+                         cat("part ", name, " has tiles of ", tiles.width, "x", tiles.height,
                              " or of several levels, at most ", kMaxTileSide, " and one"),
                          place);
     }
-    const Imath::Box2i window({0, 0}, {expected.width - 1, expected.height - 1});
+    const ExrWindow window{0, 0, expected.width - 1, expected.height - 1};
     Repeated windows(findings, "layers.window");
-    for (const Imath::Box2i& found : {header.dataWindow(), header.displayWindow()})
+    for (const ExrWindow& found : {header.data, header.shown})
         if (found != window)
             windows.hit([&] {
                 return std::pair(
-                    cat("part ", name, " has the window (", found.min.x, ",", found.min.y, ")-(", found.max.x,
-                        ",", found.max.y, "), expected (0,0)-(", window.max.x, ",", window.max.y, ")"),
+                    cat("part ", name, " has the window (", found.min_x, ",", found.min_y, ")-(", found.max_x,
+                        ",", found.max_y, "), expected (0,0)-(", window.max_x, ",", window.max_y, ")"),
                     place);
             });
-    const Imf::Compression compression = header.compression();
-    if (compression != Imf::NO_COMPRESSION && compression != Imf::ZIPS_COMPRESSION &&
-        compression != Imf::ZIP_COMPRESSION)
-        findings.add("layers.compression", cat("part ", name, " has compression ", int{compression}), place);
+    const int compression = header.compression;
+    if (compression != kExrUncompressed && compression != kExrZips && compression != kExrZip)
+        findings.add("layers.compression", cat("part ", name, " has compression ", compression), place);
     check_channels(header, name, findings);
 }
 

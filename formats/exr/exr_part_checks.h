@@ -1,13 +1,12 @@
 // Checks the header and the pixels of a part of the layers. Internal to exr_layers.
 #pragma once
 
-#include <ImfHeader.h>
-
 #include <cmath>
 #include <cstdint>
 #include <string>
 
 #include "formats/exr/exr_layers.h"
+#include "formats/exr/exr_part_header.h"
 
 namespace imgmesh {
 
@@ -26,7 +25,7 @@ inline bool in_simplex(const PixelCoord& c) {
 }
 
 /// Compares the header of part `name` with the expected one.
-void check_part_header(const Imf::Header& header, const std::string& name, const ExpectedLayers& expected,
+void check_part_header(const ExrPartHeader& header, const std::string& name, const ExpectedLayers& expected,
                        Findings& findings);
 
 /// Checks the pixels, rounds weights of any origin to the grid, and sets the precision.

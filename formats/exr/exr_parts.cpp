@@ -4,6 +4,7 @@
 #include <OpenEXR/ImfFrameBuffer.h>
 #include <OpenEXR/ImfHeader.h>
 #include <OpenEXR/ImfMultiPartOutputFile.h>
+#include <OpenEXR/ImfOutputFile.h>
 #include <OpenEXR/ImfOutputPart.h>
 #include <OpenEXR/ImfPartType.h>
 
@@ -41,7 +42,35 @@ void write_part(Imf::MultiPartOutputFile& file, int number, const Image& image) 
     part.writePixels(image.height);
 }
 
+template <typename Value>
+void write_channel(const std::string& path, const std::string& channel, Imf::PixelType type, int width,
+                   int height, std::span<const Value> values, bool overwrite) {
+    AtomicFile target(path, overwrite);
+    MemoryOutput memory;
+    translate_errors(ErrorKind::kIo, cat(path, ": cannot write the EXR"), [&] {
+        Imf::Header header(width, height, 1, {0, 0}, 1, Imf::INCREASING_Y, Imf::ZIP_COMPRESSION);
+        header.channels().insert(channel, Imf::Channel(type));
+        Imf::FrameBuffer buffer;
+        buffer.insert(channel, Imf::Slice::Make(type, values.data(), {0, 0}, width, height));
+        Imf::OutputFile file(memory, header, /*numThreads=*/0);
+        file.setFrameBuffer(buffer);
+        file.writePixels(height);
+    });
+    target.write(memory.bytes);
+    target.commit();
+}
+
 }  // namespace
+
+void write_exr_channel(const std::string& path, const std::string& channel, int width, int height,
+                       std::span<const Id> values, bool overwrite) {
+    write_channel(path, channel, Imf::UINT, width, height, values, overwrite);
+}
+
+void write_exr_channel(const std::string& path, const std::string& channel, int width, int height,
+                       std::span<const float> values, bool overwrite) {
+    write_channel(path, channel, Imf::FLOAT, width, height, values, overwrite);
+}
 
 void write_exr_parts(const std::string& path, const std::vector<NamedImage>& parts, bool overwrite) {
     AtomicFile target(path, overwrite);

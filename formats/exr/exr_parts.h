@@ -1,9 +1,11 @@
 // Writes several images as the parts of one EXR file. Target imgmesh::pictures.
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
+#include "libcore/base/types.h"
 #include "libcore/image/image.h"
 
 namespace imgmesh {
@@ -22,5 +24,11 @@ struct NamedImage {
 /// The file appears whole or not at all. Throws Error(kIo) if it cannot be written, or exists and
 /// `overwrite` is false.
 void write_exr_parts(const std::string& path, const std::vector<NamedImage>& parts, bool overwrite);
+
+/// Writes one channel, UINT or FLOAT, of width * height values as an EXR of one part. Otherwise as above.
+void write_exr_channel(const std::string& path, const std::string& channel, int width, int height,
+                       std::span<const Id> values, bool overwrite);
+void write_exr_channel(const std::string& path, const std::string& channel, int width, int height,
+                       std::span<const float> values, bool overwrite);
 
 }  // namespace imgmesh

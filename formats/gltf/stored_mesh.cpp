@@ -6,7 +6,6 @@
 #include <compare>
 #include <numeric>
 #include <span>
-#include <tuple>
 
 #include "formats/files/sha256.h"
 #include "formats/findings/findings.h"
@@ -28,6 +27,14 @@ std::array<Vec2f, 3> corners(const BaseMesh& mesh, const Face& face) {
     return {mesh.position[face[0]], mesh.position[face[1]], mesh.position[face[2]]};
 }
 
+// As <=> of arrays, which not every library has.
+template <typename T, std::size_t N>
+std::partial_ordering order_of(const std::array<T, N>& a, const std::array<T, N>& b) {
+    for (std::size_t i = 0; i < N; ++i)
+        if (const std::partial_ordering order = a[i] <=> b[i]; order != 0) return order;
+    return std::partial_ordering::equivalent;
+}
+
 struct Corner {
     std::array<float, 3> position;
     std::array<std::uint16_t, 4> color;
@@ -35,11 +42,10 @@ struct Corner {
     Id vertex;
 
     std::partial_ordering operator<=>(const Corner& other) const {
-        if (const auto order = std::tie(position, color) <=> std::tie(other.position, other.color);
-            order != 0)
-            return order;
+        if (const auto order = order_of(position, other.position); order != 0) return order;
+        if (const auto order = order_of(color, other.color); order != 0) return order;
         if (!mesh->hdr.empty())
-            if (const auto order = mesh->hdr[vertex] <=> other.mesh->hdr[other.vertex]; order != 0)
+            if (const auto order = order_of(mesh->hdr[vertex], other.mesh->hdr[other.vertex]); order != 0)
                 return order;
         for (std::size_t c = 0; c < mesh->channels.size(); ++c)
             if (const auto order = mesh->channels[c][vertex] <=> other.mesh->channels[c][other.vertex];
