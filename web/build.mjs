@@ -23,6 +23,11 @@ function checkEngine() {
     if (!existsSync(join(engine, name))) fail(`${join(engine, name)} is not there; ./run build web makes it`);
 }
 
+function copyDraco(folder) {
+  for (const name of ["draco_encoder.wasm", "draco_decoder.wasm"])
+    copyFileSync(join(web, "node_modules/draco3d", name), join(folder, name));
+}
+
 function tsc(...options) {
   try {
     execFileSync(process.execPath, [join(web, "node_modules/typescript/bin/tsc"), ...options], { stdio: "inherit" });
@@ -42,6 +47,7 @@ function buildPackage() {
   tsc("-p", join(folder, "tsconfig.json"));
   copyFileSync(join(folder, "src/engine.d.mts"), join(dist, "engine.d.mts"));
   for (const name of ["engine.mjs", "engine.wasm"]) copyFileSync(join(engine, name), join(dist, name));
+  copyDraco(dist);
   copyFileSync(join(root, "LICENSE"), join(folder, "LICENSE"));
 }
 
@@ -50,6 +56,15 @@ const findEngine = {
   name: "engine",
   setup(build) {
     build.onResolve({ filter: /^\.\/engine\.mjs$/ }, () => ({ path: join(engine, "engine.mjs") }));
+  },
+};
+
+// draco3d asks for these where it runs in Node.
+const noNode = {
+  name: "no-node",
+  setup(build) {
+    build.onResolve({ filter: /^(fs|path)$/ }, ({ path }) => ({ path, namespace: "no-node" }));
+    build.onLoad({ filter: /.*/, namespace: "no-node" }, () => ({ contents: "module.exports = {}" }));
   },
 };
 
@@ -68,7 +83,7 @@ async function buildStudio(out) {
     sourcemap: process.env.IMGMESH_SOURCEMAP === "1",
     legalComments: "none",
     tsconfig: join(web, "tsconfig.json"),
-    plugins: [findEngine],
+    plugins: [findEngine, noNode],
     logLevel: "warning",
   });
   await esbuild.build({
@@ -79,6 +94,7 @@ async function buildStudio(out) {
     logLevel: "warning",
   });
   copyFileSync(join(engine, "engine.wasm"), join(assets, "engine.wasm"));
+  copyDraco(assets);
   cpSync(join(studio, "static"), out, { recursive: true });
 }
 

@@ -9,6 +9,7 @@
 #include "libcore/recon/draw.h"
 #include "libcore/recon/level_colors.h"
 #include "web/engine/guarded.h"
+#include "web/engine/mesh_files.h"
 #include "web/engine/mesh_value.h"
 #include "web/engine/pixels.h"
 
@@ -181,7 +182,10 @@ EMSCRIPTEN_BINDINGS(imgmesh_mesh) {
         .function("draw", draw_mesh)
         .function("svg", svg)
         .function("quality", quality)
-        .function("compare", compare);
+        .function("compare", compare)
+        .function("save", save_container)
+        .function("exportText", export_text)
+        .function("exportTextured", export_textured);
 }
 
 }  // namespace imgmesh::web

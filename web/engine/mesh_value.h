@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "formats/container/container.h"
 #include "libcore/mesh/mesh_image.h"
 #include "libcore/pipeline/build.h"
 
@@ -16,6 +17,11 @@ struct MeshValue {
     MeshImage mesh_image;
     std::optional<BuildReport> report = {};  ///< of a mesh that was built here
     std::vector<std::string> warnings = {};  ///< by that build
+    // How it is saved unless another way is asked for: as the container was from which it comes.
+    Texture texture = {};
+    ExrMetadata metadata = {};
+    DracoMode draco = DracoMode::kEdgebreaker;
+    LayerLayout layers = LayerLayout::kExr;
 
     const Level& level(int index) const;  ///< Throws Error(kBadArgument) for a level that does not exist.
 };

@@ -2,7 +2,8 @@
 # found; so links to those that are needed stand in a folder of their own.
 set(_headers ${CMAKE_BINARY_DIR}/headers)
 file(MAKE_DIRECTORY ${_headers})
-foreach(_name eigen3/Eigen nlohmann)
+foreach(_name eigen3/Eigen nlohmann tiny_gltf.h Imath/half.h Imath/ImathExport.h Imath/ImathNamespace.h
+    Imath/ImathConfig.h Imath/ImathPlatform.h)
   get_filename_component(_link ${_name} NAME)
   if(NOT EXISTS /usr/include/${_name})
     message(FATAL_ERROR "/usr/include/${_name} is not there; './run setup studio' installs it")

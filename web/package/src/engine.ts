@@ -1,5 +1,6 @@
 // The functions that the WebAssembly module exports (web/engine/bind_*.cpp), and how it starts. Each theme adds
 // its own functions to the interface Engine by declaration merging.
+import { libraries, type Libraries } from "./libraries.js";
 import type { BuildOptions, BuildParameters, Comparison, DrawMode, MeshFacts, Parameter, Pixels, Quality } from "./types.js";
 
 export interface Engine {
@@ -38,6 +39,7 @@ export interface EngineMesh extends EngineObject {
 export type EngineSource = string | URL | BufferSource | WebAssembly.Module;
 
 interface Loader {
+  libraries: Libraries;
   wasmBinary?: BufferSource;
   instantiateWasm?: (
     imports: WebAssembly.Imports,
@@ -63,6 +65,7 @@ export async function startEngine(source: EngineSource): Promise<Engine> {
   const create = (await import("./engine.mjs")).default as CreateEngine;
   return new Promise((resolve, reject) => {
     create({
+      libraries,
       instantiateWasm(imports, ready) {
         WebAssembly.instantiate(module, imports).then((instance) => ready(instance, module), reject);
         return {};

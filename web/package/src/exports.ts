@@ -13,5 +13,8 @@ export {
 export {
   WarpSession, type FloatMap, type VertexSelection, type WarpEdit, type WarpEdits, type WarpHandle, type WarpSolver,
 } from "./warp.js";
+export { needsDraco, savesWithDraco, type NamedFile, type SaveOptions } from "./container.js";
+export type { DracoSource } from "./draco.js";
+export type { TextFormat } from "./export.js";
 export type { EngineSource } from "./engine.js";
 export * from "./types.js";

@@ -1,5 +1,6 @@
 // The engine with a friendly surface.
 import { startEngine, type Engine, type EngineSource } from "./engine.js";
+import type { NamedFile } from "./container.js";
 import { Mesh } from "./mesh.js";
 import { segmentMesh, type Segmentation, type SegmentOptions } from "./segment.js";
 import type { BuildOptions, BuildParameters, Parameter, Pixels } from "./types.js";
@@ -41,6 +42,27 @@ export class Imgmesh {
    */
   segment(mesh: Mesh, pixels: Pixels | null = null, options: SegmentOptions = {}): Segmentation {
     return segmentMesh(this.engine, mesh, pixels, options);
+  }
+
+  /**
+   * Opens a container: a .glb, or a .gltf and the files that it names, in any order. Where needsDraco() says so,
+   * loadDraco() must have finished before. Throws ImgmeshError, of one line, for whatever is wrong with the files.
+   */
+  open(files: NamedFile[]): Mesh {
+    return new Mesh(this.engine.open(files));
+  }
+
+  /** Pixels as a PNG of 8 bits. */
+  encodePng(pixels: Pixels): Uint8Array {
+    return this.engine.encodePng(pixels);
+  }
+
+  /**
+   * One label for each pixel, 4294967295 for none, as the file `name`: .png (16 bits, labels up to 65534), .tif,
+   * .npy, .mat or .exr, as imgmesh-segment writes them.
+   */
+  exportLabels(name: string, width: number, height: number, labels: Uint32Array): Uint8Array {
+    return this.engine.exportLabels(name, width, height, labels);
   }
 }
 

@@ -1,5 +1,7 @@
 // A mesh image: the meshes of all levels with their pixel maps.
+import type { NamedFile, SaveOptions } from "./container.js";
 import type { EngineMesh } from "./engine.js";
+import type { TextFormat } from "./export.js";
 import type { Comparison, DrawMode, MeshFacts, Pixels, Quality } from "./types.js";
 
 /**
@@ -56,6 +58,27 @@ export class Mesh {
   /** The mesh as an SVG document; gradient gives each face a linear gradient. */
   svg(mode: "flat" | "wire" | "gradient" = "flat", level = 0): string {
     return this.handle.svg(mode, level);
+  }
+
+  /**
+   * Saves a container, or a plain glTF asset; the file `name` comes first. Where savesWithDraco() says so,
+   * loadDraco() must have finished before.
+   */
+  save(options: SaveOptions): NamedFile[] {
+    return this.handle.save(options);
+  }
+
+  /** A level as a text file of another program; `image` is the file that a sprite names. */
+  exportText(format: TextFormat, level = 0, image = "image.png"): string {
+    return this.handle.exportText(format, level, image);
+  }
+
+  /**
+   * A level as NAME.obj, NAME.mtl and NAME-texture.png (or .jpg) under a picture: the bytes of a PNG or JPEG of the
+   * image, or those that the container came with.
+   */
+  exportTextured(name: string, level = 0, texture?: Uint8Array): NamedFile[] {
+    return this.handle.exportTextured(name, level, texture);
   }
 
   quality(level = 0): Quality {
