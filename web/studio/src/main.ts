@@ -1,6 +1,7 @@
 // Puts the page together.
 import { App } from "./app";
 import type { Panel } from "./contracts";
+import { makeExportPanel } from "./export/export_panel";
 import { makeMeshPanel } from "./mesh/mesh_panel";
 import { decodePicture } from "./open/decode";
 import { addIncoming } from "./open/incoming";
@@ -18,7 +19,11 @@ const app = new App(view, status);
 const bar = makeViewBar(app, view);
 const meshPanel = makeMeshPanel(app, status.progress);
 bar.onLevel = () => meshPanel.showLevel(bar.level);
-const panels: Panel[] = [meshPanel, makeWarpPanel(app, (levels) => meshPanel.buildLevels(levels))];
+const panels: Panel[] = [
+  meshPanel,
+  makeWarpPanel(app, (levels) => meshPanel.buildLevels(levels)),
+  makeExportPanel(app),
+];
 
 byId("stage").append(view.element);
 byId("view-bar").append(bar.element);
