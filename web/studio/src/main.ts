@@ -1,7 +1,7 @@
 // Puts the page together.
 import { App } from "./app";
-import type { Panel } from "./contracts";
 import { makeExportPanel } from "./export/export_panel";
+import type { Panel, Picture } from "./contracts";
 import { makeMeshPanel } from "./mesh/mesh_panel";
 import { decodePicture } from "./open/decode";
 import { addIncoming } from "./open/incoming";
@@ -34,19 +34,33 @@ app.on("picture", () => {
 });
 
 let opening = 0;
-/** Opens what came in, and meshes it. What was open stays if it cannot be read. */
+const isContainer = ({ name }: File): boolean => /\.(glb|gltf)$/i.test(name);
+const isSidecar = ({ name }: File): boolean => /\.(bin|exr|imgmap)$/i.test(name);
+
+/** Opens what came in, and meshes an image. What was open stays if it cannot be read. */
 async function open(files: File[]): Promise<void> {
   const mine = ++opening;
   try {
-    const file = files[0]!;
-    app.tell(`Reading ${file.name} …`);
-    const picture = await decodePicture(file, file.name);
-    if (mine !== opening) return picture.bitmap.close(); // another file came in the meantime
-    app.setPicture(picture);
+    const container = files.find(isContainer);
+    const image = files.find((file) => !isContainer(file) && !isSidecar(file));
+    app.tell(`Reading ${(container ?? image ?? files[0]!).name} …`);
+    if (!container && !image)
+      throw new Error(`${files[0]!.name} belongs to a container: choose it together with its .gltf file.`);
+    const picture = image ? await decodePicture(image, image.name) : null;
+    if (mine !== opening) return picture?.bitmap.close(); // another file came in the meantime
+    if (container) return await openContainer(container, files.filter((file) => file !== image), picture);
+    app.setPicture(picture!);
     await meshPanel.build();
   } catch (error) {
     if (mine === opening) app.fail(error);
   }
+}
+
+async function openContainer(container: File, files: File[], original: Picture | null): Promise<void> {
+  const named = await Promise.all(files.map(async (file) => ({ name: file.name, bytes: new Uint8Array(await file.arrayBuffer()) })));
+  status.progress(0, "opening");
+  if (await app.openContainer(container.name, named, original))
+    app.tell(`Opened ${container.name}: ${app.facts!.levels[0]!.vertices} vertices.`);
 }
 addIncoming(byId<HTMLInputElement>("open"), (files) => void open(files));
 

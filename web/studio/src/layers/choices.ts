@@ -2,7 +2,7 @@
 import type { Layer, Overlay, Session } from "../contracts";
 import type { App } from "../app";
 import type { MeshArrays } from "../worker/view";
-import type { Pixels } from "imgmesh.wasm";
+import { bitmapOf } from "../open/bitmap";
 import { facePainter } from "./gl_faces";
 import { wireOverlay } from "./wire";
 
@@ -16,13 +16,6 @@ export const kChoices: readonly { id: Choice; label: string; title: string }[] =
   { id: "flat", label: "Flat triangles", title: "Each triangle in one colour" },
   { id: "patches", label: "Patches", title: "The pixels that belong to each triangle, in colours that tell them apart" },
 ];
-
-/** Returns pixels as a bitmap; those of a typed array of its own are not copied. */
-export function bitmapOf(pixels: Pixels): Promise<ImageBitmap> {
-  const data = pixels.data;
-  const view = new Uint8ClampedArray(data.buffer as ArrayBuffer, data.byteOffset, data.byteLength);
-  return createImageBitmap(new ImageData(view, pixels.width, pixels.height), { premultiplyAlpha: "default" });
-}
 
 /** The layers of one level of one mesh, each fetched when it is wanted first. */
 export class MeshLayers {

@@ -7,13 +7,16 @@ import { h } from "../ui/dom";
 const kRows = [
   { id: "vertices", label: "Vertices", help: "corners of the triangles" },
   { id: "faces", label: "Triangles", help: "faces of the mesh" },
-  { id: "bytes", label: "File", help: "size of the container (.glb) with mesh and pixel map" },
+  { id: "bytes", label: "File", help: "size of the container (.glb) with mesh and pixel map, as the page saves it" },
   { id: "rms", label: "Error", help: "RMS difference of the reconstruction in L*u*v*, the unit of seen colour; 1 is hardly visible" },
   { id: "psnr", label: "PSNR", help: "the same as a ratio in decibels; more is better, and 40 dB is hardly visible" },
   { id: "folds", label: "Folds", help: "triangles that are turned over; always 0 after a build" },
   { id: "time", label: "Time", help: "of the build, in this browser" },
 ] as const;
 type RowId = (typeof kRows)[number]["id"];
+
+/** The container of an image up to this size is saved at once to see how large it is. */
+const kQuickPixels = 5e6;
 
 export function bytesText(bytes: number): string {
   if (bytes < 1000) return `${bytes} bytes`;
@@ -51,11 +54,27 @@ export function makeFigures(app: App): { element: HTMLElement; show(level: numbe
     if (app.seconds !== null) set("time", `${app.seconds.toFixed(app.seconds < 10 ? 2 : 1)} s`);
     const figures: Figures = await session.ask("view.figures", { level });
     if (mine !== request) return;
+    void showBytes();
     set("folds", count(figures.quality.flippedFaces + figures.quality.flippedPixelTriangles));
     if (!figures.comparison) return;
     set("rms", figures.comparison.rmsLuv.toFixed(2));
     const { psnr } = figures.comparison;
     set("psnr", Number.isFinite(psnr) ? `${psnr.toFixed(2)} dB` : "no difference");
+  }
+
+  /** Saves the container to see its size, at once where that is quick. */
+  async function showBytes(): Promise<void> {
+    const { session, facts } = app, value = values.get("bytes")!;
+    if (!session || !facts) return;
+    if (app.bytes !== null) return set("bytes", bytesText(app.bytes));
+    const measure = async (): Promise<void> => {
+      set("bytes", "…");
+      const files = await session.ask("export.container", { options: { name: "image.glb", layers: "compact" } });
+      if (app.session === session) set("bytes", bytesText(files.reduce((sum, { bytes }) => sum + bytes.length, 0)));
+    };
+    const guarded = (): void => void measure().catch((error: unknown) => app.session === session && app.fail(error));
+    if (facts.width * facts.height <= kQuickPixels) return guarded();
+    value.replaceChildren(h("button", { type: "button", class: "small", title: "Takes a few seconds", click: guarded }, "measure"));
   }
   return {
     element: h("section", { "aria-label": "Figures" }, list,

@@ -5,9 +5,12 @@ import { kIcons } from "./icons";
 
 /** Stages of a build as the engine calls them, in words for everybody. */
 const kStages: Record<string, string> = {
-  collapse: "merging vertices",
-  refine: "moving vertices to lower the error",
-  map: "finding a place for every pixel",
+  starting: "Building",
+  opening: "Opening the container",
+  collapse: "Building: merging vertices",
+  refine: "Building: moving vertices to lower the error",
+  map: "Building: finding a place for every pixel",
+  done: "Building",
 };
 
 /** The engine's messages begin small and have no full stop. Names of files stay as they are. */
@@ -43,7 +46,7 @@ export function makeStatusBar(): StatusBar {
       bar.hidden = fraction === null;
       if (fraction === null) return;
       bar.value = fraction;
-      const text = `Building: ${kStages[stage] ?? stage}. Escape stops it.`;
+      const text = `${kStages[stage] ?? `Building: ${stage}`}. Escape stops it.`;
       if (text === said) return;
       if (fraction === 0) clear();
       said = text;

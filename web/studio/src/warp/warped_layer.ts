@@ -1,6 +1,6 @@
 // The warped image as a side of the view: by WebGL while the hand moves, sample by sample when it rests.
 import type { Layer, Session, Studio, ViewTransform } from "../contracts";
-import { bitmapOf } from "../layers/choices";
+import { bitmapOf } from "../open/bitmap";
 import type { WarpEditor } from "./editor";
 import { GlStage } from "./gl_stage";
 import { kMostSamples, Preview } from "./preview";

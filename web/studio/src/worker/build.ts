@@ -9,6 +9,8 @@ declare module "../contracts" {
       args: { pixels: Pixels; parameters: BuildParameters; options: Omit<BuildOptions, "onProgress"> };
       result: MeshFacts;
     };
+    /** Figures of a container that was opened are those against these pixels from now on. */
+    "build.compareWith": { args: { pixels: Pixels }; result: void };
   }
 }
 
@@ -30,6 +32,9 @@ export function methods(state: WorkerState): MethodTable<"build"> {
       state.pixels = pixels;
       state.mesh = mesh;
       return mesh.facts();
+    },
+    "build.compareWith"({ pixels }) {
+      state.pixels = pixels;
     },
   };
 }
