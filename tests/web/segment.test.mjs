@@ -80,6 +80,15 @@ test("regions are joined and split, keep their outlines under another cut, and c
   assert.equal(regions.split(3), false); // one cell
 });
 
+test("a number of regions counts those that the user made", () => {
+  const regions = new Regions(stripes(), 3);
+  regions.join([0, 1]);
+  for (const count of [2, 3]) {
+    regions.cut(regions.mergesFor(count));
+    assert.equal(regions.count, count);
+  }
+});
+
 test("what the user takes out of the middle leaves two regions", () => {
   const regions = new Regions(stripes());
   regions.join([2, 3]);

@@ -63,6 +63,8 @@ export class Regions {
   /** Steps, and where in them the user is. The current cut may be on its way to a step that is not there yet. */
   private steps: Step[];
   private at = 0;
+  /** Grows with every step that is new. */
+  version = 0;
 
   constructor(data: SegmentationData, merges = 0) {
     this.data = data;
@@ -97,10 +99,19 @@ export class Regions {
     return low;
   }
 
-  /** How many merges leave this number of regions, or as near as possible, where none is the user's own. */
+  /** How many merges leave this number of regions, or nearly so where there is none or the user made some. */
   mergesFor(count: number): number {
     const { count: cells, forced, heights } = this.data;
-    return cells - Math.min(Math.max(Math.round(count), cells - heights.length), cells - forced);
+    const possible = (merges: number): number => Math.min(Math.max(merges, forced), heights.length);
+    let merges = possible(cells - Math.round(count));
+    if (!this.edited) return merges;
+    // A merge makes at most one region fewer, and none inside what the user made.
+    for (let tries = 0; tries < 8; ++tries) {
+      const next = possible(merges + this.tableOf(merges).count - Math.round(count));
+      if (next === merges) break;
+      merges = next;
+    }
+    return merges;
   }
 
   /** The height of the last merge that is done. */
@@ -222,6 +233,7 @@ export class Regions {
   private remember(): void {
     this.steps = [...this.steps.slice(0, this.at + 1), this.step];
     this.at = this.steps.length - 1;
+    ++this.version;
   }
 
   /** Makes cells the user's own: those for which `group` gives the same number are one region. */
@@ -241,24 +253,29 @@ export class Regions {
   }
 
   private update(): void {
-    const { count, merges, borders } = this.data, { own, merges: done } = this.step;
+    Object.assign(this, this.tableOf(this.step.merges));
+  }
+
+  /** The region of every cell after so many merges, beside what the user made. */
+  private tableOf(done: number): { table: Uint32Array; count: number } {
+    const { count: cells, merges, borders } = this.data, { own } = this.step;
     // As regions_after() in C++: the cells of a merge begin their regions, and the first is the lower.
-    let root = new Uint32Array(count);
-    for (let cell = 0; cell < count; ++cell) root[cell] = cell;
+    let root = new Uint32Array(cells);
+    for (let cell = 0; cell < cells; ++cell) root[cell] = cell;
     for (let k = 0; k < done; ++k) root[merges[2 * k + 1]!] = merges[2 * k]!;
-    for (let cell = 0; cell < count; ++cell) root[cell] = root[root[cell]!]!;
+    for (let cell = 0; cell < cells; ++cell) root[cell] = root[root[cell]!]!;
     if (own) {
       // What the user made may cut what is left of a region into parts.
-      const sets = new Sets(count), whole = root;
+      const sets = new Sets(cells), whole = root;
       for (let e = 0; e < borders.length; e += 4) {
         const a = borders[e]!, b = borders[e + 1]!;
         if (own[a] === own[b] && (own[a] !== 0 || whole[a] === whole[b])) sets.join(a, b);
       }
       root = root.map((_, cell) => sets.find(cell));
     }
-    this.count = 0;
-    const table = new Uint32Array(count);
-    for (let cell = 0; cell < count; ++cell) table[cell] = root[cell] === cell ? this.count++ : table[root[cell]!]!;
-    this.table = table;
+    let count = 0;
+    const table = new Uint32Array(cells);
+    for (let cell = 0; cell < cells; ++cell) table[cell] = root[cell] === cell ? count++ : table[root[cell]!]!;
+    return { table, count };
   }
 }

@@ -5,6 +5,7 @@ import type { Panel, Picture } from "./contracts";
 import { makeMeshPanel } from "./mesh/mesh_panel";
 import { decodePicture } from "./open/decode";
 import { addIncoming } from "./open/incoming";
+import { makeSegmentPanel } from "./segment/segment_panel";
 import { loadEngine } from "./session";
 import { byId } from "./ui/dom";
 import { makeStatusBar } from "./ui/messages";
@@ -22,6 +23,7 @@ bar.onLevel = () => meshPanel.showLevel(bar.level);
 const panels: Panel[] = [
   meshPanel,
   makeWarpPanel(app, (levels) => meshPanel.buildLevels(levels)),
+  makeSegmentPanel(app),
   makeExportPanel(app),
 ];
 

@@ -4,6 +4,7 @@ import type { Report, WorkerState } from "../contracts";
 import * as build from "./build";
 import * as files from "./export";
 import type { Answer, PlainError, Question } from "./protocol";
+import * as segment from "./segment";
 import * as view from "./view";
 import * as warp from "./warp";
 
@@ -23,7 +24,7 @@ let queue: Promise<void> = Promise.resolve();
 
 async function start(module: WebAssembly.Module): Promise<Methods> {
   const state: WorkerState = { imgmesh: await loadImgmesh(module), pixels: null, mesh: null };
-  return { ...build.methods(state), ...view.methods(state), ...warp.methods(state), ...files.methods(state) };
+  return { ...build.methods(state), ...view.methods(state), ...warp.methods(state), ...segment.methods(state), ...files.methods(state) };
 }
 
 function plain(error: unknown): PlainError {
