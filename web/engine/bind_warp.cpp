@@ -5,6 +5,7 @@
 #include "libcore/base/error.h"
 #include "libcore/warp/warp_image.h"
 #include "libcore/warp/warp_maps.h"
+#include "web/engine/file_folder.h"
 #include "web/engine/guarded.h"
 #include "web/engine/pixels.h"
 #include "web/engine/warp_session.h"
@@ -78,19 +79,28 @@ val map_value(const Image& map) {
     return value;
 }
 
+// The alpha of the pixels counts where they are given.
+Image st_map_of(const WarpSession& session, const val& pixels) {
+    std::vector<float> alpha;
+    if (!pixels.isNull() && !pixels.isUndefined()) alpha = alpha_of(source_image(session, pixels));
+    const SourceInfo& source = session.mesh_image().source;
+    return st_map_image(inverse_map(session.field(), std::move(alpha)), source.width, source.height);
+}
+
 val displacement(const WarpSession& session) {
     return guarded([&] { return map_value(forward_map_image(session.field())); });
 }
 
-// The alpha of the pixels counts where they are given.
 val st_map(const WarpSession& session, const val& pixels) {
-    return guarded([&] {
-        std::vector<float> alpha;
-        if (!pixels.isNull() && !pixels.isUndefined()) alpha = alpha_of(source_image(session, pixels));
-        const SourceInfo& source = session.mesh_image().source;
-        return map_value(
-            st_map_image(inverse_map(session.field(), std::move(alpha)), source.width, source.height));
-    });
+    return guarded([&] { return map_value(st_map_of(session, pixels)); });
+}
+
+val displacement_exr(const WarpSession& session) {
+    return guarded([&] { return save_exr_parts({{"displacement", forward_map_image(session.field())}}); });
+}
+
+val st_map_exr(const WarpSession& session, const val& pixels) {
+    return guarded([&] { return save_exr_parts({{"stmap", st_map_of(session, pixels)}}); });
 }
 
 MeshPointer warped_mesh(const WarpSession& session) {
@@ -111,6 +121,8 @@ EMSCRIPTEN_BINDINGS(imgmesh_warp) {
         .function("picture", picture)
         .function("displacement", displacement)
         .function("stMap", st_map)
+        .function("displacementExr", displacement_exr)
+        .function("stMapExr", st_map_exr)
         .function("warpedMesh", warped_mesh);
 }
 

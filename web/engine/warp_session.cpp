@@ -76,7 +76,10 @@ MeshPointer WarpSession::warped_mesh() const {
     const auto warped =
         std::make_shared<MeshValue>(MeshValue{warp_mesh_image(mesh_image(), solution_.moves)});
     warped->mesh_image.generator = kGenerator;
-    return warped;
+    warped->texture = mesh_->texture;  // moves along: vertices keep their texture coordinates
+    warped->metadata = mesh_->metadata;
+    warped->draco = mesh_->draco;
+    return warped;  // with an EXR: on the moved mesh pixels lie on no grid
 }
 
 }  // namespace imgmesh::web

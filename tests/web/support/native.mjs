@@ -1,14 +1,14 @@
-// The tools, as a user calls them. IMGMESH_BIN is their folder.
+// The tools, as a user calls them. IMGMESH_BIN is their folder, build/dev/bin unless it is set.
 import { execFileSync } from "node:child_process";
 import fs from "node:fs";
 import os from "node:os";
 import path from "node:path";
+import { fileURLToPath } from "node:url";
 
-const kFolder = process.env.IMGMESH_BIN;
+const kFolder = process.env.IMGMESH_BIN ?? fileURLToPath(new URL("../../../build/dev/bin", import.meta.url));
 
 /** Runs a tool. Throws with what it says if it fails. */
 export function tool(name, ...args) {
-  if (!kFolder) throw new Error("IMGMESH_BIN is not set: expected the folder of the tools");
   return execFileSync(path.join(kFolder, name), args, { stdio: ["ignore", "pipe", "pipe"], encoding: "utf8" });
 }
 

@@ -57,6 +57,8 @@ interface EngineWarp extends EngineObject {
   picture(pixels: Pixels, width: number, height: number): Pixels;
   displacement(): FloatMap;
   stMap(pixels: Pixels | null): FloatMap;
+  displacementExr(): Uint8Array;
+  stMapExr(pixels: Pixels | null): Uint8Array;
   warpedMesh(): EngineMesh;
 }
 
@@ -122,7 +124,17 @@ export class WarpSession {
     return this.handle.stMap(pixels);
   }
 
-  /** The mesh with its vertices moved. Throws an ImgmeshError of kind unsupported where a face would turn over. */
+  /** The file of displacement(): a part of imgmesh-warp --displacement. */
+  displacementExr(): Uint8Array {
+    return this.handle.displacementExr();
+  }
+
+  /** The file of stMap(). */
+  stMapExr(pixels: Pixels | null = null): Uint8Array {
+    return this.handle.stMapExr(pixels);
+  }
+
+  /** The mesh with its vertices moved, to be saved. Throws an ImgmeshError of kind unsupported where a face would turn over. */
   warpedMesh(): Mesh {
     return new Mesh(this.handle.warpedMesh());
   }

@@ -54,6 +54,7 @@ export class WarpEditor {
   get current(): HandEdit | null {
     return this.state.edits.find(({ id }) => id === this.state.current) ?? null;
   }
+  /** Of the levels that were shown, and so may have edits. */
   get positions(): readonly (Float32Array | undefined)[] {
     return this.known.map((mesh) => mesh.arrays.positions);
   }

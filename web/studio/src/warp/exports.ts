@@ -36,6 +36,8 @@ export function makeExports(studio: Studio, editor: WarpEditor): { element: HTML
           session().ask("warp.exr", { map: "stmap" })),
         button("Displacement", "For compositors: how far each pixel of the image moves", "-displacement.exr", "image/x-exr", async () =>
           session().ask("warp.exr", { map: "displacement" })),
+        button("Container", "The meshes with their vertices moved, as a .glb", "-warped.glb", "model/gltf-binary", async () =>
+          (await session().ask("warp.container", { name: `${stem()}-warped.glb` }))[0]!.bytes),
       ),
     ),
     setEnabled(enabled) {

@@ -12,6 +12,7 @@ export class GlStage {
   constructor(view: HTMLElement) {
     this.canvas.className = "warp-gl";
     this.canvas.setAttribute("aria-hidden", "true");
+    this.canvas.hidden = true;
     this.context = this.canvas.getContext("webgl2", { antialias: false, premultipliedAlpha: true });
     this.canvas.addEventListener("webglcontextlost", (e) => e.preventDefault());
     this.canvas.addEventListener("webglcontextrestored", () => this.restored());
@@ -26,6 +27,7 @@ export class GlStage {
   /** Clears, and lets drawings reach only what the view shows of an image of this size. */
   begin(gl: WebGL2RenderingContext, view: CanvasRenderingContext2D, t: ViewTransform, size: { width: number; height: number }): void {
     const { width, height } = view.canvas;
+    this.canvas.hidden = false;
     if (this.canvas.width !== width || this.canvas.height !== height) [this.canvas.width, this.canvas.height] = [width, height];
     gl.viewport(0, 0, width, height);
     gl.disable(gl.SCISSOR_TEST);
@@ -37,6 +39,11 @@ export class GlStage {
     // The ground behind what is transparent is the canvas's own.
     this.canvas.style.clipPath = `inset(${t.y}px ${t.width - t.x - size.width * t.scale}px ${t.height - t.y - size.height * t.scale}px ${t.x}px)`;
     gl.scissor(left, height - bottom, right - left, bottom - top);
+  }
+
+  /** Until begin() is called again. */
+  hide(): void {
+    this.canvas.hidden = true;
   }
 
   remove(): void {

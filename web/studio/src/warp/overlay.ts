@@ -8,7 +8,7 @@ import { warpKey } from "./keys";
 /** Vertices are drawn where they are at least so far apart, in CSS pixels. */
 const kDotsFrom = 9;
 /** How near a click must be to take a vertex, in CSS pixels. */
-const kReach = 32;
+const kReach = 64;
 const kAccent = "#63e0cf", kPin = "#ffb454", kBad = "rgb(255 60 40 / 60%)", kDark = "#101214";
 
 type Drag =
@@ -39,7 +39,7 @@ export class WarpOverlay implements Overlay {
     if (!mesh) return null;
     const special = mesh.nearest(pointer, places, (v) => selection.has(v) || current?.moves.has(v) === true || current?.pins.has(v) === true);
     if (special && special.distance <= pointer.tolerance) return special.vertex;
-    const reach = Math.max(pointer.tolerance, Math.min(0.6 * mesh.spacing, kReach / this.transform().scale));
+    const reach = Math.max(pointer.tolerance, kReach / this.transform().scale);
     const nearest = mesh.nearest(pointer, places);
     return nearest && nearest.distance <= reach ? nearest.vertex : null;
   }

@@ -65,6 +65,7 @@ export function makeWarpPanel(studio: Studio, buildLevels: (levels: number) => v
     const { picture, facts: mesh } = studio;
     if (!warped || !picture || !mesh) return studio.showChosenSides();
     const original = { width: mesh.width, height: mesh.height, source: picture.bitmap };
+    if (holding) warped.hide();
     if (holding) studio.showOwnSides(original, null);
     else if (split.checked) studio.showOwnSides(original, warped.layer);
     else studio.showOwnSides(warped.layer, null);
@@ -190,6 +191,7 @@ export function makeWarpPanel(studio: Studio, buildLevels: (levels: number) => v
       editor.endDrag();
       removeOverlay?.();
       removeOverlay = null;
+      warped?.hide();
       studio.showChosenSides();
     },
   };

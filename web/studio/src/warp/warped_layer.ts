@@ -105,11 +105,18 @@ export class WarpedLayer {
       // The view's canvas lies above.
       context.clearRect(0, 0, t.width, t.height);
     } else {
+      this.stage.hide();
       context.imageSmoothingEnabled = t.scale * t.ratio < 3;
       context.imageSmoothingQuality = t.scale * t.ratio < 1 ? "medium" : "low";
       context.drawImage(bitmap ?? this.picture, t.x, t.y, t.scale * layer.width, t.scale * layer.height);
     }
     this.scriptTime = performance.now() - start;
+  }
+
+  /** Takes away what lies below the view; the next drawing brings it back. */
+  hide(): void {
+    this.hasWires = false;
+    this.stage.hide();
   }
 
   close(): void {

@@ -1,8 +1,6 @@
 // The worker's part of warping.
-import { WarpSession, type Pixels, type WarpEdits } from "imgmesh.wasm";
+import { loadDraco, savesWithDraco, WarpSession, type Mesh, type NamedFile, type Pixels, type WarpEdits } from "imgmesh.wasm";
 import type { MethodTable, WorkerState } from "../contracts";
-import { floatExr } from "../warp/exr";
-import { encodePng } from "../warp/png";
 import { sampledMaps, type SampledMaps } from "./warp_samples";
 
 /** More folded cells than these are counted, but not shown. */
@@ -38,22 +36,27 @@ declare module "../contracts" {
     /** The warped pixels; with at most `most` of them, if that is given. */
     "warp.picture": { args: { most?: number }; result: Pixels };
     "warp.png": { args: null; result: Uint8Array };
+    /** Throws where a face would turn over. */
+    "warp.container": { args: { name: string }; result: NamedFile[] };
     "warp.exr": { args: { map: "stmap" | "displacement" }; result: Uint8Array };
   }
   interface WorkerState {
-    warp?: WarpSession;
+    warp?: { mesh: Mesh; edits: WarpSession };
+    reconstruction?: Pixels;
   }
 }
 
 export function methods(state: WorkerState): MethodTable<"warp"> {
   const session = (): WarpSession => {
     if (!state.mesh) throw new Error("there is no mesh yet");
-    return (state.warp ??= new WarpSession(state.imgmesh, state.mesh));
+    if (state.warp?.mesh !== state.mesh) {
+      state.warp?.edits.free();
+      state.warp = { mesh: state.mesh, edits: new WarpSession(state.imgmesh, state.mesh) };
+    }
+    return state.warp.edits;
   };
-  const pixels = (): Pixels => {
-    if (!state.pixels) throw new Error("the pixels of the image are not known");
-    return state.pixels;
-  };
+  // A container that was opened alone has only its reconstruction.
+  const pixels = (): Pixels => state.pixels ?? (state.reconstruction ??= state.mesh!.draw());
   return {
     "warp.solve": ({ edits, level, drag }) => {
       const warp = session(), start = performance.now(), missed = warp.solve(edits, drag);
@@ -81,8 +84,16 @@ export function methods(state: WorkerState): MethodTable<"warp"> {
       const scaled = (side: number): number => Math.max(1, Math.round(share * side));
       return session().picture(pixels(), share < 1 ? { width: scaled(width), height: scaled(height) } : undefined);
     },
-    "warp.png": () => encodePng(session().picture(pixels())),
-    "warp.exr": async ({ map }) =>
-      floatExr(map === "stmap" ? session().stMap(state.pixels) : session().displacement()),
+    "warp.png": () => state.imgmesh.encodePng(session().picture(pixels())),
+    "warp.exr": ({ map }) => (map === "stmap" ? session().stMapExr(state.pixels) : session().displacementExr()),
+    async "warp.container"({ name }) {
+      const warped = session().warpedMesh();
+      try {
+        if (savesWithDraco({ name })) await loadDraco();
+        return warped.save({ name });
+      } finally {
+        warped.free();
+      }
+    },
   };
 }
