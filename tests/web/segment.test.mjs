@@ -185,7 +185,8 @@ test("labels, shapes, drawings and masks are those of imgmesh-segment, to the bi
   for (const [name, pixels] of Object.entries({ landscape: landscape(), ring: ring() })) {
     const flat = name === "landscape" ? pixels : { ...pixels, data: pixels.data.map((v, i) => (i % 4 === 3 ? (v > 127 ? 255 : 0) : v)) };
     fs.writeFileSync(file("in.png"), encodePng(flat));
-    tool("imgmesh-build", "--quiet", file("in.png"), "-o", file("in.glb"), "--density", "12", "--overwrite");
+    // Draco would round the vertices, which the mesh in pieces shows.
+    tool("imgmesh-build", "--quiet", file("in.png"), "-o", file("in.glb"), "--density", "12", "--overwrite", "--draco", "none");
     for (const [options, native] of [
       [{}, []],
       [{ quality: "fast" }, ["--quality", "fast"]],
@@ -199,19 +200,23 @@ test("labels, shapes, drawings and masks are those of imgmesh-segment, to the bi
           if (count) regions.cut(regions.mergesFor(count));
           tool("imgmesh-segment", "--quiet", "--overwrite", file("in.glb"), "--image", file("in.png"), "-o", file("l.npy"), ...native,
             ...(count ? ["--segments", String(count)] : []), "--svg", file("r.svg"), "--colors", file("c.png"), "--flat", file("f.png"),
-            "--outlines", file("o.png"));
+            "--outlines", file("o.png"), "--mesh", file("p.glb"), "--ucm", file("u.npy"));
           assert.deepEqual(regions.labels(), readNpy(file("l.npy")));
           assert.equal(segmentation.svg(regions.table), fs.readFileSync(file("r.svg"), "utf8"));
+          assert.deepEqual(Buffer.from(segmentation.pieces(regions.table)), fs.readFileSync(file("p.glb")));
+          assert.deepEqual(Buffer.from(segmentation.contourFile("u.npy")), fs.readFileSync(file("u.npy")));
           for (const [what, png] of [["colors", "c.png"], ["flat", "f.png"], ["outlines", "o.png"]])
             assert.deepEqual([...segmentation.draw(what, regions.table).data], [...decodePng(fs.readFileSync(file(png))).data], `${name} ${what}`);
         }
       });
     segmented(flat, {}, (segmentation) => {
-      const mask = segmentation.mask(segmentation.regions().table, [[{ x: 66, y: 18 }]], [[{ x: 9, y: 20 }, { x: 14, y: 40 }]]);
+      const marks = [segmentation.regions().table, [[{ x: 66, y: 18 }]], [[{ x: 9, y: 20 }, { x: 14, y: 40 }]]];
+      const mask = segmentation.mask(...marks);
       tool("imgmesh-segment", "--quiet", "--overwrite", file("in.glb"), "--image", file("in.png"), "-o", file("l.npy"), "--keep", "66,18",
         "--drop", "9,20:14,40", "--mask", file("m.png"));
       const expected = decodePng(fs.readFileSync(file("m.png"))).data;
       assert.ok(mask.every((inside, i) => inside === Number(expected[4 * i] === 255)));
+      assert.deepEqual(decodePng(segmentation.maskPng(...marks)), { ...flat, data: expected }); // packed by another library
     });
   }
 });

@@ -13,7 +13,6 @@
 #include "libcore/segment/region_colors.h"
 #include "libcore/segment/region_faces.h"
 #include "libcore/segment/regions_svg.h"
-#include "libcore/segment/seeds.h"
 #include "web/engine/guarded.h"
 #include "web/engine/mesh_value.h"
 #include "web/engine/pixels.h"
@@ -228,54 +227,11 @@ val contours(const SegmentValue& value) {
     });
 }
 
-void add_seeds(std::vector<Seed>& seeds, const val& lines, bool keep) {
-    const auto coordinate = [](const val& point, const char* name) {
-        const double value = number(point, name);
-        if (!(std::abs(value) < 1e9))
-            throw Error(ErrorKind::kBadArgument, cat(name, ": expected a pixel's place"));
-        return static_cast<std::int64_t>(std::lround(value));
-    };
-    for (const val& line : emscripten::vecFromJSArray<val>(lines)) {
-        Seed seed{{}, keep, keep ? "keep" : "drop"};
-        for (const val& point : emscripten::vecFromJSArray<val>(line)) {
-            const std::int64_t x = coordinate(point, "x"), y = coordinate(point, "y");
-            seed.where += cat(seed.points.empty() ? " (" : ", (", x, ", ", y, ")");
-            seed.points.push_back({x, y});
-        }
-        if (!seed.points.empty()) seeds.push_back(std::move(seed));
-    }
-}
-
 val mask(SegmentValue& value, const val& table, const val& keep, const val& drop) {
-    return guarded([&] {
-        std::vector<Seed> seeds;
-        add_seeds(seeds, keep, true);
-        add_seeds(seeds, drop, false);
-        value.result.labels = labels_from(value, table);
-        return typed_array(choose_by_seeds(value.result, seeds).values, "Uint8Array");
-    });
+    return guarded([&] { return typed_array(mask_from(value, table, keep, drop).values, "Uint8Array"); });
 }
 
 }  // namespace
-
-LabelImage labels_from(const SegmentValue& value, const val& table) {
-    const Cells& cells = value.result.cells;
-    std::vector<std::uint32_t> regions(table["length"].as<std::size_t>());
-    if (regions.size() != cells.count())
-        throw Error(ErrorKind::kBadArgument,
-                    cat("the table has ", regions.size(), " regions of cells, expected ", cells.count()));
-    val(emscripten::typed_memory_view(regions.size(), regions.data())).call<void>("set", table);
-    Id count = 0;
-    for (const Id region : regions) {
-        if (region > count)
-            throw Error(ErrorKind::kBadArgument, "regions are not numbered by their first cells");
-        count = std::max(count, region + 1);
-    }
-    LabelImage labels(cells, count);
-    for (Id& label : labels)
-        if (label != kNone) label = regions[label];
-    return labels;
-}
 
 EMSCRIPTEN_BINDINGS(imgmesh_segment) {
     emscripten::class_<SegmentValue>("Segmentation")
@@ -287,11 +243,14 @@ EMSCRIPTEN_BINDINGS(imgmesh_segment) {
         .function("borders", borders)
         .function("sums", sums)
         .function("faceRegions", face_regions)
+        .function("pieces", region_pieces)
         .function("regions", region_list)
         .function("draw", draw)
         .function("svg", svg)
         .function("contours", contours)
-        .function("mask", mask);
+        .function("mask", mask)
+        .function("maskPng", mask_png)
+        .function("contourFile", contour_file);
     emscripten::function("segment", segment_mesh);
 }
 

@@ -80,6 +80,9 @@ test("regions are chosen, joined by a stroke, split by a click, and come back", 
   assert.equal(svg.bytes.toString().match(/id="region-/g).length, 3);
   const wide = await save("Labels (PNG)");
   assert.equal(wide.bytes.readUInt8(24), 16); // bits a sample
+  const pieces = await save("Mesh in pieces (.glb)");
+  assert.equal(pieces.name, "quarters-pieces.glb");
+  assert.equal(pieces.bytes.toString("latin1", 0, 4), "glTF");
   const flat = decodePng((await save("Mean colours (PNG)")).bytes);
   assert.deepEqual([flat.width, flat.height], [160, 160]);
   assert.deepEqual([...flat.data.subarray(0, 4)], [...flat.data.subarray(4, 8)]);

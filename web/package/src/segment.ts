@@ -63,6 +63,9 @@ export interface EngineSegmentation extends EngineObject {
   svg(table: Uint32Array, tolerance: number): string;
   contours(): ContourMap;
   mask(table: Uint32Array, keep: readonly SeedLine[], drop: readonly SeedLine[]): Uint8Array;
+  maskPng(table: Uint32Array, keep: readonly SeedLine[], drop: readonly SeedLine[]): Uint8Array;
+  pieces(table: Uint32Array): Uint8Array;
+  contourFile(name: string): Uint8Array;
 }
 
 declare module "./engine.js" {
@@ -141,6 +144,21 @@ export class Segmentation {
    */
   mask(table: Uint32Array, keep: readonly SeedLine[], drop: readonly SeedLine[]): Uint8Array {
     return this.handle.mask(table, keep, drop);
+  }
+
+  /** The same as a .png, white inside and black outside. */
+  maskPng(table: Uint32Array, keep: readonly SeedLine[], drop: readonly SeedLine[]): Uint8Array {
+    return this.handle.maskPng(table, keep, drop);
+  }
+
+  /** The mesh in pieces as a .glb: a primitive and a material region-<number> for every region with faces. */
+  pieces(table: Uint32Array): Uint8Array {
+    return this.handle.pieces(table);
+  }
+
+  /** The contour map as the file `name`: .npy, or .mat for the benchmark of BSDS500. */
+  contourFile(name: string): Uint8Array {
+    return this.handle.contourFile(name);
   }
 
   free(): void {

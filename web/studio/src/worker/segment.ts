@@ -10,15 +10,28 @@ export interface SegmentStart {
   missed: string;
 }
 
+export interface Marked {
+  table: Uint32Array;
+  keep: SeedLine[];
+  drop: SeedLine[];
+}
+
 declare module "../contracts" {
   interface Methods {
     /** Computes a segmentation, which the worker keeps for the methods below. */
     "segment.start": { args: { options: Omit<SegmentOptions, "onProgress"> }; result: SegmentStart };
     /** `table` is the region of every cell. */
-    "segment.draw": { args: { what: "outlines" | "flat" | "colors"; table: Uint32Array }; result: Pixels };
+    "segment.drawing": { args: { what: "outlines" | "flat" | "colors"; table: Uint32Array }; result: Uint8Array };
+    /** By the extension of `name`; labels are of pixels. */
+    "segment.labels": { args: { name: string; labels: Uint32Array }; result: Uint8Array };
     "segment.svg": { args: { table: Uint32Array }; result: string };
+    "segment.pieces": { args: { table: Uint32Array }; result: Uint8Array };
     "segment.contours": { args: object; result: ContourMap };
-    "segment.mask": { args: { table: Uint32Array; keep: SeedLine[]; drop: SeedLine[] }; result: Uint8Array };
+    "segment.contourFile": { args: { name: string }; result: Uint8Array };
+    "segment.mask": { args: Marked; result: Uint8Array };
+    "segment.maskPng": { args: Marked; result: Uint8Array };
+    /** The image where `inside` is not 0. */
+    "segment.cutOut": { args: { pixels: Pixels; inside: Uint8Array }; result: Uint8Array };
   }
   interface WorkerState {
     segmentation?: Segmentation;
@@ -39,9 +52,21 @@ export function methods(state: WorkerState): MethodTable<"segment"> {
       const { merges, missed } = next.facts();
       return { data: next.data(), merges, missed };
     },
-    "segment.draw": ({ what, table }) => segmentation().draw(what, table),
+    "segment.drawing": ({ what, table }) => state.imgmesh.encodePng(segmentation().draw(what, table)),
+    "segment.labels"({ name, labels }) {
+      const { width, height } = segmentation().facts();
+      return state.imgmesh.exportLabels(name, width, height, labels);
+    },
     "segment.svg": ({ table }) => segmentation().svg(table),
+    "segment.pieces": ({ table }) => segmentation().pieces(table),
     "segment.contours": () => segmentation().contours(),
+    "segment.contourFile": ({ name }) => segmentation().contourFile(name),
     "segment.mask": ({ table, keep, drop }) => segmentation().mask(table, keep, drop),
+    "segment.maskPng": ({ table, keep, drop }) => segmentation().maskPng(table, keep, drop),
+    "segment.cutOut"({ pixels: { width, height, data: source }, inside }) {
+      const data = new Uint8ClampedArray(source);
+      inside.forEach((kept, i) => kept || data.fill(0, 4 * i, 4 * i + 4));
+      return state.imgmesh.encodePng({ width, height, data });
+    },
   };
 }
