@@ -16,8 +16,12 @@ const folder = temporaryFolder();
 const pixels = landscape(160, 120), picture = encodePng(pixels);
 
 /** Opens the panel with a small image, as a pyramid of three meshes. */
-async function openWarp() {
+async function openWarp(script = null) {
   const studio = await openStudio(host, { wait: false }), { page } = studio;
+  if (script) {
+    await page.addInitScript(script);
+    await page.reload();
+  }
   await drop(page, { name: "land.png", type: "image/png", bytes: picture });
   await page.locator("#file-name", { hasText: "land.png" }).waitFor();
   await meshed(page);
@@ -124,6 +128,24 @@ test("several vertices are selected and turned; pins stay; before is shown while
   await page.mouse.up();
   await page.getByRole("button", { name: "Reset" }).click();
   assert.equal(await edits.count(), 0);
+  await finish();
+});
+
+test("without WebGL 2 a drag is drawn more slowly, and the page says so", async () => {
+  const { page, canvas, edits, finish } = await openWarp(() => {
+    for (const { prototype } of [HTMLCanvasElement, OffscreenCanvas]) {
+      const { getContext } = prototype;
+      prototype.getContext = function (kind, ...rest) {
+        return kind === "webgl2" ? null : getContext.call(this, kind, ...rest);
+      };
+    }
+  });
+  await page.getByText("This browser has no WebGL 2").waitFor();
+  const still = await canvas.screenshot();
+  await dragFrom(page, canvas, [0.5, 0.5], [60, 30]);
+  await edits.filter({ hasText: "1. Level 0, 1 handle" }).waitFor();
+  await page.waitForTimeout(800);
+  assert.ok(!(await canvas.screenshot()).equals(still), "the image has moved");
   await finish();
 });
 

@@ -229,10 +229,13 @@ export class WarpEditor {
 
   endDrag(): void {
     if (!this.base) return;
-    const { state } = this.base, result = this.state;
+    const { state, edit } = this.base, result = this.state;
+    const before = state.edits.find(({ id }) => id === edit.id), now = this.current;
     this.base = null;
     this.dragging = false;
-    this.history.set(result, state);
+    // A click on a handle changes nothing that undo could take back.
+    if (before && now && before.pins.size === now.pins.size && sameMoves(before.moves, now.moves)) this.history.preview(state);
+    else this.history.set(result, state);
     this.request(false);
     this.changed();
   }
@@ -295,10 +298,15 @@ export class WarpEditor {
         this.moved(!drag);
       }
     } catch (error) {
-      if (session === this.session) this.studio.fail(error);
+      // A session that was closed has nothing to say.
+      if (session === this.session && session === this.studio.session) this.studio.fail(error);
     } finally {
       this.running = false;
       if (this.wanted && this.session) void this.run();
     }
   }
+}
+
+function sameMoves(a: HandEdit["moves"], b: HandEdit["moves"]): boolean {
+  return a.size === b.size && [...a].every(([v, [x, y]]) => b.get(v)?.[0] === x && b.get(v)?.[1] === y);
 }

@@ -30,7 +30,7 @@ export function makeExports(studio: Studio, editor: WarpEditor): { element: HTML
       h("h2", {}, "Take it along"),
       h("div", { class: "row" },
         button("Image", "The warped image, as a PNG without loss", "-warped.png", "image/png", async () => session().ask("warp.png", null)),
-        button("Edits", "For imgmesh-warp --edits, and to go on with", "-edits.json", "application/json", async () =>
+        button("Edits", "The edits as a file, for imgmesh-warp --edits", "-edits.json", "application/json", async () =>
           JSON.stringify(asDocument(editor.state, editor.positions), null, 1) + "\n"),
         button("STMap", "For compositors: for each pixel of the warped image, the place in the image that it shows", "-stmap.exr", "image/x-exr", async () =>
           session().ask("warp.exr", { map: "stmap" })),

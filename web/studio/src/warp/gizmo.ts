@@ -12,9 +12,11 @@ export interface Ring extends Point {
 /** Where the grips are, in CSS pixels. */
 function places(ring: Ring, t: ViewTransform): { middle: Point; radius: number; turn: Point; scale: Point } {
   const middle = t.toScreen(ring), radius = Math.max(ring.radius * t.scale + kMargin, 32);
+  // A grip of a ring that the view does not show as a whole stays at the view's edge.
+  const within = (x: number, size: number): number => Math.min(Math.max(x, 2 * kKnob), size - 2 * kKnob);
   const on = (degrees: number): Point => ({
-    x: middle.x + radius * Math.cos((degrees * Math.PI) / 180),
-    y: middle.y + radius * Math.sin((degrees * Math.PI) / 180),
+    x: within(middle.x + radius * Math.cos((degrees * Math.PI) / 180), t.width),
+    y: within(middle.y + radius * Math.sin((degrees * Math.PI) / 180), t.height),
   });
   return { middle, radius, turn: on(-90), scale: on(45) };
 }

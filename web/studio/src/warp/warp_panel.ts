@@ -37,7 +37,7 @@ export function makeWarpPanel(studio: Studio, buildLevels: (levels: number) => v
     h("button", { type: "button", title, "aria-pressed": "false", click: () => { editor.tool = id; update(); } }, label));
   const button = (label: string, title: string, click: () => void): HTMLButtonElement => h("button", { type: "button", title, click }, label);
   const undo = button("Undo", "Ctrl+Z", () => editor.undo()), redo = button("Redo", "Ctrl+Shift+Z", () => editor.redo());
-  const remove = button("Delete handle", "Delete", () => editor.deleteSelected());
+  const remove = button("Delete", "Takes the selected handles and pins away (key Delete)", () => editor.deleteSelected());
   const reset = button("Reset", "Takes all edits away", () => editor.reset());
   const another = button("New edit", "The next handle begins another edit, which adds to those before", () => editor.beginEdit());
   const before = h("button", { type: "button", title: "Shows the image as it was, while it is held", "aria-pressed": "false" }, "Hold for before");
@@ -139,8 +139,6 @@ export function makeWarpPanel(studio: Studio, buildLevels: (levels: number) => v
 
   async function begin(): Promise<void> {
     stale = false;
-    warped?.close();
-    warped = null;
     const { session, facts: mesh } = studio;
     pyramid.hidden = !mesh || mesh.levels.length > 1;
     level.setChoices((mesh?.levels ?? []).map(({ vertices }, k) => ({
@@ -156,7 +154,10 @@ export function makeWarpPanel(studio: Studio, buildLevels: (levels: number) => v
   }
   studio.on("mesh", () => {
     stale = true;
+    warped?.close();
+    warped = null;
     if (open) begin().catch((error: unknown) => studio.fail(error));
+    else void editor.open(null);
   });
   window.addEventListener("keydown", (e) => {
     const typing = e.target instanceof HTMLInputElement && e.target.type !== "checkbox";

@@ -84,7 +84,7 @@ export class WarpedLayer {
       this.drawn = bitmap;
       this.studio.view.invalidate();
     } catch (error) {
-      if (!this.closed) this.studio.fail(error);
+      if (!this.closed && this.session === this.studio.session) this.studio.fail(error);
     } finally {
       this.drawing = false;
       // Without WebGL the hand has gone on in the meantime.
