@@ -6,15 +6,16 @@ import type { CanvasView } from "../view/image_view";
 import { h, icon } from "./dom";
 import { kIcons } from "./icons";
 
-/** An overlay that is drawn on the right of the split alone. */
-function rightOf(view: CanvasView, overlay: Overlay): Overlay {
+/** A wireframe on the right of the split alone, or on both sides; only while the view shows these sides. */
+function wireOver(view: CanvasView, wire: Overlay, onBoth: boolean, left: Layer | null, right: Layer | null): Overlay {
   return {
     draw(context, t) {
-      const from = view.splitAt();
+      if (!view.shows(left, right)) return;
+      const from = onBoth ? 0 : view.splitAt();
       context.beginPath();
       context.rect(from, 0, t.width - from, t.height);
       context.clip();
-      overlay.draw?.(context, t);
+      wire.draw?.(context, t);
     },
   };
 }
@@ -63,7 +64,7 @@ export function makeViewBar(app: App, view: CanvasView): ViewBar {
     const edges = where !== "none" && layers ? await layers.wire() : null;
     if (mine !== request) return;
     removeWire?.();
-    removeWire = edges ? view.addOverlay(where === "right" ? rightOf(view, edges) : edges, true) : null;
+    removeWire = edges ? view.addOverlay(wireOver(view, edges, where === "both", a, b), true) : null;
     view.setSides(a, b);
   }
   const show = (): void => {

@@ -49,6 +49,11 @@ export class CanvasView implements ImageView {
     this.invalidate();
   }
 
+  /** Whether these are the layers that setSides() was given last. */
+  shows(left: Layer | null, right: Layer | null): boolean {
+    return this.left === left && this.right === right;
+  }
+
   addOverlay(overlay: Overlay, below = false): () => void {
     if (below) this.overlays.unshift(overlay);
     else this.overlays.push(overlay);
