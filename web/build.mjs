@@ -4,7 +4,7 @@
 //     node web/build.mjs studio OUT       the page, as static files in OUT
 //     node web/build.mjs check            only checks the types
 import { execFileSync } from "node:child_process";
-import { copyFileSync, cpSync, existsSync, mkdirSync, rmSync } from "node:fs";
+import { copyFileSync, cpSync, existsSync, mkdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { dirname, join, resolve } from "node:path";
 import { fileURLToPath } from "node:url";
 import * as esbuild from "esbuild";
@@ -28,6 +28,18 @@ function copyDraco(folder) {
     copyFileSync(join(web, "node_modules/draco3d", name), join(folder, name));
 }
 
+// What the files contain of others, who want their notices kept. draco3d has the licence of imgmesh itself.
+function writeNotices(folder) {
+  const debian = ["emscripten", "libeigen3-dev", "libimath-dev", "libtinygltf-dev", "nlohmann-json3-dev"];
+  const files = [
+    ["imgmesh and draco3d", join(root, "LICENSE")],
+    ...["fflate", "@noble/hashes"].map((name) => [name, join(web, "node_modules", name, "LICENSE")]),
+    ...debian.map((name) => [name, join("/usr/share/doc", name, "copyright")]),
+  ].filter(([, file]) => existsSync(file));
+  const text = files.map(([name, file]) => `==== ${name} ====\n\n${readFileSync(file, "utf8").trim()}\n`).join("\n\n");
+  writeFileSync(join(folder, "licenses.txt"), text);
+}
+
 function tsc(...options) {
   try {
     execFileSync(process.execPath, [join(web, "node_modules/typescript/bin/tsc"), ...options], { stdio: "inherit" });
@@ -48,6 +60,7 @@ function buildPackage() {
   copyFileSync(join(folder, "src/engine.d.mts"), join(dist, "engine.d.mts"));
   for (const name of ["engine.mjs", "engine.wasm"]) copyFileSync(join(engine, name), join(dist, name));
   copyDraco(dist);
+  writeNotices(dist);
   copyFileSync(join(root, "LICENSE"), join(folder, "LICENSE"));
 }
 
@@ -95,6 +108,7 @@ async function buildStudio(out) {
   });
   copyFileSync(join(engine, "engine.wasm"), join(assets, "engine.wasm"));
   copyDraco(assets);
+  writeNotices(out);
   cpSync(join(studio, "static"), out, { recursive: true });
 }
 
