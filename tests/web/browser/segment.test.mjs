@@ -100,6 +100,10 @@ test("an object is kept and cut out", async () => {
   const cut = decodePng((await save("Cut-out (PNG)")).bytes);
   const alpha = (column, row) => cut.data[4 * (row * 120 + column) + 3];
   assert.deepEqual([alpha(30, 30), alpha(90, 30), alpha(30, 90), alpha(90, 90)], [0, 0, 255, 0]);
+  await page.getByRole("button", { name: "Keep" }).click();
+  await page.mouse.click(...(await at(1, 1))); // the same place is dropped already
+  await page.locator("#problem", { hasText: "lie in one patch" }).waitFor();
+  await save("Mask of the cut-out (PNG)");
   await page.getByRole("button", { name: "Start over" }).click();
   await page.getByRole("button", { name: "Save", exact: true }).click();
   await page.locator("#problem", { hasText: "Nothing is kept yet" }).waitFor();

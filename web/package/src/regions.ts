@@ -99,14 +99,17 @@ export class Regions {
     return low;
   }
 
-  /** How many merges leave this number of regions, or nearly so where there is none or the user made some. */
-  mergesFor(count: number): number {
+  /**
+   * How many merges leave this number of regions, or nearly so where there is none. With regions of the user's own it
+   * takes up to so many `tries`, each a few milliseconds at a megapixel; one is near enough under a slider.
+   */
+  mergesFor(count: number, tries = 8): number {
     const { count: cells, forced, heights } = this.data;
     const possible = (merges: number): number => Math.min(Math.max(merges, forced), heights.length);
     let merges = possible(cells - Math.round(count));
     if (!this.edited) return merges;
     // A merge makes at most one region fewer, and none inside what the user made.
-    for (let tries = 0; tries < 8; ++tries) {
+    for (; tries > 0; --tries) {
       const next = possible(merges + this.tableOf(merges).count - Math.round(count));
       if (next === merges) break;
       merges = next;

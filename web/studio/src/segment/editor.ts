@@ -62,6 +62,14 @@ export class RegionEditor {
     this.marks = marks;
   }
 
+  /** Takes the last mark back for good. False if the last step was none. */
+  dropLastMark(): boolean {
+    if (this.at === 0 || this.log[this.at - 1] === "regions") return false;
+    this.undo();
+    this.log = this.log.slice(0, this.at);
+    return true;
+  }
+
   undo(): boolean {
     if (!this.canUndo) return false;
     const step = this.log[--this.at];

@@ -105,7 +105,7 @@ export class SegmentWork implements RegionActions {
       this.changed();
       if (this.remove) this.showPicture();
       const seconds = ((performance.now() - start) / 1000).toFixed(1);
-      this.studio.tell(found.missed || `${this.editor.regions.count} regions, found in ${seconds} s.`);
+      this.studio.tell(found.missed || `${counted(this.editor.regions.count)}, found in ${seconds} s.`);
     } catch (error) {
       if (session === this.studio.session && mine === this.starts) this.studio.fail(error);
     } finally {
@@ -115,7 +115,7 @@ export class SegmentWork implements RegionActions {
 
   cutTo(count: number, done: boolean): void {
     if (!this.editor) return;
-    this.editor.cut(this.editor.regions.mergesFor(count), done);
+    this.editor.cut(this.editor.regions.mergesFor(count, done ? 8 : 1), done);
     this.threshold = this.editor.regions.height;
     this.changed(done);
   }
@@ -124,7 +124,7 @@ export class SegmentWork implements RegionActions {
     this.editor.cut(this.editor.regions.mergesBelow(threshold), true);
     this.threshold = threshold;
     this.changed();
-    this.studio.tell(`${this.editor.regions.count} regions.`);
+    this.studio.tell(`${counted(this.editor.regions.count)}.`);
   }
 
   show(display: Display): void {
@@ -170,7 +170,7 @@ export class SegmentWork implements RegionActions {
     this.editor.select(region);
     const done = this.editor.split(region);
     this.changed();
-    this.studio.tell(done ? `Split in two: ${this.editor.regions.count} regions.` : "This region is one piece of the mesh. A mesh with more vertices has smaller ones.");
+    this.studio.tell(done ? `Split in two: ${counted(this.editor.regions.count)}.` : "This region is one piece of the mesh. A mesh with more vertices has smaller ones.");
   }
 
   touched(regions: ReadonlySet<number>): void {
@@ -265,7 +265,10 @@ export class SegmentWork implements RegionActions {
         this.changed(false);
       },
       (error: unknown) => {
-        if (mine === this.masks && editor === this.editor) this.studio.fail(error);
+        if (mine !== this.masks || editor !== this.editor) return;
+        // What cannot be, such as one place both kept and dropped, does not stay.
+        if (editor.dropLastMark()) this.changed();
+        this.studio.fail(error);
       },
     );
   }
@@ -278,4 +281,8 @@ export class SegmentWork implements RegionActions {
     this.refresh();
     this.studio.view.invalidate();
   }
+}
+
+function counted(regions: number): string {
+  return regions === 1 ? "1 region" : `${regions} regions`;
 }
