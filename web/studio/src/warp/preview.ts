@@ -6,7 +6,7 @@ import type { SampledMaps } from "../worker/warp_samples";
 
 /** Samples of the pixel maps that are kept, and triangles' corners that are drawn while a hand drags. */
 export const kMostSamples = 1.2e6;
-const kDragCorners = 6e4;
+const kDragCorners = 1.6e4;
 /** Width of the textures that hold lists. */
 const kListWidth = 1024;
 
@@ -86,8 +86,8 @@ function texture(gl: Gl, target: number): WebGLTexture {
 }
 
 export class Preview {
-  /** Whether a hand drags: then the grid is coarse. */
-  dragging = false;
+  /** Whether a coarse grid does: while a hand drags, and where the exact image comes soon. */
+  coarse = false;
   private readonly maps: SampledMaps;
   private readonly picture: ImageBitmap;
   private readonly total: number;
@@ -125,7 +125,7 @@ export class Preview {
     const { program: shader, places } = program, { textures } = this.uploaded;
     if (this.uploaded.moves !== this.version) this.uploadMoves(gl, this.uploaded);
     const { columns, rows, step, width, height, levels } = this.maps;
-    const most = this.dragging ? kDragCorners : Infinity;
+    const most = this.coarse ? kDragCorners : Infinity;
     const stride = Math.max(1, Math.ceil(Math.sqrt((columns * rows) / most)));
     const corners = (count: number): number => Math.max(Math.ceil((count - 1) / stride), 1) + 1;
     const at = (name: string): WebGLUniformLocation | null => {

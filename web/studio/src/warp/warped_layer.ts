@@ -67,9 +67,13 @@ export class WarpedLayer {
     this.studio.view.invalidate();
   }
 
+  private get isSmall(): boolean {
+    return this.layer.width * this.layer.height <= kExactPixels;
+  }
+
   /** The hand rests. */
   async rested(): Promise<void> {
-    if (!this.hasWebGl || this.layer.width * this.layer.height <= kExactPixels) await this.fetch(Infinity);
+    if (!this.hasWebGl || this.isSmall) await this.fetch(Infinity);
   }
 
   private async fetch(most: number): Promise<void> {
@@ -98,7 +102,7 @@ export class WarpedLayer {
     const bitmap = still ? this.picture : this.drawn;
     this.hasWires = !bitmap && preview !== null && gl !== null;
     if (this.hasWires) {
-      preview!.dragging = editor.dragging;
+      preview!.coarse = editor.dragging || this.isSmall;
       this.stage.begin(gl!, context, t, layer);
       preview!.draw(gl!, context, t);
       this.paintWires(gl!, context, t);
