@@ -1,7 +1,7 @@
-# With IMGMESH_UNITY, files of these targets are compiled together, several as one: what they share of JSON, CLI11 and
-# pybind11 is then compiled once. For those who build everything once, as .ci/run does; who edits a file waits longer. Files
-# that define one name twice stay apart (cmake/unity_groups.py), and so do those with flags of their own. libcore would
-# gain nothing: what takes its time is the optimisation of its own loops.
+# With IMGMESH_UNITY, files of one target are compiled together, several as one: what they share of JSON, CLI11, pybind11,
+# doctest and Eigen is then compiled once. For those who build everything once, as .ci/run does; who edits a file waits
+# longer. Files that define one name twice stay apart (cmake/unity_groups.py), and so do those with flags of their own.
+# libcore would gain little: what takes its time is the optimisation of its own loops.
 option(IMGMESH_UNITY "Compile several files of a target as one" OFF)
 if(NOT IMGMESH_UNITY)
   return()
@@ -9,8 +9,17 @@ endif()
 find_package(Python3 REQUIRED COMPONENTS Interpreter)
 
 set(_lists "")
-foreach(_target imgmesh_codecs imgmesh_picture imgmesh_gltf imgmesh_export imgmesh_tool_common imgmesh_python)
-  if(NOT TARGET ${_target})
+set(_joined "")
+foreach(_folder formats tools python tests tests/bench tests/fuzz)
+  if(_folder STREQUAL python AND NOT IMGMESH_PYTHON_MODULE OR _folder MATCHES tests AND NOT IMGMESH_TESTS)
+    continue()
+  endif()
+  get_property(_targets DIRECTORY ${PROJECT_SOURCE_DIR}/${_folder} PROPERTY BUILDSYSTEM_TARGETS)
+  list(APPEND _joined ${_targets})
+endforeach()
+foreach(_target IN LISTS _joined)
+  get_target_property(_type ${_target} TYPE)
+  if(NOT _type MATCHES "EXECUTABLE|STATIC_LIBRARY|MODULE_LIBRARY")
     continue()
   endif()
   get_target_property(_sources ${_target} SOURCES)

@@ -12,6 +12,7 @@ UNIT_FILES = 16
 LARGE_HEADERS = ("<Eigen/Core>", "<nlohmann/json.hpp>", "<CLI/CLI.hpp>", "<pybind11/pybind11.h>", "<lcms2.h>")
 
 CONSTANT = re.compile("k[A-Z]")
+LOCAL_CONSTANT = re.compile(r"^\s+(?:static )?const(?:expr)? [^=({\[;]*\b(k[A-Z]\w*)\s*[=({\[]", re.M)
 MACRO_CALL = re.compile("[A-Z][A-Z0-9_]+")  # TEST_CASE and the like
 PLAIN_ENUM = re.compile(r"^enum (?!class)[^{;]*{([^}]*)}", re.M)
 INCLUDE = re.compile(r'^\s*#\s*include\s+(?:"([^"]+)"|<([^>]+)>)', re.M)
@@ -60,17 +61,28 @@ class Names:
 
     def __init__(self, file, root, header_names):
         self.own = definitions(file)
+        self.text = file.read_text()
+        self.local = set(LOCAL_CONSTANT.findall(self.text))
         self.headers = {name for name in headers_read(file, root) if (root / name.strip('"')).exists()}
         self.of_headers = header_names
 
     def clash(self, other, rename):
-        """Whether the compiler would refuse or confuse names where both files are read together. With `rename`, constants
-        that both define have names of their own there."""
+        """Whether the compiler would refuse or confuse names where both files are read together, this one after `other`. With
+        `rename`, constants that both define have names of their own there."""
         for name, line in self.own.items():
             if name in other.own and not (line and line == other.own[name]) and not (rename and CONSTANT.match(name)):
                 return True
+        if not rename and other.shadowed_in(self):
+            return True
         return (self.hidden_by(other.headers) or other.hidden_by(self.headers) or
                 bool(self.constants(self.headers - other.headers) & self.constants(other.headers - self.headers)))
+
+    def shadowed_in(self, other):
+        """Whether something within a function of `other` has the name of a constant or alias here. Compilers warn of it where
+        they have read this file before."""
+        aliases = [name for name, line in self.own.items() if line and not line.startswith("using namespace")]
+        return bool(self.own.keys() & other.local) or any(
+            name not in other.own and re.search(rf"[\w>&*] {name}\s*[({{=;,)]", other.text) for name in aliases)
 
     def hidden_by(self, headers):
         return any(name in self.own for header in headers - self.headers for name in self.of_headers[header])
@@ -103,7 +115,7 @@ def units(files, root, most=UNIT_FILES, rename=True):
 
 
 class HeaderNames(dict):
-    """{"header.h" with its quotes: names of its types and constants}."""
+    """{"header.h" with its quotes: names of its types and constants, and of functions where tests include it}."""
 
     def __init__(self, root):
         super().__init__()
@@ -111,7 +123,9 @@ class HeaderNames(dict):
 
     def __missing__(self, header):
         file = self.root / header.strip('"')
-        self[header] = {name for name in definitions(file) if name[0].isupper() or CONSTANT.match(name)}
+        for_tests = header.startswith('"tests/')  # their functions are short words, which tests have for their own, too
+        self[header] = {name for name, alias in definitions(file).items()
+                        if name[0].isupper() or CONSTANT.match(name) or for_tests and not alias}
         for values in PLAIN_ENUM.findall(file.read_text()):
             self[header].update(re.findall(r"\bk[A-Z]\w*", values))
         return self[header]
