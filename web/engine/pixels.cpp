@@ -1,5 +1,7 @@
 #include "web/engine/pixels.h"
 
+#include <algorithm>
+
 #include "formats/picture/sample_codes.h"
 #include "libcore/base/error.h"
 
@@ -40,8 +42,9 @@ Image image_from_pixels(const val& pixels) {
         floats_from_codes(codes, image.data);
         return image;
     }
-    for (std::size_t i = 0; i < count; ++i)
-        floats_from_codes(std::span(codes).subspan(4 * i, 3), std::span(image.data).subspan(3 * i, 3));
+    std::vector<std::uint8_t> rgb(3 * count);
+    for (std::size_t i = 0; i < count; ++i) std::copy_n(codes.data() + 4 * i, 3, rgb.data() + 3 * i);
+    floats_from_codes(rgb, image.data);
     return image;
 }
 
