@@ -44,7 +44,10 @@ async function open(files: File[]): Promise<void> {
   const mine = ++opening;
   try {
     const container = files.find(isContainer);
-    const image = files.find((file) => !isContainer(file) && !isSidecar(file));
+    const others = files.filter((file) => !isContainer(file) && !isSidecar(file));
+    const images = others.filter(({ type }) => type.startsWith("image/"));
+    if (images.length > 1) throw new Error(`${images.map(({ name }) => name).join(" and ")} came in together: choose one image at a time.`);
+    const image = images[0] ?? others[0];
     app.tell(`Reading ${(container ?? image ?? files[0]!).name} …`);
     if (!container && !image)
       throw new Error(`${files[0]!.name} belongs to a container: choose it together with its .gltf file.`);

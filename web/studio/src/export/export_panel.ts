@@ -1,5 +1,5 @@
 // The panel that saves files.
-import type { NamedFile } from "imgmesh.wasm";
+import type { NamedFile, Pixels } from "imgmesh.wasm";
 import type { Panel, Studio } from "../contracts";
 import { bytesText } from "../mesh/figures";
 import { h } from "../ui/dom";
@@ -21,9 +21,11 @@ export function plainName(name: string): string {
   return stem.replace(/^\.+/, "").slice(0, 200) || "image";
 }
 
-async function jpegOf(bitmap: ImageBitmap): Promise<Uint8Array> {
-  const canvas = h("canvas", { width: bitmap.width, height: bitmap.height });
-  canvas.getContext("2d")!.drawImage(bitmap, 0, 0);
+/** The colours, also where the image is transparent: a drawing of it would mix them with black there. */
+async function jpegOf({ width, height, data }: Pixels): Promise<Uint8Array> {
+  const canvas = h("canvas", { width, height }), opaque = new Uint8ClampedArray(data);
+  for (let i = 3; i < opaque.length; i += 4) opaque[i] = 255;
+  canvas.getContext("2d")!.putImageData(new ImageData(opaque, width, height), 0, 0);
   const blob = await new Promise<Blob | null>((resolve) => canvas.toBlob(resolve, "image/jpeg", kJpegQuality));
   if (!blob) throw new Error("This browser cannot make a JPEG of an image of this size; choose PNG.");
   return new Uint8Array(await blob.arrayBuffer());
@@ -70,7 +72,7 @@ export function makeExportPanel(studio: Studio): Panel {
 
   const result = h("p", { class: "help", role: "status" });
   const main = h("button", { type: "submit", class: "main", id: "export" }, "Save");
-  const form = h("form", {}, kinds, field("export-name", "File name", name), ...Object.values(fields), main, result);
+  const form = h("form", { novalidate: true }, kinds, field("export-name", "File name", name), ...Object.values(fields), main, result);
   form.addEventListener("submit", (e) => {
     e.preventDefault();
     void save();
@@ -89,22 +91,27 @@ export function makeExportPanel(studio: Studio): Panel {
     if (!session || !picture || !facts) return studio.tell("There is no mesh to save yet.");
     settings.name = plainName(`${name.value}.x`);
     const wanted = width.valueAsNumber;
-    settings.width = wanted >= 1 && wanted <= kMostWidth && wanted !== facts.width ? Math.round(wanted) : null;
+    if (format.uses.includes("width") && !(Number.isInteger(wanted) && wanted >= 1 && wanted <= kMostWidth)) {
+      width.focus();
+      return studio.fail(new Error(`Width in pixels: a whole number from 1 to ${kMostWidth} is needed.`));
+    }
+    settings.width = format.uses.includes("width") && wanted !== facts.width ? wanted : null;
     saving = true;
     showUsed();
     result.textContent = "Making the file …";
     try {
-      const files = await format.make(session, settings, () => jpegOf(picture.bitmap));
+      const files = await format.make(session, settings, () => jpegOf(picture.pixels));
       for (const file of files) studio.save(file.name, file.bytes, typeOf(file));
       const size = files.reduce((sum, { bytes }) => sum + bytes.length, 0);
       saving = false;
       showUsed();
-      result.textContent = `Saved ${files.map((file) => file.name).join(", ")}: ${bytesText(size)}.`;
+      const { vertices } = facts.levels[settings.level] ?? facts.levels[0]!;
+      result.textContent = `Saved ${files.map((file) => file.name).join(", ")}: ${bytesText(size)}, ${vertices} vertices.`;
     } catch (error) {
       saving = false;
       showUsed();
       result.textContent = "";
-      if (studio.session === session) studio.fail(error);
+      studio.fail(studio.session === session ? error : new Error("The mesh was built anew while the file was being made. Save it again."));
     }
   }
 

@@ -125,7 +125,7 @@ export function makeMeshPanel(app: App, progress: (fraction: number | null, stag
       const done = await app.build(parametersOf(settings), app.picture && { alpha: settings.alpha }, (fraction, stage) => progress(fraction, stage));
       if (done) app.tell(`Meshed in ${app.seconds!.toFixed(1)} s: ${app.facts!.levels[0]!.vertices} vertices.`);
     } catch (error) {
-      app.fail(error);
+      app.fail(error instanceof Error ? new Error(inWordsOfThePage(error.message)) : error);
     }
   }
 

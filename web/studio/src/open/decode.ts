@@ -16,7 +16,10 @@ export async function decodePicture(file: Blob, name: string): Promise<Picture> 
     // The orientation of EXIF is followed where nothing is said; some browsers know no word for it.
     bitmap = await createImageBitmap(file, { premultiplyAlpha: "none", colorSpaceConversion: "default" });
   } catch {
-    throw new Error(`${name} is not an image that this browser can read; PNG, JPEG, WebP and AVIF are.`);
+    const known = /^image\/(png|jpeg|webp|avif|gif|bmp)$/.test(file.type);
+    throw new Error(
+      known ? `${name} is damaged: the browser cannot read it.` : `${name} is not an image that a page can mesh; PNG, JPEG, WebP and AVIF are.`,
+    );
   }
   const { width, height } = bitmap;
   if (width * height > kLargestPixels) {

@@ -26,7 +26,10 @@ export function addIncoming(input: HTMLInputElement, open: (files: File[]) => vo
     depth = Math.max(depth - 1, 0);
     show();
   });
+  // A link that is dropped must not lead away from the page; text may be dropped into a field.
+  const isField = (e: DragEvent): boolean => e.target instanceof HTMLInputElement;
   window.addEventListener("dragover", (e) => {
+    if (!isField(e)) e.preventDefault();
     if (!hasFiles(e)) return;
     e.preventDefault();
     if (e.dataTransfer) e.dataTransfer.dropEffect = "copy";
@@ -34,6 +37,7 @@ export function addIncoming(input: HTMLInputElement, open: (files: File[]) => vo
   window.addEventListener("drop", (e) => {
     depth = 0;
     show();
+    if (!isField(e)) e.preventDefault();
     if (!hasFiles(e)) return;
     e.preventDefault();
     const files = [...(e.dataTransfer?.files ?? [])];

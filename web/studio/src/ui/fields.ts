@@ -61,11 +61,13 @@ export function sliderField(options: SliderOptions): SliderField {
     slider.value = String(Number(slider.value) + step);
     fromSlider(true)();
   });
+  let last = ""; // what the field goes back to where no number is typed
+  number.addEventListener("focus", () => (last = number.value));
   number.addEventListener("change", () => {
     const value = Number(number.value);
-    if (number.value === "" || !Number.isFinite(value)) return;
+    if (number.value === "" || !Number.isFinite(value)) return void (number.value = last);
     const kept = Math.min(Math.max(value, Number(number.min)), Number(number.max));
-    number.value = text(kept);
+    last = number.value = text(kept);
     show(kept);
     options.changed(kept, true);
   });

@@ -29,13 +29,16 @@ export function makeStatusBar(): StatusBar {
   const status = byId("status"), problem = byId("problem"), bar = byId<HTMLProgressElement>("progress");
   const clear = (): void => problem.replaceChildren();
   let said = ""; // screen readers hear a stage once, not every step of it
+  let during = false; // a problem that came up during a build is still read when the build is done
   return {
     tell(text) {
-      clear();
+      if (!during) clear();
+      during = false;
       said = "";
       status.textContent = text;
     },
     fail(text) {
+      during = !bar.hidden;
       status.textContent = "";
       problem.replaceChildren(
         h("p", {}, sentence(text)),
