@@ -110,9 +110,12 @@ export function makeWarpPanel(studio: Studio, buildLevels: (levels: number) => v
     view.invalidate();
   }
   function showFolds(): void {
-    const faces = editor.folds?.turned.reduce((a, b) => a + b, 0) ?? editor.turned.length, cells = editor.folds?.cells ?? 0;
+    const turned = editor.folds?.turned, faces = turned?.[editor.level] ?? editor.turned.length, cells = editor.folds?.cells ?? 0;
+    const elsewhere = (turned?.reduce((a, b) => a + b, 0) ?? faces) - faces;
     const parts = [faces > 0 && `${faces} ${faces === 1 ? "triangle is" : "triangles are"} turned over`, cells > 0 && `the image folds at ${cells} ${cells === 1 ? "pixel" : "pixels"}`].filter(Boolean);
-    const lines = [...(parts.length > 0 ? [`${parts.join(", and ")}; shown in red.`] : []), ...editor.missed];
+    const lines = [...(parts.length > 0 ? [`${parts.join(", and ")}; shown in red.`] : []),
+      ...(elsewhere > 0 ? [`on other levels ${elsewhere} ${elsewhere === 1 ? "triangle is" : "triangles are"} turned over, so this warp cannot be saved as a container.`] : []),
+      ...editor.missed];
     folds.textContent = lines.map((line) => line.charAt(0).toUpperCase() + line.slice(1)).join(" ");
     folds.hidden = lines.length === 0;
   }
