@@ -89,6 +89,60 @@ test("edits of two levels are made by mouse and keys, undone, redone, and export
   await finish();
 });
 
+test("edits stay when the mesh is built again, and so does what undo takes back; a new picture starts afresh", async () => {
+  const { page, canvas, edits, finish } = await openWarp();
+  const lines = (...texts) => page.waitForFunction((texts) =>
+    JSON.stringify([...document.querySelectorAll(".warp-edits li button:first-child")].map((e) => e.textContent)) === JSON.stringify(texts), texts);
+  const saved = async () => JSON.parse(await download(page, "-edits.json")).edits;
+  const rebuild = async (levels) => {
+    await page.getByRole("tab", { name: "Mesh" }).click();
+    await page.locator("#status").evaluate((status) => (status.textContent = ""));
+    await page.getByRole("combobox", { name: "Levels" }).selectOption(String(levels));
+    await meshed(page);
+    await page.getByRole("tab", { name: "Warp" }).click();
+    await page.locator("[data-export]:enabled").first().waitFor();
+  };
+  const level = page.locator(".warp select").first();
+  await dragFrom(page, canvas, [0.5, 0.5], [45, 20]);
+  await lines("1. Level 0, 1 handle");
+  await level.selectOption("2");
+  await canvas.focus();
+  await page.keyboard.press("Enter");
+  for (const key of ["Shift+ArrowRight", "ArrowUp"]) await page.keyboard.press(key);
+  await lines("1. Level 0, 1 handle", "2. Level 2, 1 handle");
+  const before = await saved();
+
+  // The coarsest mesh there is has no level 2: the nearest vertex of level 0 is no farther than its triangles are large.
+  await rebuild(1);
+  await lines("1. Level 0, 1 handle", "2. Level 0, 1 handle");
+  const meanwhile = await saved();
+  meanwhile.forEach(({ handles: [{ near, move }] }, k) => {
+    const [old] = before[k].handles;
+    assert.deepEqual(move, old.move);
+    assert.ok(Math.hypot(near[0] - old.near[0], near[1] - old.near[1]) < 20, `${near} was ${old.near}`);
+  });
+  await page.waitForTimeout(400);
+  const moved = await canvas.screenshot();
+  for (const count of [2, 1, 0]) {
+    await page.getByRole("button", { name: "Undo" }).click();
+    assert.equal(await edits.count(), count);
+  }
+  await page.waitForTimeout(400);
+  assert.ok(!(await canvas.screenshot()).equals(moved), "the edits have moved the new mesh");
+  for (let k = 0; k < 3; ++k) await page.getByRole("button", { name: "Redo" }).click();
+
+  // A mesh that was coarser for a while has lost nothing.
+  await page.getByRole("button", { name: "Build 3 levels" }).click();
+  await lines("1. Level 0, 1 handle", "2. Level 2, 1 handle");
+  await page.locator("[data-export]:enabled").first().waitFor();
+  assert.deepEqual(await saved(), before);
+
+  await drop(page, { name: "land.png", type: "image/png", bytes: encodePng(landscape(120, 90)) });
+  await lines();
+  assert.ok(await page.getByRole("button", { name: "Undo" }).isDisabled());
+  await finish();
+});
+
 test("folds are shown and counted; a solver that never folds has none", async () => {
   const { page, canvas, edits, finish } = await openWarp();
   const solver = page.getByRole("combobox", { name: "The rest of the image" }), folds = page.locator(".warp-folds");

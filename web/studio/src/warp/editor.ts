@@ -1,7 +1,8 @@
 // The state of the panel and its overlay: edits, what is selected, and what the solver makes of it.
 import type { WarpSolver } from "imgmesh.wasm";
-import type { Session, Studio } from "../contracts";
+import type { Picture, Session, Studio } from "../contracts";
 import type { Folds } from "../worker/warp";
+import { Carrier, levelAfter } from "./carry";
 import { asDocument, History, newEdit, withEdit, withoutEdit, type EditState, type HandEdit } from "./edits";
 import { LevelMesh } from "./level_mesh";
 
@@ -37,8 +38,10 @@ export class WarpEditor {
   rested: () => void = () => {};
 
   private readonly studio: Studio;
-  private readonly known: LevelMesh[] = [];
+  private known: LevelMesh[] = [];
   private session: Session | null = null;
+  private picture: Picture | null = null;
+  private openings = 0;
   private wanted: { drag: boolean } | null = null;
   private running = false;
   private pause = 0;
@@ -59,26 +62,44 @@ export class WarpEditor {
     return this.known.map((mesh) => mesh.arrays.positions);
   }
 
-  /** Begins anew with the session's mesh. */
+  /** Goes on with the session's mesh: edits of the same picture stay. Without a session they wait for one. */
   async open(session: Session | null): Promise<void> {
-    this.session = session;
-    this.history.clear();
+    const mine = ++this.openings, { facts, picture } = this.studio;
+    if (this.base) this.endDrag();
+    const same = picture !== null && picture === this.picture && this.known.length > 0;
+    this.picture = picture;
+    if (!same) {
+      this.history.clear();
+      this.known = [];
+    }
+    // Nothing is solved until the edits are those of the new mesh.
+    this.session = null;
+    window.clearTimeout(this.pause);
     this.selection.clear();
-    this.known.length = 0;
     this.mesh = null;
     this.places = new Float32Array();
     this.moves = [];
     this.turned = new Uint32Array();
     this.folds = null;
     this.missed = [];
-    this.base = null;
-    this.dragging = false;
-    const facts = this.studio.facts;
-    if (session && facts) {
-      this.border = !facts.hasMask;
-      await this.chooseLevel(Math.min(this.level, facts.levels.length - 1));
-    }
     this.changed();
+    if (!session || !facts) return;
+    const levels = facts.levels.length, known: LevelMesh[] = [];
+    if (same) {
+      const missing = (): number | undefined =>
+        this.history.states.flatMap(({ edits }) => edits.map((edit) => levelAfter(edit, levels))).find((level) => !known[level]);
+      for (let level = missing(); level !== undefined; level = missing()) {
+        known[level] = new LevelMesh(await session.ask("view.arrays", { level }));
+        if (mine !== this.openings) return;
+      }
+      const carrier = new Carrier(this.positions, known.map((mesh) => mesh.arrays.positions), levels);
+      this.history.replace((state) => carrier.state(state));
+    } else {
+      this.border = !facts.hasMask;
+    }
+    this.known = known;
+    this.session = session;
+    await this.chooseLevel(this.current?.level ?? Math.min(this.level, levels - 1));
   }
 
   async chooseLevel(level: number): Promise<void> {

@@ -99,6 +99,16 @@ export class History {
     this.state = after;
     return true;
   }
+  /** All states that undo and redo may show. */
+  get states(): readonly EditState[] {
+    return [...this.past, this.state, ...this.future];
+  }
+  /** Puts another state in the place of each. */
+  replace(other: (state: EditState) => EditState): void {
+    this.past = this.past.map(other);
+    this.future = this.future.map(other);
+    this.state = other(this.state);
+  }
   clear(): void {
     this.past = [];
     this.future = [];

@@ -45,7 +45,7 @@ export function makeWarpPanel(studio: Studio, buildLevels: (levels: number) => v
   const list = h("ul", { class: "warp-edits" });
   const pyramid = h("div", { class: "warp-offer", hidden: true },
     h("p", {}, "This mesh has one level. Coarser levels make large, smooth edits easy."),
-    button("Build 3 levels", "Meshes the image again", () => buildLevels(3)));
+    button("Build 3 levels", "Meshes the image again; edits stay", () => buildLevels(3)));
   const slow = h("p", { class: "note", hidden: true }, "This browser has no WebGL 2, so drags are drawn coarsely and more slowly.");
   const exports = makeExports(studio, editor);
 
@@ -91,11 +91,11 @@ export function makeWarpPanel(studio: Studio, buildLevels: (levels: number) => v
     border.checked = editor.border;
     border.disabled = editor.solver === "direct";
     kTools.forEach(({ id }, k) => tools[k]!.setAttribute("aria-pressed", String(editor.tool === id)));
-    undo.disabled = !editor.history.canUndo;
-    redo.disabled = !editor.history.canRedo;
+    undo.disabled = !ready || !editor.history.canUndo;
+    redo.disabled = !ready || !editor.history.canRedo;
     remove.disabled = !some || !edit;
-    reset.disabled = editor.state.edits.length === 0;
-    another.disabled = !edit;
+    reset.disabled = !ready || editor.state.edits.length === 0;
+    another.disabled = !ready || !edit;
     apply.disabled = !some;
     exports.setEnabled(ready);
     facts.textContent = !ready ? "There is no mesh yet."
@@ -140,8 +140,13 @@ export function makeWarpPanel(studio: Studio, buildLevels: (levels: number) => v
     }, (error: unknown) => session === studio.session && studio.fail(error));
   };
 
-  async function begin(): Promise<void> {
+  function begin(): void {
+    const { session } = studio;
     stale = false;
+    // Of a session that was replaced meanwhile, nothing is said.
+    useMesh().catch((error: unknown) => session === studio.session && studio.fail(error));
+  }
+  async function useMesh(): Promise<void> {
     const { session, facts: mesh } = studio;
     pyramid.hidden = !mesh || mesh.levels.length > 1;
     level.setChoices((mesh?.levels ?? []).map(({ vertices }, k) => ({
@@ -159,7 +164,7 @@ export function makeWarpPanel(studio: Studio, buildLevels: (levels: number) => v
     stale = true;
     warped?.close();
     warped = null;
-    if (open) begin().catch((error: unknown) => studio.fail(error));
+    if (open) begin();
     else void editor.open(null);
   });
   window.addEventListener("keydown", (e) => {
@@ -186,7 +191,7 @@ export function makeWarpPanel(studio: Studio, buildLevels: (levels: number) => v
     show() {
       open = true;
       removeOverlay = view.addOverlay(overlay);
-      if (stale) begin().catch((error: unknown) => studio.fail(error));
+      if (stale) begin();
       else showSides();
       update();
     },
