@@ -143,6 +143,24 @@ test("edits stay when the mesh is built again, and so does what undo takes back;
   await finish();
 });
 
+test("nothing of the warped image is left below the view when another panel opens", async () => {
+  const { page, canvas, finish } = await openWarp();
+  const below = page.locator(".warp-gl"), box = await canvas.boundingBox();
+  await page.mouse.move(box.x + 0.5 * box.width, box.y + 0.5 * box.height);
+  await page.mouse.down();
+  await page.mouse.move(box.x + 0.6 * box.width, box.y + 0.5 * box.height, { steps: 3 });
+  await below.waitFor({ state: "visible" });
+  // Before the hand has rested, so that the view has no other drawing of the image; it draws some frames until the other sides are there.
+  await page.getByRole("tab", { name: "Export" }).focus();
+  await page.keyboard.press("Enter");
+  for (let k = 0; k < 5; ++k) {
+    await page.evaluate(() => new Promise(requestAnimationFrame));
+    assert.ok(await below.isHidden(), `frame ${k}`);
+  }
+  await page.mouse.up();
+  await finish();
+});
+
 test("folds are shown and counted; a solver that never folds has none", async () => {
   const { page, canvas, edits, finish } = await openWarp();
   const solver = page.getByRole("combobox", { name: "The rest of the image" }), folds = page.locator(".warp-folds");

@@ -32,6 +32,11 @@ export class CanvasView implements ImageView {
       invalidate: () => this.invalidate(),
     });
     new ResizeObserver(() => this.resize()).observe(this.element);
+    // The squares are those of the light or the dark theme.
+    window.matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
+      ground = null;
+      this.invalidate();
+    });
     this.describe("No image yet");
   }
 
@@ -137,14 +142,15 @@ function drawGround(context: CanvasRenderingContext2D, t: ViewTransform, layer: 
 let ground: CanvasPattern | null = null;
 function groundPattern(context: CanvasRenderingContext2D): CanvasPattern | string {
   if (ground) return ground;
+  const style = getComputedStyle(context.canvas), color = (name: string): string => style.getPropertyValue(name).trim();
   const tile = new OffscreenCanvas(16, 16), c = tile.getContext("2d")!;
-  c.fillStyle = "#e9e9ec";
+  c.fillStyle = color("--square-other");
   c.fillRect(0, 0, 16, 16);
-  c.fillStyle = "#d6d6da";
+  c.fillStyle = color("--square");
   c.fillRect(0, 0, 8, 8);
   c.fillRect(8, 8, 8, 8);
   ground = context.createPattern(tile, "repeat");
-  return ground ?? "#e0e0e4";
+  return ground ?? color("--square-other");
 }
 
 function drawLayer(context: CanvasRenderingContext2D, t: ViewTransform, layer: Layer | null, from: number, to: number): void {

@@ -66,6 +66,7 @@ export function makeWarpPanel(studio: Studio, buildLevels: (levels: number) => v
     if (!warped || !picture || !mesh) return studio.showChosenSides();
     const original = { width: mesh.width, height: mesh.height, source: picture.bitmap };
     if (holding) warped.hide();
+    else warped.show();
     if (holding) studio.showOwnSides(original, null);
     else if (split.checked) studio.showOwnSides(original, warped.layer);
     else studio.showOwnSides(warped.layer, null);

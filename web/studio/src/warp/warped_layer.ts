@@ -28,6 +28,8 @@ export class WarpedLayer {
   private drawn: ImageBitmap | null = null;
   private drawing = false;
   private closed = false;
+  /** Whether other sides will be shown: the view may still draw this one until they are there. */
+  private leaving = false;
 
   constructor(studio: Studio, editor: WarpEditor, session: Session) {
     const { width, height } = studio.facts!;
@@ -100,7 +102,7 @@ export class WarpedLayer {
     const start = performance.now(), { editor, preview, layer } = this;
     const still = editor.moves.every((moves) => moves.length === 0), gl = this.stage.gl;
     const bitmap = still ? this.picture : this.drawn;
-    this.hasWires = !bitmap && preview !== null && gl !== null;
+    this.hasWires = !bitmap && !this.leaving && preview !== null && gl !== null;
     if (this.hasWires) {
       preview!.coarse = editor.dragging || this.isSmall;
       this.stage.begin(gl!, context, t, layer);
@@ -117,8 +119,13 @@ export class WarpedLayer {
     this.scriptTime = performance.now() - start;
   }
 
-  /** Takes away what lies below the view; the next drawing brings it back. */
+  show(): void {
+    this.leaving = false;
+  }
+
+  /** Takes away what lies below the view, until show(). */
   hide(): void {
+    this.leaving = true;
     this.hasWires = false;
     this.stage.hide();
   }
