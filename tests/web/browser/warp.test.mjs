@@ -170,9 +170,32 @@ test("folds are shown and counted; a solver that never folds has none", async ()
   await page.locator('[data-export="-warped.glb"]').click();
   assert.match(await problem(page), /would turn over/);
   await solver.selectOption("injective");
+  await page.locator("#problem p").waitFor({ state: "detached" });
   await folds.waitFor({ state: "hidden" });
   await edits.getByRole("button", { name: "Delete edit 1" }).click();
   assert.equal(await edits.count(), 0);
+  await finish();
+});
+
+test("numbers that are too large are refused in words, which go with them", async () => {
+  const { page, canvas, edits, finish } = await openWarp();
+  await canvas.focus();
+  await page.keyboard.press("Enter");
+  await page.getByText("By numbers").click();
+  const right = page.getByRole("spinbutton", { name: "Right" }), apply = page.getByRole("button", { name: "Apply" });
+  await right.fill("1e9");
+  await apply.click();
+  const line = page.getByText("“Right” takes numbers from −1,000,000 to 1,000,000.");
+  await line.waitFor();
+  assert.equal(await edits.count(), 0);
+  await right.fill("1e6");
+  await line.waitFor({ state: "detached" });
+  // Twice as far is farther than an edit may go: the handle stays at its end.
+  for (let k = 0; k < 2; ++k) await apply.click();
+  await edits.filter({ hasText: "1. Level 0, 1 handle" }).waitFor();
+  const [{ handles: [{ move }] }] = JSON.parse(await download(page, "-edits.json")).edits;
+  assert.deepEqual(move, [1e6, 0]);
+  assert.equal(await page.locator("#problem p").count(), 0);
   await finish();
 });
 

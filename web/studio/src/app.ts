@@ -8,7 +8,7 @@ type Event = "picture" | "mesh" | "build";
 
 export interface Messages {
   tell(text: string): void;
-  fail(text: string): void;
+  fail(text: string): () => void;
 }
 
 export class App implements Studio {
@@ -44,8 +44,8 @@ export class App implements Studio {
     this.messages.tell(text);
   }
 
-  fail(error: unknown): void {
-    this.messages.fail(error instanceof Error ? error.message : String(error));
+  fail(error: unknown): () => void {
+    return this.messages.fail(error instanceof Error ? error.message : String(error));
   }
 
   save(name: string, bytes: Uint8Array | string, type: string): void {

@@ -126,8 +126,8 @@ export interface Studio {
   readonly facts: MeshFacts | null;
   /** Says one line in the status bar; screen readers read it out. */
   tell(text: string): void;
-  /** Says what went wrong, in one line. */
-  fail(error: unknown): void;
+  /** Says what went wrong, in one line. Returns the function that takes the line away, if it is still there. */
+  fail(error: unknown): () => void;
   /** Hands a file to the user. */
   save(name: string, bytes: Uint8Array | string, type: string): void;
   /** "picture": another image is there, without a mesh yet. "mesh": session and facts are new, or gone (null). */

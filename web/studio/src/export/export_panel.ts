@@ -93,7 +93,7 @@ export function makeExportPanel(studio: Studio): Panel {
     const wanted = width.valueAsNumber;
     if (format.uses.includes("width") && !(Number.isInteger(wanted) && wanted >= 1 && wanted <= kMostWidth)) {
       width.focus();
-      return studio.fail(new Error(`Width in pixels: a whole number from 1 to ${kMostWidth} is needed.`));
+      return void studio.fail(new Error(`Width in pixels: a whole number from 1 to ${kMostWidth} is needed.`));
     }
     settings.width = format.uses.includes("width") && wanted !== facts.width ? wanted : null;
     saving = true;

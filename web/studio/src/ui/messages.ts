@@ -40,10 +40,12 @@ export function makeStatusBar(): StatusBar {
     fail(text) {
       during = !bar.hidden;
       status.textContent = "";
+      const line = h("p", {}, sentence(text));
       problem.replaceChildren(
-        h("p", {}, sentence(text)),
+        line,
         h("button", { type: "button", class: "quiet", "aria-label": "Hide this message", click: clear }, icon(kIcons.close)),
       );
+      return () => line.isConnected && clear();
     },
     progress(fraction, stage) {
       bar.hidden = fraction === null;

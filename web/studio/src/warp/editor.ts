@@ -3,7 +3,7 @@ import type { WarpSolver } from "imgmesh.wasm";
 import type { Picture, Session, Studio } from "../contracts";
 import type { Folds } from "../worker/warp";
 import { Carrier, levelAfter } from "./carry";
-import { asDocument, History, newEdit, withEdit, withoutEdit, type EditState, type HandEdit } from "./edits";
+import { asDocument, History, kMostMove, newEdit, withEdit, withoutEdit, type EditState, type HandEdit } from "./edits";
 import { LevelMesh } from "./level_mesh";
 
 export type Tool = "move" | "select" | "pin";
@@ -37,6 +37,7 @@ export class WarpEditor {
   /** Is called when the hand rests. */
   rested: () => void = () => {};
 
+  private forgetProblem: () => void = () => {};
   private readonly studio: Studio;
   private known: LevelMesh[] = [];
   private session: Session | null = null;
@@ -242,7 +243,7 @@ export class WarpEditor {
     const { state, edit, places } = this.base, moves = new Map(edit.moves);
     for (const v of this.selection) {
       const x = places[2 * v]!, y = places[2 * v + 1]!, [nx, ny] = to(x, y), [mx, my] = edit.moves.get(v)!;
-      moves.set(v, [mx + nx - x, my + ny - y]);
+      moves.set(v, [withinMost(mx + nx - x), withinMost(my + ny - y)]);
     }
     this.history.preview(withEdit(state, { ...edit, moves }));
     this.request(true);
@@ -286,6 +287,11 @@ export class WarpEditor {
     this.changed();
   }
 
+  /** Says what went wrong with the edits as they are. The line goes when they are others. */
+  fail(error: unknown): void {
+    this.forgetProblem = this.studio.fail(error);
+  }
+
   private change(state: EditState): void {
     this.history.set(state);
     this.request(false);
@@ -308,6 +314,7 @@ export class WarpEditor {
         this.wanted = null;
         const solved = await session.ask("warp.solve", { edits: asDocument(this.state), level, drag });
         if (session !== this.session) break;
+        this.forgetProblem();
         this.stepTime = solved.time;
         if (level === this.level) [this.places, this.turned] = [solved.places, solved.turned];
         this.moves = solved.moves;
@@ -320,12 +327,16 @@ export class WarpEditor {
       }
     } catch (error) {
       // A session that was closed has nothing to say.
-      if (session === this.session && session === this.studio.session) this.studio.fail(error);
+      if (session === this.session && session === this.studio.session) this.fail(error);
     } finally {
       this.running = false;
       if (this.wanted && this.session) void this.run();
     }
   }
+}
+
+function withinMost(move: number): number {
+  return Math.min(Math.max(move, -kMostMove), kMostMove);
 }
 
 function sameMoves(a: HandEdit["moves"], b: HandEdit["moves"]): boolean {

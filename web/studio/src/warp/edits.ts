@@ -1,6 +1,11 @@
 // The edits that a hand makes: values that are never changed, so that undo only goes back to older ones.
 import type { WarpEdit, WarpEdits, WarpSolver } from "imgmesh.wasm";
 
+/** How far a handle may go along x and y, in pixels, and how far it may turn, in degrees (schemas/imgmesh-warp.edits.schema.json). */
+export const kMostMove = 1e6, kMostTurn = 1e6;
+/** How small and large a scaling may be. */
+export const kLeastScale = 0.001, kMostScale = 1000;
+
 /** One edit of one level. */
 export interface HandEdit {
   readonly id: number;

@@ -14,7 +14,7 @@ export function makeExports(studio: Studio, editor: WarpEditor): { element: HTML
       made.disabled = true;
       studio.tell(`Making ${stem()}${ending} …`);
       make()
-        .then((bytes) => studio.save(stem() + ending, bytes, type), (error: unknown) => studio.fail(error))
+        .then((bytes) => studio.save(stem() + ending, bytes, type), (error: unknown) => editor.fail(error))
         .finally(() => (made.disabled = false));
     });
     buttons.push(made);

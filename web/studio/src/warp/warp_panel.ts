@@ -5,8 +5,8 @@ import { h } from "../ui/dom";
 import { choiceField } from "../ui/fields";
 import { WarpEditor, type Tool } from "./editor";
 import { makeExports } from "./exports";
-import { movedBy, scaledBy, turnedBy } from "./gizmo";
 import { undoKey } from "./keys";
+import { makeNumbers } from "./numbers";
 import { WarpOverlay } from "./overlay";
 import { WarpedLayer } from "./warped_layer";
 
@@ -49,16 +49,7 @@ export function makeWarpPanel(studio: Studio, buildLevels: (levels: number) => v
   const slow = h("p", { class: "note", hidden: true }, "This browser has no WebGL 2, so drags are drawn coarsely and more slowly.");
   const exports = makeExports(studio, editor);
 
-  const number = (label: string, value: number, unit: string) => {
-    const input = h("input", { type: "number", step: "any", value, "aria-label": label });
-    return { input, element: h("label", { class: "warp-number" }, label, input, unit) };
-  };
-  const right = number("Right", 0, "px"), down = number("Down", 0, "px"), turn = number("Turn left", 0, "°"), scale = number("Scale", 100, "%");
-  const apply = button("Apply", "Moves, turns and scales what is selected by these numbers", () => {
-    const about = editor.middle(), value = ({ input }: typeof right, otherwise: number): number => (Number.isFinite(input.valueAsNumber) ? input.valueAsNumber : otherwise);
-    const turned = turnedBy(value(turn, 0), about), scaled = scaledBy(Math.max(value(scale, 100), 0.1) / 100, about), moved = movedBy(value(right, 0), value(down, 0));
-    editor.step((x, y) => moved(...turned(...scaled(x, y))));
-  });
+  const numbers = makeNumbers((to) => editor.step(to), () => editor.middle());
 
   function showSides(): void {
     if (!open) return;
@@ -97,7 +88,7 @@ export function makeWarpPanel(studio: Studio, buildLevels: (levels: number) => v
     remove.disabled = !some || !edit;
     reset.disabled = !ready || editor.state.edits.length === 0;
     another.disabled = !ready || !edit;
-    apply.disabled = !some;
+    numbers.setEnabled(some);
     exports.setEnabled(ready);
     facts.textContent = !ready ? "There is no mesh yet."
       : some ? `${editor.selection.size === 1 ? "1 vertex is" : `${editor.selection.size} vertices are`} selected.`
@@ -183,8 +174,7 @@ export function makeWarpPanel(studio: Studio, buildLevels: (levels: number) => v
       h("label", { class: "check" }, border, "Pin the border"),
       h("div", { class: "row" }, undo, redo, remove, reset),
       facts, folds, slow,
-      h("details", {}, h("summary", {}, "By numbers"),
-        h("div", { class: "warp-numbers" }, right.element, down.element, turn.element, scale.element), apply),
+      numbers.element,
       h("section", {}, h("div", { class: "field-head" }, h("h2", {}, "Edits"), another), list),
       h("div", { class: "row" }, before, h("label", { class: "check" }, split, "Before and after side by side")),
       exports.element,
