@@ -213,6 +213,9 @@ test("several vertices are selected and turned; pins stay; before is shown while
   await page.getByRole("button", { name: "Pin", exact: true }).click();
   await page.mouse.click(...at(0.2, 0.5));
   await edits.filter({ hasText: ", 1 pin" }).waitFor();
+  await canvas.focus();
+  await page.keyboard.press("Escape");
+  assert.match(await facts.textContent(), /^\d+ handles and 1 pin in this edit\.$/);
   await page.waitForTimeout(800);
   const after = await canvas.screenshot();
   const hold = page.getByRole("button", { name: "Hold for before" });

@@ -3,6 +3,7 @@ import type { WarpSolver } from "imgmesh.wasm";
 import type { Panel, Studio } from "../contracts";
 import { h } from "../ui/dom";
 import { choiceField } from "../ui/fields";
+import type { HandEdit } from "./edits";
 import { WarpEditor, type Tool } from "./editor";
 import { makeExports } from "./exports";
 import { undoKey } from "./keys";
@@ -92,11 +93,11 @@ export function makeWarpPanel(studio: Studio, buildLevels: (levels: number) => v
     exports.setEnabled(ready);
     facts.textContent = !ready ? "There is no mesh yet."
       : some ? `${editor.selection.size === 1 ? "1 vertex is" : `${editor.selection.size} vertices are`} selected.`
-      : edit ? `${edit.moves.size} handles and ${edit.pins.size} pins in this edit.`
+      : edit ? `${held(edit, " and ") || "Nothing is held"} in this edit.`
       : "Click on a vertex of the mesh and drag it.";
     list.replaceChildren(...editor.state.edits.map((e, k) => h("li", {},
       h("button", { type: "button", class: "quiet", "aria-pressed": String(e.id === edit?.id), click: () => void editor.chooseEdit(e.id) },
-        `${k + 1}. Level ${e.level}, ${e.moves.size} ${e.moves.size === 1 ? "handle" : "handles"}${e.pins.size > 0 ? `, ${e.pins.size} ${e.pins.size === 1 ? "pin" : "pins"}` : ""}`),
+        [`${k + 1}. Level ${e.level}`, held(e, ", ")].filter(Boolean).join(", ")),
       h("button", { type: "button", class: "quiet", "aria-label": `Delete edit ${k + 1}`, title: "Delete this edit", click: () => editor.deleteEdit(e.id) }, "✕"))));
     showFolds();
     view.invalidate();
@@ -195,6 +196,12 @@ export function makeWarpPanel(studio: Studio, buildLevels: (levels: number) => v
       studio.showChosenSides();
     },
   };
+}
+
+/** What an edit holds, in words; empty if nothing. */
+function held({ moves, pins }: HandEdit, between: string): string {
+  const count = (n: number, word: string): string => (n === 0 ? "" : `${n} ${word}${n === 1 ? "" : "s"}`);
+  return [count(moves.size, "handle"), count(pins.size, "pin")].filter(Boolean).join(between);
 }
 
 function keyList(): HTMLElement {
