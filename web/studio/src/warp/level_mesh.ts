@@ -8,6 +8,8 @@ export class LevelMesh {
   readonly border: Uint8Array;
   /** The usual length of an edge, in pixels. */
   readonly spacing: number;
+  /** How far vertices usually are from their nearest neighbour, in pixels: less than spacing, where many crowd. */
+  readonly gap: number;
   private readonly first: Uint32Array;
   private readonly neighbors: Uint32Array;
 
@@ -29,13 +31,18 @@ export class LevelMesh {
     for (let v = 0; v < count; ++v) this.first[v + 1]! += this.first[v]!;
     const next = this.first.slice(0, count);
     this.neighbors = new Uint32Array(edges.length);
+    const shortest = new Float32Array(count).fill(Infinity);
     let total = 0;
     for (let i = 0; i < edges.length; i += 2) {
       const a = edges[i]!, b = edges[i + 1]!;
       this.neighbors[next[a]!++] = b;
       this.neighbors[next[b]!++] = a;
-      total += Math.hypot(positions[2 * a]! - positions[2 * b]!, positions[2 * a + 1]! - positions[2 * b + 1]!);
+      const length = Math.hypot(positions[2 * a]! - positions[2 * b]!, positions[2 * a + 1]! - positions[2 * b + 1]!);
+      total += length;
+      for (const v of [a, b]) shortest[v] = Math.min(shortest[v]!, length);
     }
+    const gaps = shortest.filter(Number.isFinite);
+    this.gap = gaps.length > 0 ? gaps.reduce((a, b) => a + b, 0) / gaps.length : 1;
     this.spacing = edges.length > 0 ? (2 * total) / edges.length : 1;
   }
 

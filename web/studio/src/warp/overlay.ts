@@ -5,8 +5,10 @@ import type { WarpEditor } from "./editor";
 import { dragged, drawGizmo, gripAt, type Grip } from "./gizmo";
 import { warpKey } from "./keys";
 
-/** Vertices are drawn where they are at least so far apart, in CSS pixels. */
-const kDotsFrom = 9;
+/** All vertices are drawn where they are usually so far apart, in CSS pixels: with less, dots cover the picture. */
+const kDotsFrom = 12;
+/** Else those so near to the pointer, in CSS pixels. */
+const kDotsNear = 56;
 /** How near a click must be to take a vertex, in CSS pixels. */
 const kReach = 64;
 const kAccent = "#63e0cf", kPin = "#ffb454", kBad = "rgb(255 60 40 / 60%)", kDark = "#101214";
@@ -22,6 +24,7 @@ export class WarpOverlay implements Overlay {
   private wire: MovableWire | null = null;
   private wireOf: unknown = null;
   private hover: number | null = null;
+  private pointer: Point | null = null;
   private active: Drag | null = null;
 
   /** Whether the wires have been drawn already, below. */
@@ -108,10 +111,10 @@ export class WarpOverlay implements Overlay {
   }
 
   pointerHover(pointer: ViewPointer): void {
-    const vertex = this.vertexAt(pointer);
-    if (vertex === this.hover) return;
+    const vertex = this.vertexAt(pointer), changed = vertex !== this.hover;
     this.hover = vertex;
-    this.invalidate();
+    this.pointer = { x: pointer.x, y: pointer.y };
+    if (changed || !this.dotsFit(this.transform())) this.invalidate();
   }
 
   keyDown(event: KeyboardEvent): boolean {
@@ -125,6 +128,10 @@ export class WarpOverlay implements Overlay {
     if (this.wireOf !== mesh) [this.wire, this.wireOf] = [wireOverlay(mesh.arrays, (mesh.spacing ** 2 * mesh.arrays.faces.length) / 6), mesh];
     this.wire!.move(places);
     return this.wire;
+  }
+
+  private dotsFit(t: ViewTransform): boolean {
+    return !this.editor.mesh || this.editor.mesh.gap * t.scale >= kDotsFrom;
   }
 
   draw(c: CanvasRenderingContext2D, t: ViewTransform): void {
@@ -147,8 +154,9 @@ export class WarpOverlay implements Overlay {
     };
     const edit = editor.current, border = edit?.border ?? editor.border;
     const follows = (edit?.solver ?? editor.solver) !== "direct";
-    if (mesh.spacing * t.scale >= kDotsFrom)
-      for (let v = 0; v < mesh.count; ++v) dot(v, 2.2, "#fff");
+    const pointer = this.active ? null : this.pointer, fit = this.dotsFit(t), reach = kDotsNear / t.scale;
+    for (let v = 0; (fit || pointer) && v < mesh.count; ++v)
+      if (fit || Math.hypot(places[2 * v]! - pointer!.x, places[2 * v + 1]! - pointer!.y) <= reach) dot(v, 2.2, "#fff");
     if (border && follows) for (let v = 0; v < mesh.count; ++v) if (mesh.border[v]) dot(v, 2.5, kPin, true);
     for (const v of edit?.pins ?? []) dot(v, 4.5, kPin, true);
     for (const v of edit?.moves.keys() ?? []) if (!editor.selection.has(v)) dot(v, 5, kAccent);
