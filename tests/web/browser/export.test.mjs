@@ -44,6 +44,10 @@ test("every kind of file is saved, under the name that was given", async () => {
   await save(page, "3D mesh with the image on it", ["my image.glb"]);
   await page.getByRole("radio", { name: "Poster" }).check();
   await page.getByLabel("Width in pixels").fill("2000");
+  await page.getByLabel("Width in pixels").fill("0");
+  await page.getByRole("button", { name: "Save", exact: true }).click();
+  await page.locator("#problem", { hasText: "from 1 to 100000" }).waitFor();
+  await page.getByLabel("Width in pixels").fill("2000");
   const [poster] = await save(page, "Poster", ["my image.svg"]);
   assert.match(readFileSync(poster, "utf8").slice(0, 300), /width="2000" height="\d+" viewBox/);
   const [sheet, picture] = await save(page, "Sprite", ["my image.json", "my image.png"]);

@@ -83,7 +83,11 @@ test("files are dropped and chosen; what cannot be read is one line, and the pag
   const { page, finish } = await openStudio(host);
   const broken = disc(64);
   await drop(page, file("broken.png", broken.subarray(0, 40)));
-  assert.match(await problem(page), /broken\.png is not an image/);
+  assert.match(await problem(page), /broken\.png is damaged/);
+  await drop(page, file("notes.txt", Buffer.from("words"), "text/plain"));
+  await page.locator("#problem", { hasText: "notes.txt is not an image" }).waitFor();
+  await drop(page, file("one.png", disc(20)), file("two.png", disc(30)));
+  await page.locator("#problem", { hasText: "choose one image at a time" }).waitFor();
   await drop(page, file("empty.png", Buffer.alloc(0)));
   await page.locator("#problem", { hasText: "empty.png is empty." }).waitFor();
   assert.equal(await page.locator("#file-name").textContent(), "sample.jpg, 768 × 512");
