@@ -24,6 +24,9 @@ async function save(page, label, names) {
   await page.getByRole("button", { name: "Save", exact: true }).click();
   await page.getByText(`Saved ${names.join(", ")}:`).waitFor();
   page.off("download", take);
+  // Downloads that begin together are told in any order.
+  const place = (download) => names.indexOf(download.suggestedFilename());
+  downloads.sort((a, b) => place(a) - place(b));
   assert.deepEqual(downloads.map((d) => d.suggestedFilename()), names);
   return Promise.all(downloads.map(async (download) => {
     const path = join(folder, download.suggestedFilename());
