@@ -16,6 +16,9 @@ interface Waiting {
   onProgress: Report | undefined;
 }
 
+/** A worker that has the compiled engine is ready within a second, or something is wrong [ms]. */
+const kMostStart = 60_000;
+
 let engine: Promise<WebAssembly.Module> | null = null;
 
 /** Fetches and compiles the engine, once for all sessions; again after a failure. */
@@ -64,17 +67,19 @@ export function startSession(): Session {
   const waiting = new Map<number, Waiting>();
   let next = 0;
   let ended: Error | null = null;
+  let start = 0; // the timer that waits for the engine
 
   const end = (reason: Error): void => {
     if (ended) return;
     ended = reason;
+    window.clearTimeout(start);
     worker.terminate();
     for (const call of waiting.values()) call.reject(reason);
     waiting.clear();
   };
 
   worker.onmessage = ({ data }: MessageEvent<Answer>) => {
-    if (data.type === "ready") return;
+    if (data.type === "ready") return window.clearTimeout(start);
     if (data.type === "lost") return end(rebuiltError(data.error));
     const call = waiting.get(data.id);
     if (!call) return;
@@ -88,7 +93,11 @@ export function startSession(): Session {
     end(new SessionLost(`The worker that computes has ended: ${event.message || "its script did not load"}.`));
   };
   const send = (question: Question, transfer: Transferable[] = []): void => worker.postMessage(question, transfer);
-  loadEngine().then((module) => !ended && send({ type: "start", module }), end);
+  loadEngine().then((module) => {
+    if (ended) return;
+    send({ type: "start", module });
+    start = window.setTimeout(() => end(new SessionLost("The engine has not started. Load the page again.")), kMostStart);
+  }, end);
 
   return {
     ask<M extends Method>(method: M, args: Args<M>, transfer?: Transferable[], onProgress?: Report): Promise<Result<M>> {
