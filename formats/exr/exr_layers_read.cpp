@@ -32,11 +32,11 @@ T take(const std::uint8_t*& in) {
 
 // Reads the rows from `first` on from their block: row by row, in each row channel by channel, sorted by
 // name.
-void spread_block(const std::vector<ExrChannel>& channels, const std::vector<std::uint8_t>& block, int first,
-                  int last, LayerPart& part) {
+void spread_block(const std::vector<ExrPartChannel>& channels, const std::vector<std::uint8_t>& block,
+                  int first, int last, LayerPart& part) {
     const std::uint8_t* in = block.data();
     for (int y = first; y < last; ++y)
-        for (const ExrChannel& channel : channels) {
+        for (const ExrPartChannel& channel : channels) {
             const std::string& name = channel.name;
             const std::span<PixelCoord> row = part.map.row(y);
             if (name == kVisits || name == kFace) {
@@ -65,7 +65,7 @@ void read_scanlines(ExrInput& file, std::size_t index, LayerPart& part) {
     const int rows = header.compression == kExrZip ? kExrZipRows : 1, height = part.map.height,
               blocks = (height + rows - 1) / rows;
     std::size_t row_bytes = 0;
-    for (const ExrChannel& channel : header.channels)
+    for (const ExrPartChannel& channel : header.channels)
         row_bytes +=
             static_cast<std::size_t>(part.map.width) * static_cast<std::size_t>(sample_bytes(channel.type));
     std::vector<std::vector<std::uint8_t>> packed(static_cast<std::size_t>(std::min(blocks, kGroupBlocks)));

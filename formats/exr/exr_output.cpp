@@ -76,7 +76,7 @@ void ExrOutput::add_part(const ExrPartHeader& part) {
                                        static_cast<exr_compression_t>(part.compression)));
     if (part.version) check(exr_attr_set_string(file, index, kVersionName, part.version->c_str()));
     if (part.topology) check(exr_attr_set_string(file, index, kTopologyName, part.topology->c_str()));
-    for (const ExrChannel& c : part.channels)
+    for (const ExrPartChannel& c : part.channels)
         check(exr_add_channel(file, index, c.name.c_str(),
                               static_cast<exr_pixel_type_t>(static_cast<int>(c.type)),
                               c.is_linear ? EXR_PERCEPTUALLY_LINEAR : EXR_PERCEPTUALLY_LOGARITHMIC,

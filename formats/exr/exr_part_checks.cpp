@@ -13,7 +13,7 @@ constexpr unsigned kMaxTileSide = 1024;
 
 void check_channels(const ExrPartHeader& header, const std::string& name, Findings& findings) {
     bool face = false, u = false, v = false;
-    for (const ExrChannel& c : header.channels) {
+    for (const ExrPartChannel& c : header.channels) {
         const std::string& channel = c.name;
         const bool is_weight = channel == kU || channel == kV;
         const bool is_id = channel == kFace || channel == kVisits;

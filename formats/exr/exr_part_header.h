@@ -12,7 +12,7 @@ enum class ExrSample { kUint, kHalf, kFloat };
 inline constexpr int kExrUncompressed = 0, kExrZips = 2, kExrZip = 3;
 inline constexpr int kExrZipRows = 16;  ///< of a block
 
-struct ExrChannel {
+struct ExrPartChannel {
     std::string name;
     ExrSample type = ExrSample::kFloat;
     int x_sampling = 1, y_sampling = 1;
@@ -35,12 +35,12 @@ struct ExrPartHeader {
     std::optional<ExrTiles> tiles;
     ExrWindow data, shown;
     int compression = kExrZip;
-    std::vector<ExrChannel> channels;              ///< sorted by name
+    std::vector<ExrPartChannel> channels;          ///< sorted by name
     std::optional<std::string> version, topology;  ///< imgmesh's own
 
     /// Null if there is none.
-    const ExrChannel* channel(std::string_view wanted) const {
-        for (const ExrChannel& c : channels)
+    const ExrPartChannel* channel(std::string_view wanted) const {
+        for (const ExrPartChannel& c : channels)
             if (c.name == wanted) return &c;
         return nullptr;
     }

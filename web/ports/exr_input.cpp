@@ -43,10 +43,10 @@ ExrWindow window_from(ByteReader& in) {
     return w;
 }
 
-std::vector<ExrChannel> channels_from(ByteReader& in) {
-    std::vector<ExrChannel> channels;
+std::vector<ExrPartChannel> channels_from(ByteReader& in) {
+    std::vector<ExrPartChannel> channels;
     while (!in.take_if(0)) {
-        ExrChannel c;
+        ExrPartChannel c;
         c.name = name_from(in);
         const std::uint32_t type = in.number(4);
         if (type > static_cast<std::uint32_t>(ExrSample::kFloat)) broken("a channel of an unknown type");

@@ -44,11 +44,11 @@ class HeaderWriter {
         const auto word = [](int value) { return static_cast<std::uint32_t>(value); };
         numbers(name, "box2i", {word(w.min_x), word(w.min_y), word(w.max_x), word(w.max_y)});
     }
-    void channels(const std::vector<ExrChannel>& channels) {
+    void channels(const std::vector<ExrPartChannel>& channels) {
         std::size_t size = 1;
-        for (const ExrChannel& c : channels) size += c.name.size() + 1 + 16;
+        for (const ExrPartChannel& c : channels) size += c.name.size() + 1 + 16;
         attribute("channels", "chlist", size);
-        for (const ExrChannel& c : channels) {
+        for (const ExrPartChannel& c : channels) {
             text(c.name);
             number(static_cast<std::uint64_t>(c.type));
             number(c.is_linear ? 1 : 0);  // and three bytes that are reserved
