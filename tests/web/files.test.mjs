@@ -7,6 +7,7 @@ import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { after, test } from "node:test";
 import { fileURLToPath } from "node:url";
+import { pixelsOf } from "./support/pictures.mjs";
 
 const root = fileURLToPath(new URL("../../", import.meta.url));
 const { loadDraco, loadImgmesh, needsDraco } = await import(new URL("../../web/package/dist/node.js", import.meta.url));
@@ -23,15 +24,6 @@ const read = (name) => readFileSync(join(folder, name));
 const write = (files) => files.forEach(({ name, bytes }) => writeFileSync(join(folder, name), bytes));
 const named = (...names) => names.map((name) => ({ name, bytes: new Uint8Array(read(name)) }));
 
-function pixelsOf(width, height, color) {
-  const data = new Uint8ClampedArray(4 * width * height);
-  for (let y = 0; y < height; ++y)
-    for (let x = 0; x < width; ++x) {
-      const [r, g, b, a = 255] = color(x, y);
-      data.set([r, g, b, a], 4 * (y * width + x));
-    }
-  return { width, height, data };
-}
 const disc = (x, y) => Math.hypot(x - 32, y - 24) < 15;
 const images = {
   disc: pixelsOf(64, 48, (x, y) => (disc(x, y) ? [230, 120, 40] : [3 * x, 4 * y, 160])),

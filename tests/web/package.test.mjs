@@ -4,21 +4,12 @@ import { execFileSync } from "node:child_process";
 import { readFile } from "node:fs/promises";
 import { test } from "node:test";
 import { fileURLToPath } from "node:url";
+import { pixelsOf } from "./support/pictures.mjs";
 
 const folder = new URL("../../web/package/", import.meta.url);
 const { isImgmeshError, loadImgmesh } = await import(new URL("dist/node.js", folder));
 const imgmesh = await loadImgmesh();
 
-/** Pixels of a function of x and y that returns R, G, B and perhaps A. */
-function pixelsOf(width, height, color) {
-  const data = new Uint8ClampedArray(4 * width * height);
-  for (let y = 0; y < height; ++y)
-    for (let x = 0; x < width; ++x) {
-      const [r, g, b, a = 255] = color(x, y);
-      data.set([r, g, b, a], 4 * (y * width + x));
-    }
-  return { width, height, data };
-}
 const disc = pixelsOf(64, 48, (x, y) => (Math.hypot(x - 32, y - 24) < 15 ? [230, 120, 40] : [2 * x, 4 * y, 160]));
 
 function withMesh(pixels, parameters, options, use) {

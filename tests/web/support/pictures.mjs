@@ -23,3 +23,14 @@ export function ring(size = 80) {
     return [200 - x, 80 + y, (x * y) >> 5, Math.round(255 * cover)];
   });
 }
+
+/** Pixels of a function of x and y that returns R, G, B and perhaps A. */
+export function pixelsOf(width, height, color) {
+  const data = new Uint8ClampedArray(4 * width * height);
+  for (let y = 0; y < height; ++y)
+    for (let x = 0; x < width; ++x) {
+      const [r, g, b, a = 255] = color(x, y);
+      data.set([r, g, b, a], 4 * (y * width + x));
+    }
+  return { width, height, data };
+}
