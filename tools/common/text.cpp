@@ -46,7 +46,7 @@ bool is_printable(std::uint32_t code) {
 }
 
 std::string escape(const char* format, std::uint32_t number) {
-    std::array<char, 8> text{};
+    std::array<char, 16> text{};  // the compiler knows no bound of the number
     std::snprintf(text.data(), text.size(), format, number);
     return text.data();
 }
