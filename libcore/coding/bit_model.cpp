@@ -36,7 +36,7 @@ constexpr std::array<std::int16_t, 4096> kOdds = [] {
 
 const std::array<int, 256> AdaptiveBit::kRate = [] {
     std::array<int, 256> out{};
-    for (int seen = 0; seen < 256; ++seen) out[static_cast<std::size_t>(seen)] = 327680 / (10 * seen + 16);
+    for (int seen = 0; seen < 256; ++seen) out[static_cast<std::size_t>(seen)] = 327680 / (10 * seen + 25);
     return out;
 }();
 

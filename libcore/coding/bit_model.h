@@ -28,7 +28,7 @@ struct AdaptiveBit {
         probability = static_cast<std::uint16_t>(probability + ((target - probability) * kRate[seen] >> 15));
         if (seen < limit) ++seen;
     }
-    static const std::array<int, 256> kRate;  ///< 32768 / (seen + 1.6)
+    static const std::array<int, 256> kRate;  ///< 32768 / (seen + 2.5)
 };
 
 /// One kind of decision. Each of `Inputs` contexts has a table of its own.
@@ -39,7 +39,7 @@ class BitModel {
 
     /// sizes  number of contexts of each input; weight_sets: how many sets of weights the decision chooses
     /// from
-    BitModel(const Contexts& sizes, std::size_t weight_sets) : weights_(weight_sets) {
+    explicit BitModel(const Contexts& sizes, std::size_t weight_sets = 1) : weights_(weight_sets) {
         for (std::size_t i = 0; i < Inputs; ++i) tables_[i].resize(sizes[i]);
         for (Weights& weights : weights_) {
             weights.of.fill(kFirstWeight);
