@@ -51,12 +51,8 @@ class BitModel {
     template <class Coder>
     bool code(Coder& coder, bool bit, const Contexts& contexts, int prior = 0, std::size_t set = 0) {
         Weights& weights = weights_[set];
-        std::array<int, Inputs + 1> odds;
-        for (std::size_t i = 0; i < Inputs; ++i) odds[i] = odds_of(tables_[i][contexts[i]].probability);
-        odds[Inputs] = prior;
-        int sum = 0;
-        for (std::size_t i = 0; i <= Inputs; ++i) sum += weights.of[i] * odds[i];
-        const int mixed = probability_of(std::clamp(sum >> kWeightBits, -kMaxOdds, kMaxOdds));
+        const std::array<int, Inputs + 1> odds = odds_from(contexts, prior);
+        const int mixed = probability_of(mix(weights, odds));
         bit = coder.code(bit, static_cast<std::uint32_t>(std::clamp(mixed >> 1, 16, 32768 - 16)));
         const int error = (bit ? 65535 : 0) - mixed;
         const int shift = weights.seen < kSettled ? 16 : 17;
@@ -68,6 +64,11 @@ class BitModel {
         return bit;
     }
 
+    /// Returns the log odds of a 1.
+    int odds(const Contexts& contexts, int prior = 0, std::size_t set = 0) const {
+        return mix(weights_[set], odds_from(contexts, prior));
+    }
+
   private:
     static constexpr int kWeightBits = 14, kOne = 1 << kWeightBits, kMaxWeight = 4 * kOne;
     static constexpr int kFirstWeight = static_cast<int>(kOne * 6 / 10 / Inputs);
@@ -77,6 +78,18 @@ class BitModel {
         std::array<int, Inputs + 1> of;
         int seen = 0;
     };
+    std::array<int, Inputs + 1> odds_from(const Contexts& contexts, int prior) const {
+        std::array<int, Inputs + 1> out;
+        for (std::size_t i = 0; i < Inputs; ++i) out[i] = odds_of(tables_[i][contexts[i]].probability);
+        out[Inputs] = prior;
+        return out;
+    }
+    static int mix(const Weights& weights, const std::array<int, Inputs + 1>& odds) {
+        int sum = 0;
+        for (std::size_t i = 0; i <= Inputs; ++i) sum += weights.of[i] * odds[i];
+        return std::clamp(sum >> kWeightBits, -kMaxOdds, kMaxOdds);
+    }
+
     std::array<std::vector<AdaptiveBit>, Inputs> tables_;
     std::vector<Weights> weights_;
 };

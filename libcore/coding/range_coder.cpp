@@ -23,7 +23,7 @@ std::vector<std::uint8_t> RangeEncoder::finish() {
         break;
     }
     for (int i = 0; i < 4; ++i) shift_out();
-    while (!bytes_.empty() && bytes_.back() == 0) bytes_.pop_back();
+    for (int i = 0; i < 4 && bytes_.back() == 0; ++i) bytes_.pop_back();
     return std::move(bytes_);
 }
 

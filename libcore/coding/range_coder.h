@@ -31,7 +31,7 @@ class RangeEncoder {
         }
         return bit;
     }
-    /// Returns the bytes. Zeros at the end are left out: the decoder reads zeros there.
+    /// Returns the bytes, without up to four zeros at the end: the decoder reads zeros there.
     std::vector<std::uint8_t> finish();
 
   private:
@@ -65,6 +65,8 @@ class RangeDecoder {
     }
     /// Returns how many bytes were wanted beyond the end. A whole stream wants at most 4.
     std::size_t missing() const { return missing_; }
+    /// Returns how many bytes were not wanted.
+    std::size_t left() const { return bytes_.size() - at_; }
 
   private:
     std::uint32_t next() {

@@ -1,0 +1,54 @@
+// A coded picture as bytes. docs/codec-format.md describes them.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "libcore/coding/draw_coded.h"
+
+namespace imgmesh::coding {
+
+/// What a file says of a picture, in the order in which it says it.
+struct StreamContent {
+    CodedGrid grid;
+    int channels = 3;
+    std::vector<GridPoint> point;     ///< in raster order: by row, then by column
+    std::vector<Face> faces;          ///< as the decoder finds them
+    std::array<int, 4> step_index{};  ///< of each coded channel's step (color_step)
+    std::vector<int> level;           ///< size V * channels
+    std::vector<std::int32_t> color;  ///< size V * channels, in image channels [1 / kColorUnit]
+
+    CodedShape shape() const { return {grid, point, faces}; }
+};
+
+inline constexpr int kStepIndices = 144;
+/// Returns the step of a colour in colour units: 16 steps an octave, from a quarter of a grey level to 124.
+constexpr std::int32_t color_step(int index) {
+    return (16 + (index & 15)) << (index >> 4);
+}
+
+/// Largest picture: pixels, and pixels a side.
+inline constexpr std::int64_t kMaxPixels = std::int64_t{1} << 26;
+inline constexpr int kMaxSide = 65535;
+
+/// Returns the mesh as a decoder will have it, with points in raster order and without colours. Faces that
+/// the format cannot reach are replaced; that happens to needles only.
+StreamContent arranged(const CodedMesh& mesh);
+
+/// Bits of the parts of a stream.
+struct StreamBits {
+    double points = 0, faces = 0, colors = 0;
+};
+
+/// Returns the bytes of a picture whose faces are those of arranged(). Sets its colours to the decoder's.
+std::vector<std::uint8_t> write_stream(StreamContent& content);
+/// Returns the number of bytes that everything before the colours takes, in bits.
+StreamBits count_bits(const StreamContent& content);
+
+/// Reads a file. Throws Error(kBadFile) for bytes that are none or say what cannot be, before memory is taken
+/// for it. Takes up to 8 bytes of memory for each point of the grid, and 400 for each vertex.
+StreamContent read_stream(std::span<const std::uint8_t> bytes);
+
+}  // namespace imgmesh::coding
