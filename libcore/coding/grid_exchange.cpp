@@ -1,0 +1,186 @@
+// Vertices that come where they gain most, and go where they cost least.
+#include <algorithm>
+#include <limits>
+
+#include "libcore/coding/grid_state.h"
+
+namespace imgmesh {
+
+// Half-edge collapse of v into the neighbour where the error grows least.
+GridState::Removal GridState::best_removal(Id v) const {
+    Removal best{v, kNone, std::numeric_limits<double>::infinity()};
+    OneRing ring;
+    Fan fan;
+    if (!fan_of(v, ring, fan)) return best;
+    double before = 0;
+    for (std::size_t k = 0; k < ring.faces; ++k) before += error_[ring.face[k]];
+    for (std::size_t n = 0; n < ring.vertices(); ++n) {
+        // A vertex on a side goes only along that side.
+        if (!ring.closed && n != 0 && n != ring.faces) continue;
+        const Id u = ring.vertex[n];
+        bool legal = true;
+        for (std::size_t k = 0; k < ring.faces && legal; ++k)
+            legal = ring.has(k, u) ||
+                    is_legal(spot_[u].place, fan.spot[k].place, fan.spot[k + 1].place, weights_.min_fatness);
+        if (!legal) continue;
+        // The faces form a fan around u: a part of the ring, from one neighbour of u to the other.
+        double after = 0;
+        Moments spoke = {}, next;
+        bool known = false;
+        const std::size_t start = ring.closed ? n + 1 : 0;
+        for (std::size_t j = 0; j < ring.faces && after - before < best.cost; ++j) {
+            const std::size_t k = (start + j) % ring.faces;
+            if (ring.has(k, u)) {
+                known = false;
+                continue;
+            }
+            if (!known) sums_->edge(spot_[u].place, fan.spot[k].place, spoke);
+            sums_->edge(spot_[u].place, fan.spot[k + 1].place, next);
+            Moments face = fan.link[k];
+            add(face, spoke);
+            subtract(face, next);
+            after += corner_fit(face, spot_[u].place, fan.spot[k], fan.spot[k + 1]).error(spot_[u].color);
+            spoke = next;
+            known = true;
+        }
+        if (after - before < best.cost) best = {v, u, after - before};
+    }
+    return best;
+}
+
+void GridState::remove(const Removal& removal) {
+    OneRing ring;
+    mesh_.ring(removal.v, ring);
+    for (std::size_t k = 0; k < ring.faces; ++k) changed(ring.face[k]);
+    mesh_.collapse(ring, removal.into);
+    for (std::size_t k = 0; k < ring.faces; ++k) {
+        const Id f = ring.face[k];
+        error_[f] = mesh_.live_face(f) ? face_error(mesh_.face(f)) : 0;
+    }
+}
+
+std::size_t GridState::remove_cheapest(std::size_t most) {
+    removal_.resize(vertex_.size());
+    std::vector<Removal> all;
+    for (Id v = 0; v < vertex_.size(); ++v) {
+        if (!vertex_[v].removal_holds) removal_[v] = best_removal(v);
+        vertex_[v].removal_holds = true;
+        if (removal_[v].into != kNone) all.push_back(removal_[v]);
+    }
+    std::sort(all.begin(), all.end(), [](const Removal& a, const Removal& b) {
+        return a.cost != b.cost ? a.cost < b.cost : a.v < b.v;
+    });
+    std::vector<bool> touched(error_.size(), false);
+    std::size_t done = 0;
+    OneRing ring;
+    for (const Removal& removal : all) {
+        if (done == most) break;
+        mesh_.ring(removal.v, ring);
+        bool free = mesh_.may_collapse(ring, removal.into);
+        for (std::size_t k = 0; k < ring.faces; ++k) free = free && !touched[ring.face[k]];
+        if (!free) continue;
+        for (std::size_t k = 0; k < ring.faces; ++k) touched[ring.face[k]] = true;
+        remove(removal);
+        ++done;
+    }
+    return done;
+}
+
+void GridState::try_insertion(Id f, int edge, std::int32_t column, std::int32_t row, Insertion& best) const {
+    Fan fan;
+    double before = error_[f];
+    const Face& face = mesh_.face(f);
+    if (edge < 0) {
+        fan.faces = 3;
+        fan.closed = true;
+        for (std::size_t k = 0; k < 4; ++k) fan.spot[k] = spot_[face[k % 3]];
+    } else {
+        const auto i = static_cast<std::size_t>(edge);
+        const Spot &o = spot_[face[i]], &p = spot_[face[(i + 1) % 3]], &q = spot_[face[(i + 2) % 3]];
+        const Id g = mesh_.across(f, i);
+        fan.faces = 2;
+        fan.spot[0] = q;
+        fan.spot[1] = o;
+        fan.spot[2] = p;
+        if (g != kNone) {
+            before += error_[g];
+            fan.faces = 4;
+            fan.closed = true;
+            fan.spot[3] = spot_[mesh_.apex(g, f)];
+            fan.spot[4] = q;
+        }
+    }
+    const Place at = place(column, row);
+    if (!fan.is_legal(at, weights_.min_fatness)) return;
+    fan.measure_links(*sums_);
+    FanFit fit;
+    fit_fan(*sums_, fan, at, (fan.spot[0].color + fan.spot[1].color + fan.spot[2].color) / 3, fit);
+    const double gain = before - fit.error;
+    if (gain > best.gain) best = {f, edge, column, row, fit.color, gain};
+}
+
+void GridState::best_insertion(Id f, std::vector<Insertion>& all) const {
+    Insertion best{f, -1, 0, 0, {}, 0};
+    const Face& face = mesh_.face(f);
+    // Nearest grid point of a mean of the corners with these weights, in fifths.
+    constexpr std::int32_t kInside[6][3] = {{3, 1, 1}, {1, 3, 1}, {1, 1, 3}, {1, 2, 2}, {2, 1, 2}, {2, 2, 1}};
+    const auto line = [](std::int32_t sum, std::int32_t parts) { return (2 * sum + parts) / (2 * parts); };
+    const Vertex &a = vertex_[face[0]], &b = vertex_[face[1]], &c = vertex_[face[2]];
+    for (const auto& w : kInside)
+        try_insertion(f, -1, line(w[0] * a.column + w[1] * b.column + w[2] * c.column, 5),
+                      line(w[0] * a.row + w[1] * b.row + w[2] * c.row, 5), best);
+    for (std::size_t i = 0; i < 3; ++i) {
+        const Id g = mesh_.across(f, i);
+        if (g != kNone && g < f) continue;
+        const Vertex &p = vertex_[face[(i + 1) % 3]], &q = vertex_[face[(i + 2) % 3]];
+        try_insertion(f, static_cast<int>(i), line(p.column + q.column, 2), line(p.row + q.row, 2), best);
+    }
+    if (best.gain > 0) all.push_back(best);
+}
+
+Id GridState::insert(const Insertion& insertion) {
+    const Id v = insertion.edge < 0 ? mesh_.split_face(insertion.face)
+                                    : mesh_.split_edge(insertion.face, as_index(insertion.edge));
+    if (v >= vertex_.size()) {
+        vertex_.resize(v + 1);
+        spot_.resize(v + 1);
+    }
+    vertex_[v] = {insertion.column, insertion.row};
+    spot_[v] = {place(insertion.column, insertion.row), insertion.color};
+    error_.resize(mesh_.faces().size(), 0.0);
+    OneRing ring;
+    mesh_.ring(v, ring);
+    for (std::size_t k = 0; k < ring.faces; ++k) {
+        changed(ring.face[k]);
+        error_[ring.face[k]] = face_error(mesh_.face(ring.face[k]));
+    }
+    move_vertex(v);
+    return v;
+}
+
+std::size_t GridState::insert_best(std::size_t most) {
+    std::vector<Insertion> all;
+    for (Id f = 0; f < error_.size(); ++f)
+        if (mesh_.live_face(f)) best_insertion(f, all);
+    std::sort(all.begin(), all.end(), [](const Insertion& a, const Insertion& b) {
+        return a.gain != b.gain ? a.gain > b.gain : a.face < b.face;
+    });
+    std::vector<bool> touched(error_.size(), false);
+    std::size_t done = 0;
+    OneRing ring;
+    for (const Insertion& insertion : all) {
+        if (done == most) break;
+        const Id f = insertion.face,
+                 g = insertion.edge < 0 ? kNone : mesh_.across(f, as_index(insertion.edge));
+        if (touched[f] || (g != kNone && touched[g])) continue;
+        const Id v = insert(insertion);
+        // New faces may have the ids of removed ones.
+        touched.resize(mesh_.faces().size(), true);
+        mesh_.ring(v, ring);
+        for (std::size_t k = 0; k < ring.faces; ++k) touched[ring.face[k]] = true;
+        ++done;
+    }
+    return done;
+}
+
+}  // namespace imgmesh

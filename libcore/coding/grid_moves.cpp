@@ -1,0 +1,122 @@
+// Moves of vertices on the grid: pattern search, and random moves.
+#include <algorithm>
+
+#include "libcore/coding/grid_state.h"
+
+namespace imgmesh {
+namespace {
+
+constexpr std::int32_t kDirections[8][2] = {{1, 0},  {1, 1},   {0, 1},  {-1, 1},
+                                            {-1, 0}, {-1, -1}, {0, -1}, {1, -1}};
+constexpr int kLongestStep = 8;
+// Gains within the rounding of the sums do not count.
+constexpr double kSlack = 1e-9;
+
+}  // namespace
+
+bool GridState::fan_of(Id v, OneRing& ring, Fan& fan) const {
+    if (!mesh_.live_vertex(v) || (on_side(v, true) && on_side(v, false)) || !mesh_.ring(v, ring))
+        return false;
+    fan.faces = ring.faces;
+    fan.closed = ring.closed;
+    for (std::size_t k = 0; k <= ring.faces; ++k) fan.spot[k] = spot_[ring.vertex[k]];
+    for (std::size_t k = 0; k < ring.faces; ++k) {
+        fan.beyond[k] = fan.spot[k].place;
+        if (!(weights_.edge_cost > 0)) continue;
+        if (const Id g = mesh_.across(ring.face[k], ring.corner[k]); g != kNone)
+            fan.beyond[k] = spot_[mesh_.apex(g, ring.face[k])].place;
+    }
+    fan.measure_links(*sums_);
+    return true;
+}
+
+double GridState::cost_of(const OneRing& ring, const Fan& fan) const {
+    double cost = 0;
+    for (std::size_t k = 0; k < ring.faces; ++k) cost += error_[ring.face[k]];
+    if (weights_.edge_cost > 0) cost += weights_.edge_cost * fan.odd_edges(spot_[ring.center].place);
+    return cost;
+}
+
+bool GridState::try_place(const Fan& fan, Id v, std::int32_t column, std::int32_t row, FanFit& fit,
+                          double& cost) const {
+    if (column < 0 || row < 0 || column >= grid_.columns() || row >= grid_.rows()) return false;
+    if ((column != vertex_[v].column && on_side(v, true)) || (row != vertex_[v].row && on_side(v, false)))
+        return false;
+    const Place at = place(column, row);
+    if (!fan.is_legal(at, weights_.min_fatness)) return false;
+    fit_fan(*sums_, fan, at, spot_[v].color, fit);
+    cost = fit.error;
+    if (weights_.edge_cost > 0) cost += weights_.edge_cost * fan.odd_edges(at);
+    return true;
+}
+
+void GridState::set(const OneRing& ring, std::int32_t column, std::int32_t row, const FanFit& fit) {
+    Vertex& vertex = vertex_[ring.center];
+    vertex.column = column;
+    vertex.row = row;
+    spot_[ring.center] = {fit.place, fit.color};
+    vertex.removal_holds = false;
+    for (std::size_t k = 0; k < ring.faces; ++k) {
+        error_[ring.face[k]] = fit.face[k].error(fit.color);
+        vertex_[ring.vertex[k]].removal_holds = false;
+    }
+    vertex_[ring.vertex[ring.faces]].removal_holds = false;
+}
+
+void GridState::move_vertex(Id v) {
+    OneRing ring;
+    Fan fan;
+    if (!fan_of(v, ring, fan)) return;
+    FanFit fit;
+    double best = cost_of(ring, fan), cost = 0;
+    best -= kSlack * best;
+    bool moved = false;
+    const std::uint8_t first = vertex_[v].direction;
+    const std::int32_t step = vertex_[v].step;
+    for (std::uint8_t n = 0; n < 8; ++n) {
+        const auto direction = static_cast<std::uint8_t>((first + n) % 8);
+        const std::int32_t dx = step * kDirections[direction][0], dy = step * kDirections[direction][1];
+        // A step that succeeds is repeated.
+        while (try_place(fan, v, vertex_[v].column + dx, vertex_[v].row + dy, fit, cost) && cost < best) {
+            set(ring, vertex_[v].column + dx, vertex_[v].row + dy, fit);
+            vertex_[v].direction = direction;
+            best = cost - kSlack * cost;
+            moved = true;
+        }
+    }
+    vertex_[v].step =
+        static_cast<std::uint8_t>(moved ? std::min(2 * step, kLongestStep) : std::max(step / 2, 1));
+}
+
+void GridState::move_vertices() {
+    for (Id v = 0; v < vertex_.size(); ++v) move_vertex(v);
+}
+
+void GridState::anneal_vertex(Id v, int trials, double spread, double temperature, GridRandom& random) {
+    OneRing ring;
+    Fan fan;
+    if (!fan_of(v, ring, fan)) return;
+    FanFit fit;
+    double now = cost_of(ring, fan), cost = 0;
+    for (int trial = 0; trial < trials; ++trial) {
+        std::int32_t dx = static_cast<std::int32_t>(std::lround(spread * random.gaussian())),
+                     dy = static_cast<std::int32_t>(std::lround(spread * random.gaussian()));
+        if (dx == 0 && dy == 0) {
+            const auto& direction = kDirections[random.next() % 8];
+            dx = direction[0];
+            dy = direction[1];
+        }
+        const double allowed = temperature * random.exponential();
+        const std::int32_t column = vertex_[v].column + dx, row = vertex_[v].row + dy;
+        if (!try_place(fan, v, column, row, fit, cost) || !(cost - now < allowed)) continue;
+        set(ring, column, row, fit);
+        now = cost;
+    }
+}
+
+void GridState::anneal(int trials, double spread, double temperature, GridRandom& random) {
+    for (Id v = 0; v < vertex_.size(); ++v) anneal_vertex(v, trials, spread, temperature, random);
+    anneal_flips(temperature, random);
+}
+
+}  // namespace imgmesh

@@ -1,0 +1,235 @@
+// The optimiser of coded meshes: its sums over triangles against sums over pixels, and its meshes against the
+// laws that a decoder relies on.
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <random>
+#include <set>
+
+#include "libcore/base/error.h"
+#include "libcore/coding/fan_fit.h"
+#include "libcore/coding/grid_optimizer.h"
+#include "libcore/coding/grid_schedule.h"
+
+using namespace imgmesh;
+
+namespace {
+
+// Waves with an edge across them, so that vertices have reasons to move.
+ChannelGrid test_picture(int width, int height, int channels) {
+    ChannelGrid image(width, height, channels, std::vector<float>(as_index(width * height * channels)));
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x)
+            for (int c = 0; c < channels; ++c) {
+                const double wave = 40 * std::sin(0.21 * x + 0.4 * c) * std::cos(0.17 * y);
+                image.pixel(x, y)[c] =
+                    static_cast<float>(std::round(120 + wave + (3 * x + 2 * y > 2 * width + 7 * c ? 60 : 0)));
+            }
+    return image;
+}
+
+struct Corners {
+    Place a, b, c;
+};
+Corners corners_of(const CodedMesh& mesh, const Face& face) {
+    const auto place = [&](Id v) {
+        return Place{mesh.grid.x(mesh.point[v][0]), mesh.grid.y(mesh.point[v][1])};
+    };
+    return {place(face[0]), place(face[1]), place(face[2])};
+}
+
+Moments moments_of(const RowSums& sums, const Corners& t) {
+    Moments total, edge;
+    for (const auto& [from, to] : {std::pair(t.a, t.b), std::pair(t.b, t.c), std::pair(t.c, t.a)}) {
+        sums.edge(from, to, edge);
+        add(total, edge);
+    }
+    return total;
+}
+
+bool contains(const Corners& t, const Place& p) {
+    return area2(t.a, t.b, p) >= 0 && area2(t.b, t.c, p) >= 0 && area2(t.c, t.a, p) >= 0;
+}
+
+// The squared error of the mesh's drawing, pixel by pixel.
+double drawn_error(const CodedMesh& mesh, const ChannelGrid& image) {
+    double sum = 0;
+    for (int y = 0; y < image.height; ++y)
+        for (int x = 0; x < image.width; ++x) {
+            const Place p{kQuarters * x, kQuarters * y};
+            for (const Face& face : mesh.faces) {
+                const Corners t = corners_of(mesh, face);
+                if (!contains(t, p)) continue;
+                const double area = static_cast<double>(area2(t.a, t.b, t.c));
+                const double weight[3] = {static_cast<double>(area2(p, t.b, t.c)) / area,
+                                          static_cast<double>(area2(t.a, p, t.c)) / area,
+                                          static_cast<double>(area2(t.a, t.b, p)) / area};
+                for (int c = 0; c < mesh.channels; ++c) {
+                    double drawn = 0;
+                    for (std::size_t i = 0; i < 3; ++i)
+                        drawn += weight[i] * mesh.color[face[i] * as_index(mesh.channels) + as_index(c)];
+                    sum += std::pow(drawn - image.pixel(x, y)[c], 2);
+                }
+                break;
+            }
+        }
+    return sum;
+}
+
+// Whether the faces are positive and cover the image once, and whether its corners are vertices.
+void check_legal(const CodedMesh& mesh) {
+    const std::set<GridPoint> points(mesh.point.begin(), mesh.point.end());
+    CHECK(points.size() == mesh.point.size());
+    for (const std::int32_t column : {0, mesh.grid.columns() - 1})
+        for (const std::int32_t row : {0, mesh.grid.rows() - 1}) CHECK(points.contains({column, row}));
+    std::int64_t area = 0;
+    std::set<std::pair<Id, Id>> edges;
+    for (const Face& face : mesh.faces) {
+        const Corners t = corners_of(mesh, face);
+        CHECK(area2(t.a, t.b, t.c) > 0);
+        area += area2(t.a, t.b, t.c);
+        // No directed edge twice: with the area, no two faces overlap.
+        for (std::size_t i = 0; i < 3; ++i) CHECK(edges.emplace(face[i], face[(i + 1) % 3]).second);
+    }
+    CHECK(area == 2 * std::int64_t{mesh.grid.right()} * mesh.grid.bottom());
+}
+
+CodedMesh optimized(const ChannelGrid& image, int step, std::size_t vertices, const GridSchedule& schedule) {
+    const RowSums sums(image);
+    GridOptimizer optimizer(sums, regular_mesh(sums, step, vertices / 3), {});
+    optimizer.set_vertex_count(vertices);
+    optimizer.optimize(schedule);
+    return optimizer.result();
+}
+
+const GridSchedule kShort{.rounds = 2, .sweeps = 10, .last_rounds = 1};
+
+}  // namespace
+
+TEST_CASE("moments of a triangle are those of the pixels inside it") {
+    for (const int channels : {1, 3, 4}) {
+        const ChannelGrid image = test_picture(40, 30, channels);
+        const RowSums sums(image);
+        std::mt19937 random(7);
+        for (int trial = 0; trial < 300; ++trial) {
+            const auto any = [&] {
+                return Place{static_cast<int>(random() % (4 * 39 + 1)),
+                             static_cast<int>(random() % (4 * 29 + 1))};
+            };
+            const Corners t{any(), any(), any()};
+            if (area2(t.a, t.b, t.c) <= 0) continue;
+            Moments slow;
+            bool on_edge = false;
+            for (int y = 0; y < image.height; ++y)
+                for (int x = 0; x < image.width; ++x) {
+                    const Place p{4 * x, 4 * y};
+                    if (!contains(t, p)) continue;
+                    on_edge |= area2(t.a, t.b, p) == 0 || area2(t.b, t.c, p) == 0 || area2(t.c, t.a, p) == 0;
+                    Double4 value = {};
+                    for (int c = 0; c < channels; ++c) value[c] = image.pixel(x, y)[c];
+                    slow.shape += Double4{1, double(x), double(x * x), sum_lanes(value * value)};
+                    slow.rows += Double4{double(y), double(x * y), double(y * y), 0};
+                    slow.i += value;
+                    slow.xi += x * value;
+                    slow.yi += y * value;
+                }
+            // Those belong to one of two faces: see below.
+            if (on_edge) continue;
+            const Moments fast = moments_of(sums, t);
+            for (int k = 0; k < 4; ++k) {
+                CHECK(fast.shape[k] == slow.shape[k]);
+                CHECK(fast.rows[k] == slow.rows[k]);
+                CHECK(fast.i[k] == slow.i[k]);
+                CHECK(fast.xi[k] == slow.xi[k]);
+                CHECK(fast.yi[k] == slow.yi[k]);
+            }
+        }
+    }
+}
+
+TEST_CASE("the error is that of the drawing, and every mesh is legal") {
+    for (const int channels : {1, 2, 3, 4})
+        for (const int step : {1, 4, 7}) {
+            const ChannelGrid image = test_picture(61, 47, channels);
+            const RowSums sums(image);
+            GridOptimizer optimizer(sums, regular_mesh(sums, step, 12), {});
+            optimizer.set_vertex_count(40);
+            optimizer.optimize(kShort);
+            const CodedMesh mesh = optimizer.result();
+            CHECK(mesh.channels == channels);
+            CHECK(mesh.point.size() == 40);
+            check_legal(mesh);
+            CHECK(optimizer.squared_error() == doctest::Approx(drawn_error(mesh, image)).epsilon(1e-4));
+        }
+}
+
+TEST_CASE("every pixel is in one face, also on edges") {
+    const ChannelGrid image = test_picture(50, 33, 3);
+    const RowSums sums(image);
+    // Vertices on pixel centres: many of these are on edges.
+    const CodedMesh mesh = optimized(image, 8, 60, kShort);
+    Moments total;
+    for (const Face& face : mesh.faces) add(total, moments_of(sums, corners_of(mesh, face)));
+    CHECK(total.shape[0] == 50 * 33);
+    CHECK(total.shape[1] == 33 * 49 * 50 / 2);
+    CHECK(total.rows[0] == 50 * 32 * 33 / 2);
+}
+
+TEST_CASE("the number of vertices is met, up and down") {
+    const ChannelGrid image = test_picture(80, 60, 3);
+    const RowSums sums(image);
+    GridOptimizer optimizer(sums, regular_mesh(sums, 4, 4), {});
+    CHECK(optimizer.vertices() == 4);
+    for (const std::size_t vertices : {100, 104, 97, 30, 4, 50}) {
+        optimizer.set_vertex_count(vertices);
+        CHECK(optimizer.vertices() == vertices);
+        check_legal(optimizer.result());
+    }
+}
+
+TEST_CASE("optimising never raises the error, and more vertices have less") {
+    const ChannelGrid image = test_picture(80, 60, 3);
+    const RowSums sums(image);
+    GridOptimizer optimizer(sums, regular_mesh(sums, 4, 30), {.lambda = 0});
+    double before = optimizer.squared_error();
+    for (int times = 0; times < 3; ++times) {
+        optimizer.optimize(kShort);
+        CHECK(optimizer.squared_error() <= before);
+        before = optimizer.squared_error();
+    }
+    optimizer.set_vertex_count(60);
+    CHECK(optimizer.squared_error() < before);
+}
+
+TEST_CASE("a picture that a mesh can draw is found") {
+    // A roof: two planes that meet at a column of the grid. Six vertices draw it exactly.
+    ChannelGrid image(65, 33, 1, std::vector<float>(65 * 33));
+    for (int y = 0; y < 33; ++y)
+        for (int x = 0; x < 65; ++x) *image.pixel(x, y) = static_cast<float>(x <= 24 ? 4 * x : 96 - (x - 24));
+    const RowSums sums(image);
+    GridOptimizer optimizer(sums, regular_mesh(sums, 16, 4), {});
+    optimizer.set_vertex_count(6);
+    optimizer.optimize(kShort);
+    CHECK(optimizer.squared_error() < 65 * 33 * 1e-3);
+}
+
+TEST_CASE("the same picture gives the same mesh") {
+    const ChannelGrid image = test_picture(61, 47, 3);
+    const CodedMesh one = optimized(image, 4, 40, kShort), two = optimized(image, 4, 40, kShort);
+    CHECK(one.point == two.point);
+    CHECK(one.faces == two.faces);
+    CHECK(one.color == two.color);
+}
+
+TEST_CASE("the smallest pictures have four vertices") {
+    const ChannelGrid image = test_picture(2, 2, 3);
+    const RowSums sums(image);
+    GridOptimizer optimizer(sums, regular_mesh(sums, 4, 100), {});
+    optimizer.set_vertex_count(100);
+    optimizer.optimize();
+    CHECK(optimizer.vertices() == 4);
+    check_legal(optimizer.result());
+    CHECK(optimizer.squared_error() < 1e-3);
+    CHECK_THROWS_AS(RowSums(test_picture(1, 5, 3)), Error);
+    CHECK_THROWS_AS(RowSums(test_picture(5, 5, 5)), Error);
+}
