@@ -11,10 +11,18 @@ bool GridState::cost_flip(Flip& flip) const {
     if (!is_legal(sp.place, sa.place, sq.place, weights_.min_fatness) ||
         !is_legal(sq.place, sb.place, sp.place, weights_.min_fatness))
         return false;
-    const FaceFit first = face_fit(*sums_, sp.place, sa.place, sq.place),
-                  second = face_fit(*sums_, sq.place, sb.place, sp.place);
-    flip.first = first.error(sp.color, sa.color, sq.color);
-    flip.second = second.error(sq.color, sb.color, sp.color);
+    Moments first, second, edge;
+    sums_->edge(sp.place, sa.place, first);
+    sums_->edge(sa.place, sq.place, edge);
+    add(first, edge);
+    sums_->edge(sq.place, sb.place, second);
+    sums_->edge(sb.place, sp.place, edge);
+    add(second, edge);
+    sums_->edge(sq.place, sp.place, edge);
+    add(first, edge);
+    subtract(second, edge);
+    flip.first = corner_fit(first, sp.place, sa, sq).error(sp.color);
+    flip.second = corner_fit(second, sq.place, sb, sp).error(sq.color);
     flip.cost = flip.first + flip.second - error_[flip.f] - error_[flip.g];
     if (!(weights_.edge_cost > 0)) return true;
     int odd = is_odd(sp.place, sq.place, sa.place, sb.place) - is_odd(sa.place, sb.place, sp.place, sq.place);
@@ -48,10 +56,10 @@ bool GridState::do_flip(const Flip& flip) {
     return true;
 }
 
-// Visits every edge once, and those of faces that a flip has changed again.
+// Visits every edge of some faces with a later face, once.
 template <class Accept>
-void GridState::flip_where(Accept&& accept) {
-    for (Id f = 0; f < error_.size(); ++f)
+void GridState::flip_where(const IdRange& faces, Accept&& accept) {
+    for (Id f = faces.first; f < faces.second; ++f)
         for (std::size_t i = 0; i < 3 && mesh_.live_face(f); ++i) {
             Flip flip{f, mesh_.across(f, i), i};
             if (flip.g == kNone || flip.g < f) continue;
@@ -59,12 +67,12 @@ void GridState::flip_where(Accept&& accept) {
         }
 }
 
-void GridState::flip_edges() {
-    flip_where([&](const Flip& flip) { return flip.cost < -1e-9 * (flip.first + flip.second); });
+void GridState::flip_edges(const IdRange& faces) {
+    flip_where(faces, [&](const Flip& flip) { return flip.cost < -1e-9 * (flip.first + flip.second); });
 }
 
-void GridState::anneal_flips(double temperature, GridRandom& random) {
-    flip_where([&](const Flip& flip) { return flip.cost < temperature * random.exponential(); });
+void GridState::anneal_flips(const IdRange& faces, double temperature, GridRandom& random) {
+    flip_where(faces, [&](const Flip& flip) { return flip.cost < temperature * random.exponential(); });
 }
 
 }  // namespace imgmesh

@@ -88,10 +88,6 @@ void GridState::move_vertex(Id v) {
         static_cast<std::uint8_t>(moved ? std::min(2 * step, kLongestStep) : std::max(step / 2, 1));
 }
 
-void GridState::move_vertices() {
-    for (Id v = 0; v < vertex_.size(); ++v) move_vertex(v);
-}
-
 void GridState::anneal_vertex(Id v, int trials, double spread, double temperature, GridRandom& random) {
     OneRing ring;
     Fan fan;
@@ -114,9 +110,32 @@ void GridState::anneal_vertex(Id v, int trials, double spread, double temperatur
     }
 }
 
-void GridState::anneal(int trials, double spread, double temperature, GridRandom& random) {
-    for (Id v = 0; v < vertex_.size(); ++v) anneal_vertex(v, trials, spread, temperature, random);
-    anneal_flips(temperature, random);
+// Parts of the mesh that lie together, one after the other, are worked on while caches hold their pixels.
+template <class Work>
+void GridState::for_each_part(Work&& work) {
+    constexpr std::size_t kPartVertices = 24;
+    const std::size_t vertices = vertex_.size(), faces = error_.size();
+    const std::size_t parts = (vertices + kPartVertices - 1) / kPartVertices;
+    for (std::size_t part = 0; part < parts; ++part)
+        work(IdRange{as_id(vertices * part / parts), as_id(vertices * (part + 1) / parts)},
+             IdRange{as_id(faces * part / parts), as_id(faces * (part + 1) / parts)});
+}
+
+void GridState::flip_and_move() {
+    for_each_part([&](const IdRange& vertices, const IdRange& faces) {
+        flip_edges(faces);
+        for (Id v = vertices.first; v < vertices.second; ++v) move_vertex(v);
+    });
+}
+
+void GridState::anneal(int passes, int trials, double spread, double temperature, GridRandom& random) {
+    for_each_part([&](const IdRange& vertices, const IdRange& faces) {
+        for (int pass = 0; pass < passes; ++pass) {
+            for (Id v = vertices.first; v < vertices.second; ++v)
+                anneal_vertex(v, trials, spread, temperature, random);
+            anneal_flips(faces, temperature, random);
+        }
+    });
 }
 
 }  // namespace imgmesh

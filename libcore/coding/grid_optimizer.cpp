@@ -82,8 +82,7 @@ void GridOptimizer::update_weights() {
 void GridOptimizer::settle(int times) {
     state_->reorder();
     for (int k = 0; k < times; ++k) {
-        state_->flip_edges();
-        state_->move_vertices();
+        state_->flip_and_move();
         state_->fit_colors(kPasses);
     }
 }
@@ -121,8 +120,9 @@ void GridOptimizer::anneal(const GridSchedule& schedule) {
     const Fall temperature(schedule.last_temperature, schedule.sweeps),
         spread(schedule.last_spread / schedule.spread, schedule.sweeps);
     for (int k = 0; k < schedule.sweeps; ++k) {
-        state_->anneal(schedule.trials, schedule.spread * spread.at(k), start * temperature.at(k), random);
-        if (k % 4 == 3) state_->fit_colors(2);
+        state_->anneal(schedule.passes, schedule.trials, schedule.spread * spread.at(k),
+                       start * temperature.at(k), random);
+        state_->fit_colors(2);
     }
     settle(1);
 }

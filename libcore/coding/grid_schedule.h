@@ -9,6 +9,7 @@ struct GridSchedule {
     int rounds = 3;                  ///< exchanges before annealing
     double share = 1;                ///< of vertices that these add and remove
     int sweeps = 100;                ///< of annealing; 0 leaves it out
+    int passes = 4;                  ///< over each part of the mesh in a sweep
     int trials = 4;                  ///< of a vertex in a sweep
     double temperature = 1;          ///< at its start, over half the squared error of a vertex
     double last_temperature = 0.01;  ///< at its end, over that at the start

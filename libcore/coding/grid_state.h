@@ -35,19 +35,20 @@ class GridState {
     void reorder();
     /// Least squares over all pixels, by Gauss-Seidel.
     void fit_colors(int passes);
-    /// Moves each vertex to better grid points, along patterns of eight directions.
-    void move_vertices();
     /// Flips each edge where that lowers the cost.
-    void flip_edges();
+    void flip_edges() { flip_edges({0, as_id(error_.size())}); }
+    /// Does so, and moves each vertex to better grid points, along patterns of eight directions.
+    void flip_and_move();
     /// Adds vertices where they gain most, none next to another. Returns how many.
     std::size_t insert_best(std::size_t most);
     /// Removes vertices where they cost least, none next to another. Returns how many.
     std::size_t remove_cheapest(std::size_t most);
-    /// Tries random moves of each vertex, with a spread in grid steps, and then all flips. Some that raise
-    /// the cost are taken, by `temperature` on average.
-    void anneal(int trials, double spread, double temperature, GridRandom& random);
+    /// Tries random moves of each vertex, with a spread in grid steps, and then all flips; `passes` times in
+    /// each part of the mesh. Some that raise the cost are taken, by `temperature` on average.
+    void anneal(int passes, int trials, double spread, double temperature, GridRandom& random);
 
   private:
+    using IdRange = std::pair<Id, Id>;  // the first, and the one after the last
     struct Vertex {
         std::int32_t column = 0, row = 0;
         std::uint8_t step = 1;       // of its pattern [grid steps]
@@ -84,12 +85,15 @@ class GridState {
                    double& cost) const;
     void set(const OneRing& ring, std::int32_t column, std::int32_t row, const FanFit& fit);
     void move_vertex(Id v);
-    void anneal_flips(double temperature, GridRandom& random);
+    void anneal_flips(const IdRange& faces, double temperature, GridRandom& random);
     void anneal_vertex(Id v, int trials, double spread, double temperature, GridRandom& random);
     bool cost_flip(Flip& flip) const;
     bool do_flip(const Flip& flip);
     template <class Accept>
-    void flip_where(Accept&& accept);
+    void flip_where(const IdRange& faces, Accept&& accept);
+    void flip_edges(const IdRange& faces);
+    template <class Work>
+    void for_each_part(Work&& work);
     Removal best_removal(Id v) const;
     void remove(const Removal& removal);
     void best_insertion(Id f, std::vector<Insertion>& all) const;

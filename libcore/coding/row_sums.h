@@ -66,9 +66,13 @@ class RowSums {
     void edge(const Place& a, const Place& b, Moments& out) const;
 
   private:
+    // So a place of three channels is one line of a cache.
+    struct alignas(64) Line {
+        double value[8] = {};
+    };
     int width_, height_, channels_;
-    std::size_t stride_;        // doubles a pixel: I of three channels and |I|^2, x I; or I, x I, |I|^2
-    std::vector<double> sums_;  // (width + 1) * stride for each row
+    std::size_t stride_;      // doubles a pixel: I of three channels and |I|^2, x I; or I, x I, |I|^2
+    std::vector<Line> sums_;  // (width + 1) * stride for each row
 };
 
 }  // namespace imgmesh

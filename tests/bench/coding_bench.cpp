@@ -35,7 +35,7 @@ void change(GridSchedule& schedule, OptimizeParams& params, const char* field) {
     const std::pair<const char*, int*> whole[] = {{"settles", &schedule.settles},
                                                   {"rounds", &schedule.rounds},
                                                   {"sweeps", &schedule.sweeps},
-                                                  {"trials", &schedule.trials},
+                                                  {"trials", &schedule.trials}, {"passes", &schedule.passes},
                                                   {"last_rounds", &schedule.last_rounds}};
     for (const auto& [key, to] : whole)
         if (name == key) *to = static_cast<int>(number);
