@@ -12,6 +12,7 @@ constexpr int kMaxCotangent = 1 << 20;
 int cotangent(const Place& a, const Place& b, const Place& c) {
     const std::int64_t dot = std::int64_t{a.x - c.x} * (b.x - c.x) + std::int64_t{a.y - c.y} * (b.y - c.y);
     const std::int64_t area = area2(a, b, c), scaled = dot * 256;
+    if (area <= 0) return kMaxCotangent;  // behind the edge
     return static_cast<int>(std::clamp<std::int64_t>(scaled / area, -kMaxCotangent, kMaxCotangent));
 }
 
@@ -59,7 +60,7 @@ GateStep FaceCoder::reach(Id a, Id b, Id face, Id left, Id right, Id low_left, I
     GateStep step{face, left, right, low_left, low_right, d};
     step.goes_left = low_left == kNone ? in_front : area2(pa, pd, faces_.place(low_left)) > 0;
     step.goes_right = low_right == kNone ? in_front : area2(pd, pb, faces_.place(low_right)) > 0;
-    step.may_stop = step.goes_left && step.goes_right;
+    step.may_stop = in_front && step.goes_left && step.goes_right;
     step.cotangent = step.may_stop ? cotangent(pa, pb, pd) : kMaxCotangent;
     return step;
 }

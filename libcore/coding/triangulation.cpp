@@ -52,21 +52,24 @@ Triangulation::Triangulation(std::span<const Place> places, std::span<const Id> 
 }
 
 Id Triangulation::face_at(Id a, Id b) const {
-    // Around a in one direction, and from the start in the other one if the border comes first.
-    const Id first = face_of_[a];
-    for (Id f = first; f != kNone;) {
-        const LinkedFace& face = faces_[f];
-        const std::size_t i = face.corner[0] == a ? 0 : face.corner[1] == a ? 1 : 2;
-        if (face.corner[next(i)] == b) return f;
-        f = face.across[next(i)];
-        if (f == first) return kNone;
-    }
-    for (Id f = first; f != kNone;) {
-        const LinkedFace& face = faces_[f];
-        const std::size_t i = face.corner[0] == a ? 0 : face.corner[1] == a ? 1 : 2;
-        if (face.corner[next(i)] == b) return f;
-        f = face.across[before(i)];
-    }
+    // Around a in both directions at once, so that a face near the last one is found soon.
+    Id ahead = face_of_[a], behind = ahead;
+    const auto corner = [&](Id f) -> std::size_t {
+        const auto& c = faces_[f].corner;
+        return c[0] == a ? 0 : c[1] == a ? 1 : 2;
+    };
+    do {
+        if (ahead != kNone) {
+            const std::size_t i = corner(ahead);
+            if (faces_[ahead].corner[next(i)] == b) return ahead;
+            ahead = faces_[ahead].across[next(i)];
+        }
+        if (behind != kNone) {
+            const std::size_t i = corner(behind);
+            if (faces_[behind].corner[next(i)] == b) return behind;
+            behind = faces_[behind].across[before(i)];
+        }
+    } while ((ahead != kNone || behind != kNone) && ahead != face_of_[a] && behind != face_of_[a]);
     return kNone;
 }
 
@@ -189,6 +192,7 @@ void Triangulation::fill(std::span<const Id> chain, Id from, Id to, std::vector<
 void Triangulation::fix_face(Id a, Id b, Id c, std::span<const Id> strip) {
     if (strip.size() == 1) {
         faces_[strip[0]].known = true;
+        face_of_[a] = face_of_[b] = face_of_[c] = strip[0];
         return;
     }
     sides_.clear();

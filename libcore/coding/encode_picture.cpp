@@ -1,0 +1,276 @@
+#include "libcore/coding/encode_picture.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+
+#include "libcore/base/error.h"
+#include "libcore/base/index.h"
+#include "libcore/coding/grid_optimizer.h"
+#include "libcore/coding/grid_schedule.h"
+#include "libcore/coding/mesh_trial.h"
+
+namespace imgmesh {
+namespace {
+
+using coding::ColorWeights;
+using coding::MeshTrial;
+
+// The step of colours at which most error is saved for a bit, over the root mean squared error of the mesh
+// with exact colours; sides of the mesh over the step of its grid. Both optima are broad.
+constexpr double kStepOverError = 1.2, kSideOverGrid = 9;
+// Bits of a vertex, before anything is known.
+constexpr double kVertexBits = 15;
+constexpr int kHeaderBytes = 8;
+// Decibels that twice the vertices gain, before anything is known.
+constexpr double kDecibels = 1.8;
+
+// Linear in the channels, so that squared errors of what it returns weigh what `tune` says.
+struct ErrorSpace {
+    double plain = 1, luma = 0;  // squared weights of each channel's error, and of luma's
+
+    explicit ErrorSpace(Tune tune) {
+        if (tune == Tune::kPsnr) return;
+        plain = 0.25;
+        luma = 2.25;
+    }
+    // The symmetric square root of plain I + luma y y'.
+    void apply(std::span<float> rgb) const {
+        constexpr std::array<double, 3> y = {0.299, 0.587, 0.114};
+        constexpr double yy = y[0] * y[0] + y[1] * y[1] + y[2] * y[2];
+        const double value = y[0] * rgb[0] + y[1] * rgb[1] + y[2] * rgb[2];
+        const double more = (std::sqrt(plain + luma * yy) - std::sqrt(plain)) / yy * value;
+        for (std::size_t k = 0; k < 3; ++k)
+            rgb[k] = static_cast<float>(std::sqrt(plain) * rgb[k] + more * y[k]);
+    }
+};
+
+ColorWeights color_weights(Tune tune, int channels) {
+    ColorWeights weights;
+    if (tune == Tune::kPsnr || channels < 3) return weights;
+    weights.weight = {1, 0.25, 0.25, 1};
+    weights.shift = {0, 12, 12, 0};
+    return weights;
+}
+
+std::vector<float> premultiplied(const Bitmap& picture) {
+    std::vector<float> out(picture.data.begin(), picture.data.end());
+    if (!picture.has_alpha()) return out;
+    const auto channels = as_index(picture.channels);
+    for (std::size_t i = 0; i < out.size(); i += channels)
+        for (std::size_t k = 0; k + 1 < channels; ++k) out[i + k] *= out[i + channels - 1] / 255;
+    return out;
+}
+
+// A side of one pixel becomes one of two.
+ChannelGrid at_least_two(int width, int height, int channels, const std::vector<float>& samples) {
+    ChannelGrid grid(std::max(width, 2), std::max(height, 2), channels, {});
+    for (int y = 0; y < grid.height; ++y)
+        for (int x = 0; x < grid.width; ++x) {
+            const std::size_t from =
+                as_index(std::min(y, height - 1)) * as_index(width) + as_index(std::min(x, width - 1));
+            for (std::size_t k = 0; k < as_index(channels); ++k)
+                grid.data.push_back(samples[from * as_index(channels) + k]);
+        }
+    return grid;
+}
+
+class PictureEncoder {
+  public:
+    PictureEncoder(const Bitmap& picture, const EncodeParams& params, const Progress& progress)
+        : picture_(picture),
+          params_(params),
+          progress_(progress),
+          samples_(premultiplied(picture)),
+          sums_(objective()) {}
+
+    EncodedPicture encode() {
+        if (params_.bytes)
+            reach_bytes(*params_.bytes);
+        else if (params_.psnr)
+            reach_psnr(*params_.psnr);
+        else
+            reach_vertices(params_.vertices ? *params_.vertices : vertices_of_quality());
+        return result();
+    }
+
+  private:
+    ChannelGrid objective() const {
+        ChannelGrid grid = at_least_two(picture_.width, picture_.height, picture_.channels, samples_);
+        const ErrorSpace space(params_.tune);
+        if (params_.tune != Tune::kPsnr && picture_.channels >= 3)
+            for (std::size_t i = 0; i < grid.pixel_count(); ++i)
+                space.apply(std::span(grid.data).subspan(i * as_index(picture_.channels), 3));
+        return grid;
+    }
+    double pixels() const { return double(picture_.width) * picture_.height; }
+    double samples() const { return pixels() * picture_.channels; }
+    void report(double fraction, std::string_view stage) const {
+        if (progress_) progress_(fraction, stage);
+    }
+    std::size_t vertices_of_quality() const {
+        return std::max<std::size_t>(
+            4, static_cast<std::size_t>(std::llround(pixels() / 8192 * std::exp2(*params_.quality / 8))));
+    }
+
+    // The grid for so many vertices: whole quarter pixels, and room for them.
+    int grid_step(std::size_t vertices) const {
+        const double side = std::sqrt(pixels() / static_cast<double>(vertices));
+        return std::clamp(static_cast<int>(std::lround(4 * side / kSideOverGrid)), 2, 4 * coding::kMaxSide);
+    }
+    std::size_t most_vertices(int step) const {
+        const CodedGrid grid{picture_.width, picture_.height, step};
+        return static_cast<std::size_t>(grid.columns()) * static_cast<std::size_t>(grid.rows());
+    }
+    void start(std::size_t vertices) {
+        step_ = grid_step(vertices);
+        OptimizeParams params;
+        params.effort = params_.effort;
+        optimizer_ = std::make_unique<GridOptimizer>(sums_, regular_mesh(sums_, step_, vertices), params);
+    }
+    void optimize(int effort) { optimizer_->optimize(grid_schedule(effort)); }
+
+    // The mesh as it is now, without colours.
+    void take_mesh() {
+        CodedMesh mesh = optimizer_->result();
+        mesh.grid.width = picture_.width;
+        mesh.grid.height = picture_.height;
+        trial_ = std::make_unique<MeshTrial>(mesh, samples_, color_weights(params_.tune, picture_.channels));
+    }
+    int usual_step_index() const {
+        const double error = std::sqrt(optimizer_->squared_error() / samples());
+        int index = 0;
+        while (index + 1 < coding::kStepIndices &&
+               coding::color_step(index) < kStepOverError * error * coding::kColorUnit)
+            ++index;
+        return index;
+    }
+    double psnr() const {
+        const double error = trial_->squared_error(picture_);
+        return error == 0 ? std::numeric_limits<double>::infinity()
+                          : 10 * std::log10(255.0 * 255 * samples() / error);
+    }
+
+    void reach_vertices(std::size_t wanted) {
+        const std::size_t vertices = std::clamp<std::size_t>(wanted, 4, most_vertices(grid_step(wanted)));
+        start(vertices);
+        optimizer_->set_vertex_count(vertices);
+        report(0.1, "optimise");
+        optimize(params_.effort);
+        take_mesh();
+        trial_->code(usual_step_index());
+        reached_ = !params_.vertices || trial_->vertices() == wanted;
+    }
+
+    void reach_bytes(std::size_t wanted) {
+        const double bits = 8 * std::max(1.0, double(wanted) - kHeaderBytes);
+        auto vertices = static_cast<std::size_t>(std::max(4.0, bits / kVertexBits));
+        vertices = std::min(vertices, most_vertices(grid_step(vertices)));
+        start(vertices);
+        optimizer_->set_vertex_count(vertices);
+        report(0.1, "optimise");
+        optimize(params_.effort);
+        // The number of vertices follows the bits that they have taken.
+        for (int round = 0; round < 4; ++round) {
+            report(0.8 + 0.04 * round, "rate");
+            take_mesh();
+            trial_->code(usual_step_index());
+            const double ratio = double(wanted) / static_cast<double>(trial_->bytes().size());
+            const auto next = static_cast<std::size_t>(
+                std::max(4.0, std::floor(static_cast<double>(trial_->vertices()) * ratio)));
+            if (std::abs(ratio - 1) < 0.03 || next == trial_->vertices() || psnr() > 60) break;
+            optimizer_->set_vertex_count(std::min(next, most_vertices(step_)));
+            optimize(std::max(1, params_.effort - 2));
+        }
+        // The steps of colours make up for the rest.
+        int low = 0, high = coding::kStepIndices - 1;
+        while (low < high) {
+            const int middle = (low + high) / 2;
+            trial_->code(middle);
+            if (trial_->bytes().size() <= wanted)
+                high = middle;
+            else
+                low = middle + 1;
+        }
+        trial_->code(low);
+        while (trial_->bytes().size() > wanted) {
+            if (trial_->vertices() == 4)
+                throw Error(ErrorKind::kBadArgument, cat("a picture of this size takes at least ",
+                                                         trial_->bytes().size(), " bytes, not ", wanted));
+            optimizer_->set_vertex_count(std::max<std::size_t>(4, trial_->vertices() * 7 / 8));
+            take_mesh();
+            trial_->code(low);
+        }
+    }
+
+    void reach_psnr(double wanted) {
+        // Short optimisations find the number of vertices, a long one then takes it.
+        double vertices = std::max(4.0, pixels() / 400);
+        double slope = kDecibels;
+        start(static_cast<std::size_t>(vertices));
+        double last_vertices = 0, last_psnr = 0;
+        for (int round = 0; round < 8; ++round) {
+            report(0.05 + 0.1 * round, "rate");
+            optimize(round < 4 ? 1 : params_.effort);
+            take_mesh();
+            trial_->code(usual_step_index());
+            const double reached = psnr();
+            if (std::abs(reached - wanted) < 0.04) break;
+            vertices = static_cast<double>(trial_->vertices());
+            if (last_vertices > 0 && vertices != last_vertices)
+                slope = std::clamp((reached - last_psnr) / std::log2(vertices / last_vertices), 0.5, 6.0);
+            last_vertices = vertices;
+            last_psnr = reached;
+            vertices = std::clamp(vertices * std::exp2(std::clamp((wanted - reached) / slope, -3.0, 3.0)),
+                                  4.0, pixels());
+            if (grid_step(static_cast<std::size_t>(vertices)) * 4 < step_ * 3 ||
+                grid_step(static_cast<std::size_t>(vertices)) * 3 > step_ * 4)
+                start(static_cast<std::size_t>(vertices));
+            else
+                optimizer_->set_vertex_count(
+                    std::min(static_cast<std::size_t>(vertices), most_vertices(step_)));
+        }
+        // The steps of colours make up for the rest: the coarsest that reaches it.
+        int low = 0, high = coding::kStepIndices - 1;
+        while (low < high) {
+            const int middle = (low + high + 1) / 2;
+            trial_->code(middle);
+            if (psnr() >= wanted)
+                low = middle;
+            else
+                high = middle - 1;
+        }
+        trial_->code(low);
+        reached_ = psnr() >= wanted - 0.1;
+    }
+
+    EncodedPicture result() const {
+        EncodedPicture out;
+        out.bytes = trial_->bytes();
+        out.report.vertices = trial_->vertices();
+        out.report.faces = trial_->content().faces.size();
+        out.report.grid_step = step_ / 4.0;
+        out.report.psnr = psnr();
+        out.report.reached = reached_;
+        return out;
+    }
+
+    const Bitmap& picture_;
+    const EncodeParams& params_;
+    const Progress& progress_;
+    std::vector<float> samples_;
+    RowSums sums_;
+    int step_ = 4;
+    bool reached_ = true;
+    std::unique_ptr<GridOptimizer> optimizer_;
+    std::unique_ptr<MeshTrial> trial_;
+};
+
+}  // namespace
+
+EncodedPicture encode_picture(const Bitmap& picture, const EncodeParams& params, const Progress& progress) {
+    return PictureEncoder(picture, params, progress).encode();
+}
+
+}  // namespace imgmesh
