@@ -261,7 +261,7 @@ StreamContent read_stream(std::span<const std::uint8_t> bytes) {
     const auto check_end = [&] {
         if (coder.missing() > 4) ends_early();
     };
-    code_all_points(coder, content, 8 * size);
+    code_all_points(coder, content, most_vertices(size));
     check_end();
     code_all_faces(coder, content);
     check_end();

@@ -33,20 +33,18 @@ constexpr std::int32_t color_step(int index) {
 inline constexpr std::int64_t kMaxPixels = std::int64_t{1} << 26;
 inline constexpr int kMaxSide = 65535;
 
+/// Returns how many vertices besides the corners a file of so many bytes may hold: far more than a picture
+/// gets for them, so that a damaged file does not take much memory.
+constexpr std::size_t most_vertices(std::size_t bytes) {
+    return 4096 + 16 * bytes;
+}
+
 /// Returns the mesh as a decoder will have it, with points in raster order and without colours. Faces that
 /// the format cannot reach are replaced; that happens to needles only.
 StreamContent arranged(const CodedMesh& mesh);
 
-/// Bits of the parts of a stream.
-struct StreamBits {
-    double points = 0, faces = 0, colors = 0;
-};
-
 /// Returns the bytes of a picture whose faces are those of arranged(). Sets its colours to the decoder's.
 std::vector<std::uint8_t> write_stream(StreamContent& content);
-/// Returns the number of bytes that everything before the colours takes, in bits.
-StreamBits count_bits(const StreamContent& content);
-
 /// Reads a file. Throws Error(kBadFile) for bytes that are none or say what cannot be, before memory is taken
 /// for it. Takes up to 8 bytes of memory for each point of the grid, and 400 for each vertex.
 StreamContent read_stream(std::span<const std::uint8_t> bytes);
