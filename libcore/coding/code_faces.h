@@ -54,13 +54,20 @@ class FaceCoder {
 
     GateStep reach(Id a, Id b, Id face, Id left, Id right, Id low_left, Id low_right) const;
     GateStep ahead(Id a, Id b, const GateStep& from, bool left) const;
+    Id face_behind(Id a) const;
     Id reachable(Id a, Id b, Id face, Id target) const;
     void close(Id a, Id b, Id apex);
-    // Contexts of the two decisions, given where the walk may go on to.
-    BitModel<kStopInputs>::Contexts stop_contexts(Id a, Id b, int depth, const GateStep& step,
-                                                  const GateStep& left, const GateStep& right) const;
-    BitModel<kSideInputs>::Contexts side_contexts(Id a, Id b, int depth, const GateStep& step,
-                                                  const GateStep& left, const GateStep& right) const;
+    // A decision's contexts, and what is expected before anything has been seen, in log odds.
+    template <std::size_t Inputs>
+    struct Decision {
+        typename BitModel<Inputs>::Contexts contexts;
+        int odds;
+    };
+    // The two decisions, given where the walk may go on to.
+    Decision<kStopInputs> stop_decision(Id a, Id b, int depth, const GateStep& step, const GateStep& left,
+                                        const GateStep& right) const;
+    Decision<kSideInputs> side_decision(Id a, Id b, int depth, const GateStep& step, const GateStep& left,
+                                        const GateStep& right) const;
 
     template <class Coder>
     GateStep walk(Coder& coder, Id a, Id b, Id face, Id target) {
@@ -75,14 +82,16 @@ class FaceCoder {
             const GateStep left = ahead(a, b, step, true), right = ahead(a, b, step, false);
             const bool go_left = left.face != kNone, go_right = right.face != kNone;
             if (!go_left && !go_right) break;
-            if (step.may_stop &&
-                stop_.code(coder, step.apex == target, stop_contexts(a, b, depth, step, left, right)))
-                break;
+            if (step.may_stop) {
+                const auto stop = stop_decision(a, b, depth, step, left, right);
+                if (stop_.code(coder, step.apex == target, stop.contexts, stop.odds)) break;
+            }
             bool to_left = go_left;
             if (go_left && go_right) {
                 const bool turned = left.cotangent > right.cotangent;
+                const auto side = side_decision(a, b, depth, step, left, right);
                 to_left = turned != side_.code(coder, turned != goes_left(b, step.apex, target),
-                                               side_contexts(a, b, depth, step, left, right));
+                                               side.contexts, side.odds);
             }
             step = to_left ? left : right;
             strip_.push_back(step.face);

@@ -49,14 +49,35 @@ BitModel<3>::Contexts HalvesModel::excess_contexts(std::uint32_t count, std::uin
             pair(count, more, 7)};
 }
 
-// The logarithm of the ratio of the rooms, in 1/256, by its first bits.
-int HalvesModel::room_odds(const AroundHalves& around) {
+namespace {
+
+// The logarithm of a ratio, in 1/256, by the first bits of its numbers.
+int log_ratio(std::uint32_t over, std::uint32_t under) {
     const auto log2 = [](std::uint32_t n) {
         const int whole = std::bit_width(n) - 1;
         const std::uint32_t rest = whole >= 7 ? n >> (whole - 7) : n << (7 - whole);
         return whole * 128 + static_cast<int>(rest) - 128;
     };
-    return std::clamp((log2(around.room_first) - log2(around.room_second)) * 177 >> 7, -600, 600);
+    return (log2(over) - log2(under)) * 177 >> 7;
+}
+
+// How many more of one than of the other, each counted up to 7.
+int lead(std::uint32_t a, std::uint32_t b) {
+    return static_cast<int>(std::min(a, 7u)) - static_cast<int>(std::min(b, 7u));
+}
+
+}  // namespace
+
+int HalvesModel::side_odds(const AroundHalves& around) {
+    const int room = std::clamp(log_ratio(around.room_first, around.room_second), -600, 600);
+    return room + 14 * lead(around.before, around.after) +
+           21 * lead(around.beside_first, around.beside_second) +
+           13 * lead(around.corner_before, around.corner_after);
+}
+
+int HalvesModel::tie_odds(std::uint32_t count, const AroundHalves& around) {
+    constexpr std::array<int, 4> kByHalf = {-38, -168, -247, -449};
+    return kByHalf[std::min(count / 2, 4u) - 1] + (around.level <= 1 ? 255 : around.level == 2 ? 79 : 0);
 }
 
 }  // namespace imgmesh::coding

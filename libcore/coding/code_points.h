@@ -37,9 +37,10 @@ class HalvesModel {
         if (count >= room) return around.room_first;
         const std::uint32_t half = count / 2;
         const bool even = count % 2 == 0;
-        if (even && tie_.code(coder, first == half, tie_contexts(count, around))) return half;
+        if (even && tie_.code(coder, first == half, tie_contexts(count, around), tie_odds(count, around)))
+            return half;
         const bool to_first =
-            side_.code(coder, 2 * first > count, side_contexts(count, around), room_odds(around));
+            side_.code(coder, 2 * first > count, side_contexts(count, around), side_odds(around));
         const std::uint32_t larger = to_first ? first : count - first, least = half + 1;
         std::uint32_t more = 0;
         while (least + more < count &&
@@ -56,7 +57,9 @@ class HalvesModel {
     static BitModel<3>::Contexts tie_contexts(std::uint32_t count, const AroundHalves& around);
     static BitModel<3>::Contexts excess_contexts(std::uint32_t count, std::uint32_t more,
                                                  const AroundHalves& around);
-    static int room_odds(const AroundHalves& around);
+    // What is expected before anything has been seen, fitted to twelve photographs.
+    static int side_odds(const AroundHalves& around);
+    static int tie_odds(std::uint32_t count, const AroundHalves& around);
 
     BitModel<5> side_;
     BitModel<3> tie_, excess_;
