@@ -16,9 +16,9 @@ class GridState;
 struct OptimizeParams {
     /// Squared error that a bit is worth, or a negative number: 6 % of the squared error of a vertex.
     double lambda = -1;
-    double edge_bits = 3;       ///< bits that an edge costs which is not locally Delaunay
-    double min_fatness = 0.01;  ///< of new faces: twice the area over the square of the longest edge
-    int effort = 3;             ///< 1 to 5; each takes about three times as long as the one before
+    double edge_bits = 3;    ///< bits that an edge costs which is not locally Delaunay
+    double min_fatness = 0;  ///< of new faces: twice the area over the square of the longest edge
+    int effort = 3;          ///< 1 to 5; each takes about three times as long as the one before
 };
 
 /// Keeps the mesh, so that the number of vertices can change between one optimisation and the next. Works on
