@@ -70,20 +70,10 @@ void Fan::measure_links(const RowSums& sums) {
     for (std::size_t k = 0; k < faces; ++k) sums.edge(spot[k].place, spot[k + 1].place, link[k]);
 }
 
-bool Fan::is_legal(const Place& at, double min_fatness) const {
+bool Fan::is_legal(const Place& at) const {
     for (std::size_t k = 0; k < faces; ++k)
-        if (!imgmesh::is_legal(at, spot[k].place, spot[k + 1].place, min_fatness)) return false;
+        if (area2(at, spot[k].place, spot[k + 1].place) <= 0) return false;
     return true;
-}
-
-int Fan::odd_edges(const Place& at) const {
-    int odd = 0;
-    for (std::size_t k = 0; k < faces; ++k) {
-        const Place &a = spot[k].place, &b = spot[k + 1].place;
-        if (!(beyond[k] == a)) odd += is_odd(a, b, at, beyond[k]);
-        if (closed || k > 0) odd += is_odd(at, a, spot[k > 0 ? k - 1 : faces - 1].place, b);
-    }
-    return odd;
 }
 
 void fit_fan(const RowSums& sums, const Fan& fan, const Place& at, const Double4& color, FanFit& out) {

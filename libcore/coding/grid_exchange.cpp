@@ -12,16 +12,14 @@ GridState::Removal GridState::best_removal(Id v) const {
     OneRing ring;
     Fan fan;
     if (!fan_of(v, ring, fan)) return best;
-    double before = 0;
-    for (std::size_t k = 0; k < ring.faces; ++k) before += error_[ring.face[k]];
+    const double before = error_of(ring);
     for (std::size_t n = 0; n < ring.vertices(); ++n) {
         // A vertex on a side goes only along that side.
         if (!ring.closed && n != 0 && n != ring.faces) continue;
         const Id u = ring.vertex[n];
         bool legal = true;
         for (std::size_t k = 0; k < ring.faces && legal; ++k)
-            legal = ring.has(k, u) ||
-                    is_legal(spot_[u].place, fan.spot[k].place, fan.spot[k + 1].place, weights_.min_fatness);
+            legal = ring.has(k, u) || area2(spot_[u].place, fan.spot[k].place, fan.spot[k + 1].place) > 0;
         if (!legal) continue;
         // The faces form a fan around u: a part of the ring, from one neighbour of u to the other.
         double after = 0;
@@ -111,7 +109,7 @@ void GridState::try_insertion(Id f, int edge, std::int32_t column, std::int32_t 
         }
     }
     const Place at = place(column, row);
-    if (!fan.is_legal(at, weights_.min_fatness)) return;
+    if (!fan.is_legal(at)) return;
     fan.measure_links(*sums_);
     FanFit fit;
     fit_fan(*sums_, fan, at, (fan.spot[0].color + fan.spot[1].color + fan.spot[2].color) / 3, fit);

@@ -8,9 +8,7 @@ bool GridState::cost_flip(Flip& flip) const {
     const Id p = face[flip.i], a = face[(flip.i + 1) % 3], b = face[(flip.i + 2) % 3];
     const Id q = mesh_.apex(flip.g, flip.f);
     const Spot &sp = spot_[p], &sa = spot_[a], &sb = spot_[b], &sq = spot_[q];
-    if (!is_legal(sp.place, sa.place, sq.place, weights_.min_fatness) ||
-        !is_legal(sq.place, sb.place, sp.place, weights_.min_fatness))
-        return false;
+    if (area2(sp.place, sa.place, sq.place) <= 0 || area2(sq.place, sb.place, sp.place) <= 0) return false;
     Moments first, second, edge;
     sums_->edge(sp.place, sa.place, first);
     sums_->edge(sa.place, sq.place, edge);
@@ -24,25 +22,6 @@ bool GridState::cost_flip(Flip& flip) const {
     flip.first = corner_fit(first, sp.place, sa, sq).error(sp.color);
     flip.second = corner_fit(second, sq.place, sb, sp).error(sq.color);
     flip.cost = flip.first + flip.second - error_[flip.f] - error_[flip.g];
-    if (!(weights_.edge_cost > 0)) return true;
-    int odd = is_odd(sp.place, sq.place, sa.place, sb.place) - is_odd(sa.place, sb.place, sp.place, sq.place);
-    // The edges around both faces lose one corner across and gain another one.
-    const auto outer = [&](Id f, Id from, Id to, const Place& before, const Place& after) {
-        const std::size_t i =
-            corner_of(mesh_.face(f), mesh_.face(f)[0] != from && mesh_.face(f)[0] != to   ? mesh_.face(f)[0]
-                                     : mesh_.face(f)[1] != from && mesh_.face(f)[1] != to ? mesh_.face(f)[1]
-                                                                                          : mesh_.face(f)[2]);
-        const Id beyond = mesh_.across(f, i);
-        if (beyond == kNone) return;
-        const Place& far = spot_[mesh_.apex(beyond, f)].place;
-        odd += is_odd(spot_[from].place, spot_[to].place, after, far) -
-               is_odd(spot_[from].place, spot_[to].place, before, far);
-    };
-    outer(flip.f, p, a, sb.place, sq.place);
-    outer(flip.f, b, p, sa.place, sq.place);
-    outer(flip.g, q, b, sa.place, sp.place);
-    outer(flip.g, a, q, sb.place, sp.place);
-    flip.cost += weights_.edge_cost * odd;
     return true;
 }
 

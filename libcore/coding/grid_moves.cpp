@@ -20,33 +20,23 @@ bool GridState::fan_of(Id v, OneRing& ring, Fan& fan) const {
     fan.faces = ring.faces;
     fan.closed = ring.closed;
     for (std::size_t k = 0; k <= ring.faces; ++k) fan.spot[k] = spot_[ring.vertex[k]];
-    for (std::size_t k = 0; k < ring.faces; ++k) {
-        fan.beyond[k] = fan.spot[k].place;
-        if (!(weights_.edge_cost > 0)) continue;
-        if (const Id g = mesh_.across(ring.face[k], ring.corner[k]); g != kNone)
-            fan.beyond[k] = spot_[mesh_.apex(g, ring.face[k])].place;
-    }
     fan.measure_links(*sums_);
     return true;
 }
 
-double GridState::cost_of(const OneRing& ring, const Fan& fan) const {
-    double cost = 0;
-    for (std::size_t k = 0; k < ring.faces; ++k) cost += error_[ring.face[k]];
-    if (weights_.edge_cost > 0) cost += weights_.edge_cost * fan.odd_edges(spot_[ring.center].place);
-    return cost;
+double GridState::error_of(const OneRing& ring) const {
+    double error = 0;
+    for (std::size_t k = 0; k < ring.faces; ++k) error += error_[ring.face[k]];
+    return error;
 }
 
-bool GridState::try_place(const Fan& fan, Id v, std::int32_t column, std::int32_t row, FanFit& fit,
-                          double& cost) const {
+bool GridState::try_place(const Fan& fan, Id v, std::int32_t column, std::int32_t row, FanFit& fit) const {
     if (column < 0 || row < 0 || column >= grid_.columns() || row >= grid_.rows()) return false;
     if ((column != vertex_[v].column && on_side(v, true)) || (row != vertex_[v].row && on_side(v, false)))
         return false;
     const Place at = place(column, row);
-    if (!fan.is_legal(at, weights_.min_fatness)) return false;
+    if (!fan.is_legal(at)) return false;
     fit_fan(*sums_, fan, at, spot_[v].color, fit);
-    cost = fit.error;
-    if (weights_.edge_cost > 0) cost += weights_.edge_cost * fan.odd_edges(at);
     return true;
 }
 
@@ -68,7 +58,7 @@ void GridState::move_vertex(Id v) {
     Fan fan;
     if (!fan_of(v, ring, fan)) return;
     FanFit fit;
-    double best = cost_of(ring, fan), cost = 0;
+    double best = error_of(ring);
     best -= kSlack * best;
     bool moved = false;
     const std::uint8_t first = vertex_[v].direction;
@@ -77,10 +67,10 @@ void GridState::move_vertex(Id v) {
         const auto direction = static_cast<std::uint8_t>((first + n) % 8);
         const std::int32_t dx = step * kDirections[direction][0], dy = step * kDirections[direction][1];
         // A step that succeeds is repeated.
-        while (try_place(fan, v, vertex_[v].column + dx, vertex_[v].row + dy, fit, cost) && cost < best) {
+        while (try_place(fan, v, vertex_[v].column + dx, vertex_[v].row + dy, fit) && fit.error < best) {
             set(ring, vertex_[v].column + dx, vertex_[v].row + dy, fit);
             vertex_[v].direction = direction;
-            best = cost - kSlack * cost;
+            best = fit.error - kSlack * fit.error;
             moved = true;
         }
     }
@@ -93,7 +83,7 @@ void GridState::anneal_vertex(Id v, int trials, double spread, double temperatur
     Fan fan;
     if (!fan_of(v, ring, fan)) return;
     FanFit fit;
-    double now = cost_of(ring, fan), cost = 0;
+    double now = error_of(ring);
     for (int trial = 0; trial < trials; ++trial) {
         std::int32_t dx = static_cast<std::int32_t>(std::lround(spread * random.gaussian())),
                      dy = static_cast<std::int32_t>(std::lround(spread * random.gaussian()));
@@ -104,9 +94,9 @@ void GridState::anneal_vertex(Id v, int trials, double spread, double temperatur
         }
         const double allowed = temperature * random.exponential();
         const std::int32_t column = vertex_[v].column + dx, row = vertex_[v].row + dy;
-        if (!try_place(fan, v, column, row, fit, cost) || !(cost - now < allowed)) continue;
+        if (!try_place(fan, v, column, row, fit) || !(fit.error - now < allowed)) continue;
         set(ring, column, row, fit);
-        now = cost;
+        now = fit.error;
     }
 }
 

@@ -18,9 +18,10 @@ constexpr int kPasses = 6;
 constexpr double kGrowth = 0.5;
 // Of a surplus of vertices this share goes at once: each removal changes the costs of others.
 constexpr double kRemoved = 0.35;
-// What a bit is worth of a vertex's squared error. Squared error falls as bits^-0.65 and a vertex takes 15
-// to 17 bits, so a bit saves 4 % at least; 6 % was best where colours and positions are coded too.
-constexpr double kBitShare = 0.06;
+
+// A schedule's sweeps are for so many vertices: fewer get more of them, up to this factor, and more get
+// fewer.
+constexpr double kUsualVertices = 2000, kMostSweeps = 8;
 
 // The part of a geometric fall from 1 to `last` after each of `steps`, as a factor. By square roots, which
 // are the same everywhere.
@@ -48,9 +49,8 @@ class Fall {
 }  // namespace
 
 GridOptimizer::GridOptimizer(const RowSums& sums, const CodedMesh& start, const OptimizeParams& params)
-    : params_(params), state_(std::make_unique<GridState>(sums, start, GridWeights{0, params.min_fatness})) {
+    : params_(params), state_(std::make_unique<GridState>(sums, start)) {
     state_->fit_colors(kFirstPasses);
-    update_weights();
 }
 GridOptimizer::~GridOptimizer() = default;
 
@@ -60,23 +60,8 @@ double GridOptimizer::squared_error() const {
 std::size_t GridOptimizer::vertices() const {
     return state_->vertices();
 }
-std::size_t GridOptimizer::odd_edges() const {
-    return state_->odd_edges();
-}
 CodedMesh GridOptimizer::result() const {
     return state_->result();
-}
-
-void GridOptimizer::set_lambda(double lambda) {
-    params_.lambda = lambda;
-    update_weights();
-}
-
-void GridOptimizer::update_weights() {
-    const double lambda = params_.lambda >= 0
-                              ? params_.lambda
-                              : kBitShare * squared_error() / static_cast<double>(state_->vertices());
-    state_->set_weights({lambda * params_.edge_bits, params_.min_fatness});
 }
 
 void GridOptimizer::settle(int times) {
@@ -103,7 +88,6 @@ void GridOptimizer::set_vertex_count(std::size_t vertices) {
         state_->flip_edges();
     }
     if (surplus) settle(1);
-    update_weights();
 }
 
 void GridOptimizer::exchange(double share, int settles) {
@@ -115,11 +99,14 @@ void GridOptimizer::exchange(double share, int settles) {
 
 void GridOptimizer::anneal(const GridSchedule& schedule) {
     GridRandom random(1);
+    const int sweeps = static_cast<int>(
+        std::clamp(schedule.sweeps * kUsualVertices / static_cast<double>(state_->vertices()),
+                   schedule.sweeps / kMostSweeps, schedule.sweeps * kMostSweeps));
     const double start =
         schedule.temperature * squared_error() / (2 * static_cast<double>(state_->vertices()));
-    const Fall temperature(schedule.last_temperature, schedule.sweeps),
-        spread(schedule.last_spread / schedule.spread, schedule.sweeps);
-    for (int k = 0; k < schedule.sweeps; ++k) {
+    const Fall temperature(schedule.last_temperature, sweeps),
+        spread(schedule.last_spread / schedule.spread, sweeps);
+    for (int k = 0; k < sweeps; ++k) {
         state_->anneal(schedule.passes, schedule.trials, schedule.spread * spread.at(k),
                        start * temperature.at(k), random);
         state_->fit_colors(2);
@@ -135,29 +122,23 @@ void GridOptimizer::optimize(const GridSchedule& schedule) {
     const std::size_t vertices = state_->vertices();
     GridState best = *state_;
     const auto keep_if_better = [&] {
-        if (state_->vertices() <= vertices && state_->cost() < best.cost()) best = *state_;
-    };
-    const auto step = [&] {
-        update_weights();
-        best.set_weights(state_->weights());
-        keep_if_better();
+        if (state_->vertices() <= vertices && state_->squared_error() < best.squared_error()) best = *state_;
     };
     settle(schedule.settles);
-    step();
+    keep_if_better();
     for (int k = 0; k < schedule.rounds; ++k) {
         exchange(schedule.share, schedule.settles);
-        step();
+        keep_if_better();
     }
     if (schedule.sweeps > 0) {
         anneal(schedule);
-        step();
+        keep_if_better();
     }
     for (int k = 0; k < schedule.last_rounds; ++k) {
         exchange(schedule.last_share, schedule.settles);
-        step();
+        keep_if_better();
     }
     *state_ = best;
-    update_weights();
 }
 
 CodedMesh regular_mesh(const RowSums& sums, int step, std::size_t vertices) {

@@ -14,11 +14,7 @@ struct GridSchedule;
 class GridState;
 
 struct OptimizeParams {
-    /// Squared error that a bit is worth, or a negative number: 6 % of the squared error of a vertex.
-    double lambda = -1;
-    double edge_bits = 3;    ///< bits that an edge costs which is not locally Delaunay
-    double min_fatness = 0;  ///< of new faces: twice the area over the square of the longest edge
-    int effort = 3;          ///< 1 to 5; each takes about three times as long as the one before
+    int effort = 3;  ///< 1 to 5; each takes about three times as long as the one before
 };
 
 /// Keeps the mesh, so that the number of vertices can change between one optimisation and the next. Works on
@@ -33,24 +29,21 @@ class GridOptimizer {
     GridOptimizer(const RowSums& sums, const CodedMesh& start, const OptimizeParams& params);
     ~GridOptimizer();
 
-    void set_lambda(double lambda);
     /// Inserts vertices where they gain most, or removes them where they cost least, and lets the mesh
     /// settle: tens of milliseconds for a change of a few percent. A grid without room gets fewer.
     void set_vertex_count(std::size_t vertices);
-    /// Optimises with this number of vertices. The error, with lambda times the bits, does not rise.
+    /// Optimises with this number of vertices. The error does not rise.
     void optimize();
     void optimize(const GridSchedule& schedule);
 
     std::size_t vertices() const;
-    double squared_error() const;   ///< over all pixels and channels
-    std::size_t odd_edges() const;  ///< edges that are not locally Delaunay
+    double squared_error() const;  ///< over all pixels and channels
     CodedMesh result() const;
 
   private:
     void settle(int times);
     void exchange(double share, int settles);
     void anneal(const GridSchedule& schedule);
-    void update_weights();
 
     OptimizeParams params_;
     std::unique_ptr<GridState> state_;

@@ -21,9 +21,8 @@ std::uint64_t along_curve(const Place& place) {
 
 }  // namespace
 
-GridState::GridState(const RowSums& sums, const CodedMesh& mesh, const GridWeights& weights)
+GridState::GridState(const RowSums& sums, const CodedMesh& mesh)
     : sums_(&sums),
-      weights_(weights),
       grid_(mesh.grid),
       mesh_(mesh.faces, mesh.point.size()),
       vertex_(mesh.point.size()),
@@ -50,24 +49,6 @@ double GridState::squared_error() const {
     for (Id f = 0; f < error_.size(); ++f)
         if (mesh_.live_face(f)) sum += error_[f];
     return sum;
-}
-
-std::size_t GridState::odd_edges() const {
-    std::size_t odd = 0;
-    for (Id f = 0; f < error_.size(); ++f)
-        for (std::size_t i = 0; i < 3 && mesh_.live_face(f); ++i) {
-            const Id g = mesh_.across(f, i);
-            if (g == kNone || g < f) continue;
-            const Face& face = mesh_.face(f);
-            odd += is_odd(spot_[face[(i + 1) % 3]].place, spot_[face[(i + 2) % 3]].place,
-                          spot_[face[i]].place, spot_[mesh_.apex(g, f)].place);
-        }
-    return odd;
-}
-
-double GridState::cost() const {
-    if (!(weights_.edge_cost > 0)) return squared_error();
-    return squared_error() + weights_.edge_cost * static_cast<double>(odd_edges());
 }
 
 CodedMesh GridState::result() const {

@@ -11,24 +11,13 @@
 
 namespace imgmesh {
 
-/// What the steps weigh beside the squared error.
-struct GridWeights {
-    double edge_cost = 0;    ///< squared error that an edge must save to be not locally Delaunay
-    double min_fatness = 0;  ///< of new faces: twice the area over the square of the longest edge
-};
-
 /// Source and steps: grid_optimizer.h. Every step keeps the error of each face up to date.
 class GridState {
   public:
-    GridState(const RowSums& sums, const CodedMesh& mesh, const GridWeights& weights);
+    GridState(const RowSums& sums, const CodedMesh& mesh);
 
-    void set_weights(const GridWeights& weights) { weights_ = weights; }
-    const GridWeights& weights() const { return weights_; }
     std::size_t vertices() const { return mesh_.live_vertices(); }
     double squared_error() const;
-    std::size_t odd_edges() const;  ///< edges that are not locally Delaunay
-    /// Returns the squared error and the cost of the edges.
-    double cost() const;
     CodedMesh result() const;
 
     /// Numbers vertices and faces by where they are, so that the next steps find in caches what they need.
@@ -79,10 +68,9 @@ class GridState {
     double face_error(const Face& face) const;
     // Describes the ring of v. Returns false if it has none, or is a corner of the image.
     bool fan_of(Id v, OneRing& ring, Fan& fan) const;
-    double cost_of(const OneRing& ring, const Fan& fan) const;
-    // Costs v at a grid point; returns false if it may not be there.
-    bool try_place(const Fan& fan, Id v, std::int32_t column, std::int32_t row, FanFit& fit,
-                   double& cost) const;
+    double error_of(const OneRing& ring) const;
+    // Fits v at a grid point; returns false if it may not be there.
+    bool try_place(const Fan& fan, Id v, std::int32_t column, std::int32_t row, FanFit& fit) const;
     void set(const OneRing& ring, std::int32_t column, std::int32_t row, const FanFit& fit);
     void move_vertex(Id v);
     void anneal_flips(const IdRange& faces, double temperature, GridRandom& random);
@@ -102,7 +90,6 @@ class GridState {
     void changed(Id f);
 
     const RowSums* sums_;
-    GridWeights weights_;
     CodedGrid grid_;
     EditMesh mesh_;
     std::vector<Vertex> vertex_;

@@ -27,16 +27,14 @@ double cpu_seconds() {
     return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
 }
 
-void change(GridSchedule& schedule, OptimizeParams& params, const char* field) {
+void change(GridSchedule& schedule, const char* field) {
     const char* value = std::strchr(field, '=');
     if (!value) return;
     const std::string name(field, value);
     const double number = std::atof(value + 1);
-    const std::pair<const char*, int*> whole[] = {{"settles", &schedule.settles},
-                                                  {"rounds", &schedule.rounds},
-                                                  {"sweeps", &schedule.sweeps},
-                                                  {"trials", &schedule.trials}, {"passes", &schedule.passes},
-                                                  {"last_rounds", &schedule.last_rounds}};
+    const std::pair<const char*, int*> whole[] = {
+        {"settles", &schedule.settles}, {"rounds", &schedule.rounds}, {"sweeps", &schedule.sweeps},
+        {"trials", &schedule.trials},   {"passes", &schedule.passes}, {"last_rounds", &schedule.last_rounds}};
     for (const auto& [key, to] : whole)
         if (name == key) *to = static_cast<int>(number);
     const std::pair<const char*, double*> real[] = {{"share", &schedule.share},
@@ -44,10 +42,7 @@ void change(GridSchedule& schedule, OptimizeParams& params, const char* field) {
                                                     {"last_temperature", &schedule.last_temperature},
                                                     {"spread", &schedule.spread},
                                                     {"last_spread", &schedule.last_spread},
-                                                    {"last_share", &schedule.last_share},
-                                                    {"lambda", &params.lambda},
-                                                    {"edge_bits", &params.edge_bits},
-                                                    {"min_fatness", &params.min_fatness}};
+                                                    {"last_share", &schedule.last_share}};
     for (const auto& [key, to] : real)
         if (name == key) *to = number;
 }
@@ -65,7 +60,7 @@ int main(int argc, char** argv) try {
     OptimizeParams params;
     if (argc > 4) params.effort = std::atoi(argv[4]);
     GridSchedule schedule = grid_schedule(params.effort);
-    for (int i = 5; i < argc; ++i) change(schedule, params, argv[i]);
+    for (int i = 5; i < argc; ++i) change(schedule, argv[i]);
 
     const double begin = cpu_seconds();
     const RowSums sums(image);
@@ -80,9 +75,8 @@ int main(int argc, char** argv) try {
     const double end = cpu_seconds();
     std::printf(
         "{\"vertices\": %zu, \"start_s\": %.2f, \"start_db\": %.3f, \"optimize_s\": %.2f, \"db\": "
-        "%.3f, \"odd_edges\": %.3f}\n",
-        optimizer.vertices(), started - begin, start_psnr, end - started, psnr(),
-        static_cast<double>(optimizer.odd_edges()) / static_cast<double>(optimizer.vertices()));
+        "%.3f}\n",
+        optimizer.vertices(), started - begin, start_psnr, end - started, psnr());
     return 0;
 } catch (const std::exception& e) {
     std::fprintf(stderr, "coding-bench: %s\n", e.what());

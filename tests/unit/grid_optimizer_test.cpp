@@ -190,7 +190,7 @@ TEST_CASE("the number of vertices is met, up and down") {
 TEST_CASE("optimising never raises the error, and more vertices have less") {
     const ChannelGrid image = test_picture(80, 60, 3);
     const RowSums sums(image);
-    GridOptimizer optimizer(sums, regular_mesh(sums, 4, 30), {.lambda = 0});
+    GridOptimizer optimizer(sums, regular_mesh(sums, 4, 30), {});
     double before = optimizer.squared_error();
     for (int times = 0; times < 3; ++times) {
         optimizer.optimize(kShort);
