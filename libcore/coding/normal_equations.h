@@ -19,6 +19,8 @@ class NormalEquations {
     /// Gauss-Seidel over the neighbours of a vertex that come after it, and theirs.
     void settle_after(std::size_t vertex);
 
+    /// Size V * channels.
+    std::span<const double> values() const { return value_; }
     double value(std::size_t vertex, std::size_t channel) const {
         return value_[vertex * channels_ + channel];
     }

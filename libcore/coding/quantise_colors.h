@@ -21,7 +21,8 @@ struct QuantisedColors {
 struct ColorChoice {
     std::array<std::int32_t, 4> steps{};       ///< of each coded channel [colour units]
     std::array<double, 4> weight{1, 1, 1, 1};  ///< of each coded channel's squared error
-    double bit_price = 0;                      ///< squared error [grey levels^2] that a bit may cost
+    /// Squared error [grey levels^2] that a bit may cost; .03 q^2 W H / V is best for steps of q grey levels.
+    double bit_price = 0;
 };
 
 /// Chooses the levels of all vertices, in the order in which they are coded.
