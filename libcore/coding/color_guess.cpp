@@ -14,15 +14,20 @@ constexpr std::int32_t kLeast = -32768, kMost = 32767;
 // How a channel's mixture follows from what is known, fitted on three pictures at three sizes each
 // (docs/decisions/0044-colours-of-coded-meshes.md). Logarithms are 16 log2.
 struct Shape {
-    int base, spread, surprise, neighbors, fineness;  // of the distance over which the guess halves
-    std::array<int, 2> before;                        // by level of channels before
-    int near_base;                                    // of the same around neighbours, over that
-    std::int32_t share, pull;  // of 256: the guess's weight, and of neighbours' offsets
+    int base;  // of the distance over which the guess halves
+    // Factors of what adds to that, in 1/256.
+    int spread, surprise, neighbors, fineness, recent;
+    std::array<int, 2> before;
+    int near_base, near_fineness;  // of the same around neighbours, over that: a number, a factor
+    int near_power;                // of 256: neighbours weigh as their weights to that power
+    std::int32_t share, pull;      // of 256: the guess's weight, and of neighbours' offsets
 };
-// Factors of `spread` and the others are in 1/256.
-constexpr std::array<Shape, 3> kShapes = {{{20, 26, 41, -1072, 20, {0, 0}, -4, 92, 223},
-                                           {4, 118, 36, -1104, -74, {944, 0}, -24, 146, 184},
-                                           {-38, 38, 26, -496, -118, {816, 3776}, 1, 303, 205}}};
+constexpr std::array<Shape, 3> kShapes = {{{-3, -20, 17, -711, -58, 232, {0, 0}, -4, 75, 256, 68, 217},
+                                           {-8, 33, 17, -638, -153, 243, {671, 0}, -8, 100, 65, 141, 183},
+                                           {-35, 12, 14, -416, -165, 135, {838, 3379}, 0, 46, 95, 257, 183}}};
+
+// The mean level of late: over the last 64, of levels that are capped.
+constexpr std::int32_t kRecentUnit = 4096, kRecentLength = 64, kRecentStart = 4, kMostRecent = 30;
 
 int log16(std::int64_t number) {
     return log2_of(static_cast<std::uint64_t>(number)) >> 4;
@@ -35,6 +40,11 @@ std::int32_t half_distance(std::int32_t step, int log) {
     return static_cast<std::int32_t>(std::max<std::int64_t>((scaled << (l >> 4)) >> 18, 1));
 }
 
+// 4096 (weight / 4096)^(power / 256)
+std::int32_t to_power(std::int32_t weight, int power) {
+    return half_power((12 * 256 - log2_of(static_cast<std::uint64_t>(weight))) * power >> 6) >> 2;
+}
+
 }  // namespace
 
 ColorGuesser::ColorGuesser(const ColorPlan& plan, int channels, const std::array<std::int32_t, 4>& steps)
@@ -43,7 +53,11 @@ ColorGuesser::ColorGuesser(const ColorPlan& plan, int channels, const std::array
       steps_(steps),
       color_(plan.vertex_count() * channels_),
       calm_(color_.size()),
-      surprise_(color_.size()) {}
+      surprise_(color_.size()) {
+    recent_.fill(kRecentUnit);
+    log_fineness_.reserve(plan.vertex_count());
+    for (const std::int32_t fineness : plan.fineness) log_fineness_.push_back(log16(fineness) - 192);
+}
 
 std::int32_t ColorGuesser::step_of(std::size_t vertex, std::size_t channel) const {
     return std::max((steps_[channel] * plan_.fineness[vertex] + 2048) >> 12, 1);
@@ -125,17 +139,20 @@ void ColorGuesser::set_mixture(std::size_t vertex, ColorGuess& guess) const {
     const auto known = plan_.of(vertex);
     int sum = shape.spread * guess.spread + shape.surprise * guess.surprise +
               shape.neighbors * static_cast<int>(std::min<std::size_t>(known.size(), 5)) +
-              shape.fineness * (log16(plan_.fineness[vertex]) - 192);
+              shape.fineness * log_fineness_[vertex] +
+              shape.recent * (log16(kRecentUnit / 4 + recent_[guess.channel]) - 192);
     for (std::size_t i = 0; i < 2; ++i) sum += shape.before[i] * std::min(std::abs(guess.before[i]), 3);
     const int log = shape.base + (sum >> 8);
-    std::int32_t weight = 0;
-    for (const auto& n : known) weight += n.weight;
-    guess.mixture.add(guess.value, half_distance(guess.step, log), std::max(weight * shape.share >> 8, 1));
-    const std::int32_t half = half_distance(guess.step, log + shape.near_base);
+    std::int32_t all = 0;
     for (const auto& n : known) {
         const std::int32_t offset = color_[n.vertex * channels_ + guess.channel] - guess.value;
-        guess.mixture.add(guess.value + (offset * shape.pull >> 8), half, n.weight);
+        const int wider = shape.near_base + (shape.near_fineness * log_fineness_[n.vertex] >> 8);
+        const std::int32_t weight = to_power(n.weight, shape.near_power);
+        guess.mixture.add(guess.value + (offset * shape.pull >> 8), half_distance(guess.step, log + wider),
+                          weight);
+        all += weight;
     }
+    guess.mixture.add(guess.value, half_distance(guess.step, log), std::max(all * shape.share >> 8, 1));
     guess.less = guess.mixture.below(guess.value - (guess.step + 1) / 2);
     guess.more = guess.beyond(0);
 }
@@ -148,6 +165,10 @@ void ColorGuesser::set_level(std::size_t vertex, const ColorGuess& guess, int le
     const std::int32_t off = guess.neighbors == 0 ? 0 : color_[i] - guess.value;
     calm_[i] = color_[i] - ((off * (guess.channel == 0 ? 3 : 4) + 8) >> 4);
     surprise_[i] = std::abs(off);
+    std::int32_t& recent = recent_[guess.channel];
+    const std::int32_t size = std::min(std::abs(level), kMostRecent) * kRecentUnit;
+    recent += static_cast<std::int32_t>(
+        floor_divide(size - recent, std::min<std::int64_t>(as_int(vertex) + kRecentStart, kRecentLength)));
     if (guess.channel < 2) before_[guess.channel] = level;
 }
 

@@ -59,6 +59,8 @@ class ColorGuesser {
     std::vector<std::int32_t> calm_;      // colours drawn towards what had been expected of them
     std::vector<std::int32_t> surprise_;  // how far they were from that
     std::array<int, 2> before_{};
+    std::array<std::int32_t, 4> recent_{};  // mean size of levels of late, by channel
+    std::vector<int> log_fineness_;
 };
 
 }  // namespace imgmesh::coding
