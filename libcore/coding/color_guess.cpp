@@ -19,12 +19,13 @@ struct Shape {
     int spread, surprise, neighbors, fineness, recent;
     std::array<int, 2> before;
     int near_base, near_fineness;  // of the same around neighbours, over that: a number, a factor
-    int near_power;                // of 256: neighbours weigh as their weights to that power
+    bool flat;                     // which of their weights neighbours have
     std::int32_t share, pull;      // of 256: the guess's weight, and of neighbours' offsets
 };
-constexpr std::array<Shape, 3> kShapes = {{{-3, -20, 17, -711, -58, 232, {0, 0}, -4, 75, 256, 68, 217},
-                                           {-8, 33, 17, -638, -153, 243, {671, 0}, -8, 100, 65, 141, 183},
-                                           {-35, 12, 14, -416, -165, 135, {838, 3379}, 0, 46, 95, 257, 183}}};
+constexpr std::array<Shape, 3> kShapes = {
+    {{-3, -20, 17, -711, -58, 232, {0, 0}, -4, 75, false, 68, 217},
+     {-8, 33, 17, -638, -153, 243, {671, 0}, -8, 100, true, 141, 183},
+     {-35, 12, 14, -416, -165, 135, {838, 3379}, 0, 46, true, 257, 183}}};
 
 // The mean level of late: over the last 64, of levels that are capped.
 constexpr std::int32_t kRecentUnit = 4096, kRecentLength = 64, kRecentStart = 4, kMostRecent = 30;
@@ -38,11 +39,6 @@ std::int32_t half_distance(std::int32_t step, int log) {
     const int l = std::clamp(log, -80, 144) + 80;
     const std::int64_t scaled = std::int64_t{step} * half_power((15 - (l & 15)) * 64);
     return static_cast<std::int32_t>(std::max<std::int64_t>((scaled << (l >> 4)) >> 18, 1));
-}
-
-// 4096 (weight / 4096)^(power / 256)
-std::int32_t to_power(std::int32_t weight, int power) {
-    return half_power((12 * 256 - log2_of(static_cast<std::uint64_t>(weight))) * power >> 6) >> 2;
 }
 
 }  // namespace
@@ -147,7 +143,7 @@ void ColorGuesser::set_mixture(std::size_t vertex, ColorGuess& guess) const {
     for (const auto& n : known) {
         const std::int32_t offset = color_[n.vertex * channels_ + guess.channel] - guess.value;
         const int wider = shape.near_base + (shape.near_fineness * log_fineness_[n.vertex] >> 8);
-        const std::int32_t weight = to_power(n.weight, shape.near_power);
+        const std::int32_t weight = shape.flat ? n.flat : n.weight;
         guess.mixture.add(guess.value + (offset * shape.pull >> 8), half_distance(guess.step, log + wider),
                           weight);
         all += weight;

@@ -15,7 +15,7 @@ class ColorMixture {
     /// Adds a place, in colour units. half: the distance over which it halves, >= 1; weights sum up to less
     /// than 2^17.
     void add(std::int32_t place, std::int32_t half, std::int32_t weight) {
-        parts_[count_++] = {place, half, weight};
+        parts_[count_++] = {place, (1 << 24) / half, weight};
         all_ += weight << 14;
     }
     /// Returns 2^14 times the weight below that value, which is less than 2^20 away.
@@ -25,7 +25,7 @@ class ColorMixture {
 
   private:
     struct Part {
-        std::int32_t place, half, weight;
+        std::int32_t place, rate, weight;
     };
     std::array<Part, kMost> parts_{};
     std::size_t count_ = 0;

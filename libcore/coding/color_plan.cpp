@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdlib>
+#include <numeric>
 
 #include "libcore/base/index.h"
 #include "libcore/coding/integer_math.h"
@@ -14,32 +15,38 @@ namespace {
 struct Place {
     std::int64_t x, y;
 };
+// To an earlier vertex, with the area of its face.
 struct Edge {
-    Id later, earlier;
-    std::int64_t area;  // of its face
+    Id earlier;
+    std::int64_t area;
 };
 struct Areas {
-    std::vector<std::int64_t> star;  // of each vertex
-    std::vector<Edge> edges;         // once for each face
+    std::vector<std::int64_t> star;    // of each vertex
+    std::vector<std::uint32_t> first;  // size V + 1: where the edges to earlier vertices begin
+    std::vector<Edge> edges;           // once for each face, the latest earlier vertex first
 };
 
 Areas areas_of(const CodedShape& shape, const std::vector<Place>& at) {
-    Areas out{std::vector<std::int64_t>(at.size()), {}};
-    out.edges.reserve(3 * shape.faces.size());
+    Areas out{std::vector<std::int64_t>(at.size()), std::vector<std::uint32_t>(at.size() + 1), {}};
+    for (const Face& f : shape.faces)
+        for (std::size_t i = 0; i < 3; ++i) ++out.first[std::max(f[i], f[(i + 1) % 3]) + 1];
+    std::partial_sum(out.first.begin(), out.first.end(), out.first.begin());
+    std::vector<std::uint32_t> next(out.first.begin(), out.first.end() - 1);
+    out.edges.resize(3 * shape.faces.size());
     for (const Face& f : shape.faces) {
         const Place &a = at[f[0]], &b = at[f[1]], &c = at[f[2]];
         const std::int64_t area = std::abs((b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x));
         for (std::size_t i = 0; i < 3; ++i) {
             const Id from = f[i], to = f[(i + 1) % 3];
             out.star[from] += area;
-            out.edges.push_back({std::max(from, to), std::min(from, to), area});
+            out.edges[next[std::max(from, to)]++] = {std::min(from, to), area};
         }
     }
-    std::sort(out.edges.begin(), out.edges.end(), [](const Edge& a, const Edge& b) {
-        return a.later != b.later       ? a.later < b.later
-               : a.earlier != b.earlier ? a.earlier > b.earlier
-                                        : a.area < b.area;
-    });
+    for (std::size_t v = 0; v < at.size(); ++v)
+        std::sort(out.edges.begin() + out.first[v], out.edges.begin() + out.first[v + 1],
+                  [](const Edge& a, const Edge& b) {
+                      return a.earlier != b.earlier ? a.earlier > b.earlier : a.area < b.area;
+                  });
     return out;
 }
 
@@ -71,7 +78,11 @@ std::int32_t log_share(std::int64_t squared_length, std::int64_t faces, std::int
 void set_weights(std::span<ColorPlan::Neighbor> of) {
     std::int32_t most = 0;
     for (const ColorPlan::Neighbor& n : of) most = std::max(most, n.weight);
-    for (ColorPlan::Neighbor& n : of) n.weight = std::max(half_power(4 * (most - n.weight)) >> 2, 1);
+    for (ColorPlan::Neighbor& n : of) {
+        const std::int32_t below = most - n.weight;
+        n.weight = std::max(half_power(4 * below) >> 2, 1);
+        n.flat = std::max(half_power(below) >> 2, 1);
+    }
 }
 
 }  // namespace
@@ -84,20 +95,18 @@ ColorPlan plan_colors(const CodedShape& shape) {
     ColorPlan plan;
     plan.fineness = fineness_of(shape.grid, areas.star);
     plan.first.assign(at.size() + 1, 0);
-    const std::vector<Edge>& edges = areas.edges;
-    for (std::size_t i = 0; i < edges.size();) {
-        const Edge& e = edges[i];
-        std::int64_t faces = 0;
-        for (; i < edges.size() && edges[i].later == e.later && edges[i].earlier == e.earlier; ++i)
-            faces += edges[i].area;
-        if (plan.first[e.later + 1] == ColorPlan::kMostNeighbors) continue;
-        const std::int64_t x = at[e.later].x - at[e.earlier].x, y = at[e.later].y - at[e.earlier].y;
-        plan.neighbors.push_back({e.earlier, log_share(x * x + y * y, faces, areas.star[e.earlier])});
-        ++plan.first[e.later + 1];
-    }
     for (std::size_t v = 0; v < at.size(); ++v) {
-        plan.first[v + 1] += plan.first[v];
-        set_weights(std::span(plan.neighbors).subspan(plan.first[v], plan.first[v + 1] - plan.first[v]));
+        const std::size_t begin = plan.neighbors.size();
+        for (std::uint32_t i = areas.first[v]; i < areas.first[v + 1];) {
+            const Id u = areas.edges[i].earlier;
+            std::int64_t faces = 0;
+            for (; i < areas.first[v + 1] && areas.edges[i].earlier == u; ++i) faces += areas.edges[i].area;
+            if (plan.neighbors.size() - begin == ColorPlan::kMostNeighbors) break;
+            const std::int64_t x = at[v].x - at[u].x, y = at[v].y - at[u].y;
+            plan.neighbors.push_back({u, log_share(x * x + y * y, faces, areas.star[u]), 0});
+        }
+        plan.first[v + 1] = static_cast<std::uint32_t>(plan.neighbors.size());
+        set_weights(std::span(plan.neighbors).subspan(begin));
     }
     return plan;
 }

@@ -11,9 +11,10 @@ namespace imgmesh::coding {
 
 struct ColorPlan {
     /// A neighbour that is coded before, and its share of the prediction, 1 to 4096: the largest is 4096.
+    /// `flat` is the same to the power of 1/4.
     struct Neighbor {
         Id vertex;
-        std::int32_t weight;
+        std::int32_t weight, flat;
     };
     static constexpr std::uint32_t kMostNeighbors = 12;
 
