@@ -53,18 +53,9 @@ struct Options {
 const std::string kSize = "--size", kRetarget = "--retarget";
 
 // WxH
-OutputSize parse_size(const std::string& name, const std::string& text) {
-    const std::size_t cross = text.find('x');
-    if (cross == std::string::npos)
-        throw Error(ErrorKind::kBadArgument,
-                    cat(name, " '", shortened(text), "': expected WIDTHxHEIGHT, as in 640x480"));
-    const CountRange range{1, ImageLimits().max_side};
-    const OutputSize size{static_cast<int>(parse_count(name, text.substr(0, cross), range)),
-                          static_cast<int>(parse_count(name, text.substr(cross + 1), range))};
-    if (std::int64_t{size.width} * size.height > ImageLimits().max_pixels)
-        throw Error(ErrorKind::kBadArgument, cat(name, " '", shortened(text), "': expected at most ",
-                                                 ImageLimits().max_pixels, " pixels in all"));
-    return size;
+OutputSize size_of(const std::string& name, const std::string& text) {
+    const GridSize size = parse_size(name, text, ImageLimits().max_side, ImageLimits().max_pixels);
+    return {size.width, size.height};
 }
 
 void add_options(CLI::App& app, Options& o) {
@@ -78,14 +69,14 @@ void add_options(CLI::App& app, Options& o) {
                       "Maps of the edit to write (.exr): an STMap, and the displacement of every pixel"),
              files);
     add_handle_options(app, o.handles);
-    in_group(add_value(app, kSize, "WxH", [&o](const std::string& text) { o.size = parse_size(kSize, text); },
+    in_group(add_value(app, kSize, "WxH", [&o](const std::string& text) { o.size = size_of(kSize, text); },
                        {"Size of the image and of the STMap", "that of the image"}),
              shape);
     CLI::Option* const retarget =
         in_group(add_value(
                      app, kRetarget, "WxH",
                      [&o](const std::string& text) {
-                         o.size = parse_size(kRetarget, text);
+                         o.size = size_of(kRetarget, text);
                          o.retarget = true;
                      },
                      "As --size, but detail keeps its proportions and the rest of the image gives way"),

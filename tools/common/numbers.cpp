@@ -34,4 +34,16 @@ double parse_number(const std::string& name, const std::string& text, const Numb
     return value;
 }
 
+GridSize parse_size(const std::string& name, const std::string& text, int most_side,
+                    std::int64_t most_pixels) {
+    const std::size_t cross = text.find('x');
+    if (cross == std::string::npos) refuse(name, text, "WIDTHxHEIGHT, as in 640x480");
+    const CountRange range{1, most_side};
+    const GridSize size{static_cast<int>(parse_count(name, text.substr(0, cross), range)),
+                        static_cast<int>(parse_count(name, text.substr(cross + 1), range))};
+    if (std::int64_t{size.width} * size.height > most_pixels)
+        refuse(name, text, cat("at most ", most_pixels, " pixels in all"));
+    return size;
+}
+
 }  // namespace imgmesh

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <string>
 
+#include "libcore/base/grid.h"
 #include "libcore/base/range.h"
 
 namespace imgmesh {
@@ -13,5 +14,8 @@ namespace imgmesh {
 std::int64_t parse_count(const std::string& name, const std::string& text, const CountRange& range);
 /// Reads a decimal number with optional exponent; neither infinite nor nan.
 double parse_number(const std::string& name, const std::string& text, const NumberRange& range);
+/// Reads the size of an image, as in 640x480: each side from 1 to `most_side`, and at most `most_pixels`.
+GridSize parse_size(const std::string& name, const std::string& text, int most_side,
+                    std::int64_t most_pixels);
 
 }  // namespace imgmesh
