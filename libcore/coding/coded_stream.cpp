@@ -74,8 +74,9 @@ void code_all_points(Coder& coder, StreamContent& content, std::size_t most_vert
     const std::int64_t room = std::int64_t{line.across} * line.down;
     if (Coder::kDecodes && (inner > room || outer > static_cast<std::uint32_t>(line.size()) ||
                             std::size_t{inner} + outer > most_vertices))
-        throw Error(ErrorKind::kBadFile, cat("says to hold ", std::size_t{inner} + outer,
-                                             " vertices, more than its grid or its bytes have room for"));
+        throw Error(ErrorKind::kBadFile,
+                    cat("says to hold ", std::size_t{inner} + outer,
+                        " vertices, more than its grid, its bytes or memory have room for"));
     HalvesModel border_model, inner_model;
     border = code_points(coder, border_model, line.size(), 1, outer, border);
     inside = code_points(coder, inner_model, line.across, line.down, inner, inside);
@@ -199,6 +200,38 @@ std::uint32_t take_varint(std::span<const std::uint8_t>& bytes) {
     throw Error(ErrorKind::kBadFile, "has a size of more than three bytes");
 }
 
+// What comes before the vertices, and the coder after it.
+struct Opening {
+    StreamContent content;
+    RangeDecoder coder;
+};
+
+Opening open_stream(std::span<const std::uint8_t> bytes) {
+    if (bytes.size() < kSignature.size() + 1 ||
+        !std::equal(kSignature.begin(), kSignature.end(), bytes.begin()))
+        throw Error(ErrorKind::kBadFile, "is no coded mesh: it does not begin with its signature");
+    const std::uint8_t kind = bytes[kSignature.size()];
+    if (kind >> 4 != kVersion)
+        throw Error(ErrorKind::kUnsupported, cat("has version ", kind >> 4, ", not ", kVersion));
+    if ((kind & 0x0C) != 0) throw Error(ErrorKind::kBadFile, "has bits set that version 1 does not know");
+    StreamContent content;
+    content.channels = (kind & 3) + 1;
+    bytes = bytes.subspan(kSignature.size() + 1);
+    const std::uint32_t width = take_varint(bytes) + 1, height = take_varint(bytes) + 1;
+    if (width > kMaxSide || height > kMaxSide || std::int64_t{width} * height > kMaxPixels)
+        throw Error(ErrorKind::kBadFile, cat("is ", width, " x ", height, " pixels, more than ", kMaxSide,
+                                             " a side or ", kMaxPixels, " in all"));
+    RangeDecoder coder(bytes);
+    const std::uint32_t step = code_number(coder, 0, kStepOrder);
+    content.grid = {static_cast<int>(width), static_cast<int>(height),
+                    static_cast<int>(std::min(step, 4u * kMaxSide)) + 1};
+    if (std::int64_t{content.grid.columns()} * content.grid.rows() > kMaxPixels)
+        throw Error(ErrorKind::kBadFile, cat("has a grid of ", content.grid.columns(), " x ",
+                                             content.grid.rows(), " points, more than ", kMaxPixels));
+    code_steps(coder, content);
+    return {std::move(content), coder};
+}
+
 }  // namespace
 
 StreamContent arranged(const CodedMesh& mesh) {
@@ -219,7 +252,7 @@ StreamContent arranged(const CodedMesh& mesh) {
     return content;
 }
 
-std::vector<std::uint8_t> write_stream(StreamContent& content) {
+std::vector<std::uint8_t> write_stream(StreamContent& content, StreamSizes* sizes) {
     std::vector<std::uint8_t> out(kSignature.begin(), kSignature.end());
     out.push_back(static_cast<std::uint8_t>(kVersion << 4 | (content.channels - 1)));
     put_varint(out, static_cast<std::uint32_t>(content.grid.width - 1));
@@ -227,48 +260,40 @@ std::vector<std::uint8_t> write_stream(StreamContent& content) {
     RangeEncoder coder;
     code_number(coder, static_cast<std::uint32_t>(content.grid.step - 1), kStepOrder);
     code_steps(coder, content);
+    const std::size_t steps_end = coder.size();
     code_all_points(coder, content, 0);
+    const std::size_t points_end = coder.size();
     code_all_faces(coder, content);
+    const std::size_t faces_end = coder.size();
     code_all_colors(coder, content);
     const std::vector<std::uint8_t> coded = coder.finish();
+    if (sizes)
+        *sizes = {out.size() + steps_end, points_end - steps_end, faces_end - points_end,
+                  coded.size() - faces_end};
     out.insert(out.end(), coded.begin(), coded.end());
     return out;
 }
 
-StreamContent read_stream(std::span<const std::uint8_t> bytes) {
-    const std::size_t size = bytes.size();
-    if (size < kSignature.size() + 1 || !std::equal(kSignature.begin(), kSignature.end(), bytes.begin()))
-        throw Error(ErrorKind::kBadFile, "is no coded mesh: it does not begin with its signature");
-    const std::uint8_t kind = bytes[kSignature.size()];
-    if (kind >> 4 != kVersion)
-        throw Error(ErrorKind::kBadFile, cat("has version ", kind >> 4, ", not ", kVersion));
-    if ((kind & 0x0C) != 0) throw Error(ErrorKind::kBadFile, "has bits set that version 1 does not know");
-    StreamContent content;
-    content.channels = (kind & 3) + 1;
-    bytes = bytes.subspan(kSignature.size() + 1);
-    const std::uint32_t width = take_varint(bytes) + 1, height = take_varint(bytes) + 1;
-    if (width > kMaxSide || height > kMaxSide || std::int64_t{width} * height > kMaxPixels)
-        throw Error(ErrorKind::kBadFile, cat("is ", width, " x ", height, " pixels, more than ", kMaxSide,
-                                             " a side or ", kMaxPixels, " in all"));
-    RangeDecoder coder(bytes);
-    const std::uint32_t step = code_number(coder, 0, kStepOrder);
-    content.grid = {static_cast<int>(width), static_cast<int>(height),
-                    static_cast<int>(std::min(step, 4u * kMaxSide)) + 1};
-    if (std::int64_t{content.grid.columns()} * content.grid.rows() > kMaxPixels)
-        throw Error(ErrorKind::kBadFile, cat("has a grid of ", content.grid.columns(), " x ",
-                                             content.grid.rows(), " points, more than ", kMaxPixels));
-    code_steps(coder, content);
+StreamHead read_head(std::span<const std::uint8_t> bytes) {
+    const StreamContent content = open_stream(bytes).content;
+    return {content.grid, content.channels};
+}
+
+StreamContent read_stream(std::span<const std::uint8_t> bytes, std::size_t limit) {
+    Opening opening = open_stream(bytes);
+    StreamContent& content = opening.content;
+    RangeDecoder& coder = opening.coder;
     const auto check_end = [&] {
         if (coder.missing() > 4) ends_early();
     };
-    code_all_points(coder, content, most_vertices(size));
+    code_all_points(coder, content, std::min(most_vertices(bytes.size()), limit));
     check_end();
     code_all_faces(coder, content);
     check_end();
     code_all_colors(coder, content);
     check_end();
     if (coder.left() > 0) throw Error(ErrorKind::kBadFile, cat("has ", coder.left(), " bytes after its end"));
-    return content;
+    return std::move(content);
 }
 
 }  // namespace imgmesh::coding

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -43,10 +44,27 @@ constexpr std::size_t most_vertices(std::size_t bytes) {
 /// the format cannot reach are replaced; that happens to needles only.
 StreamContent arranged(const CodedMesh& mesh);
 
-/// Returns the bytes of a picture whose faces are those of arranged(). Sets its colours to the decoder's.
-std::vector<std::uint8_t> write_stream(StreamContent& content);
-/// Reads a file. Throws Error(kBadFile) for bytes that are none or say what cannot be, before memory is taken
-/// for it. Takes up to 8 bytes of memory for each point of the grid, and 400 for each vertex.
-StreamContent read_stream(std::span<const std::uint8_t> bytes);
+/// Where the bytes of a file go; the parts share the bytes between them.
+struct StreamSizes {
+    std::size_t header = 0, points = 0, faces = 0, colors = 0;
+};
+
+/// Returns the bytes of a picture whose faces are those of arranged(). Sets its colours to the decoder's, and
+/// `sizes` unless it is null.
+std::vector<std::uint8_t> write_stream(StreamContent& content, StreamSizes* sizes = nullptr);
+
+/// What the first bytes of a file say.
+struct StreamHead {
+    CodedGrid grid;
+    int channels = 3;
+};
+
+/// Reads the first bytes of a file. Throws as read_stream() does.
+StreamHead read_head(std::span<const std::uint8_t> bytes);
+/// Reads a file. Throws Error(kBadFile) for bytes that are none or say what cannot be, and for more vertices
+/// than `limit`, before memory is taken for it; Error(kUnsupported) for another version. Takes up to
+/// 8 bytes of memory for each point of the grid, and 400 for each vertex.
+StreamContent read_stream(std::span<const std::uint8_t> bytes,
+                          std::size_t limit = std::numeric_limits<std::size_t>::max());
 
 }  // namespace imgmesh::coding

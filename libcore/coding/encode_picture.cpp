@@ -250,8 +250,13 @@ class PictureEncoder {
         out.bytes = trial_->bytes();
         out.report.vertices = trial_->vertices();
         out.report.faces = trial_->content().faces.size();
-        out.report.grid_step = step_ / 4.0;
+        out.report.grid_step = trial_->content().grid.step / 4.0;
         out.report.psnr = psnr();
+        const coding::StreamSizes& sizes = trial_->sizes();
+        out.report.header_bytes = sizes.header;
+        out.report.point_bytes = sizes.points;
+        out.report.face_bytes = sizes.faces;
+        out.report.color_bytes = sizes.colors;
         out.report.reached = reached_;
         return out;
     }

@@ -27,7 +27,7 @@ void MeshTrial::code(int step_index) {
     const double pixels = double(content_.grid.width) * content_.grid.height;
     choice.bit_price = kBitPrice * step * step * pixels / static_cast<double>(vertices());
     content_.level = quantise_colors(content_.shape(), plan_, moments_, content_.channels, choice).level;
-    bytes_ = write_stream(content_);
+    bytes_ = write_stream(content_, &sizes_);
 }
 
 double MeshTrial::squared_error(const Bitmap& picture) const {

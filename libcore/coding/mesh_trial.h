@@ -28,6 +28,7 @@ class MeshTrial {
     /// Chooses colours with steps of this index and writes them.
     void code(int step_index);
     const std::vector<std::uint8_t>& bytes() const { return bytes_; }
+    const StreamSizes& sizes() const { return sizes_; }
     const StreamContent& content() const { return content_; }
     /// Returns the squared error of what a decoder draws, over all samples times alpha.
     double squared_error(const Bitmap& picture) const;
@@ -38,6 +39,7 @@ class MeshTrial {
     ColorPlan plan_;
     std::vector<FaceMoments> moments_;
     std::vector<std::uint8_t> bytes_;
+    StreamSizes sizes_;
 };
 
 }  // namespace imgmesh::coding

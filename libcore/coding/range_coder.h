@@ -31,6 +31,8 @@ class RangeEncoder {
         }
         return bit;
     }
+    /// Returns how many bytes are out. Up to four more are to come of what has been coded.
+    std::size_t size() const { return bytes_.size(); }
     /// Returns the bytes, without up to four zeros at the end: the decoder reads zeros there.
     std::vector<std::uint8_t> finish();
 
