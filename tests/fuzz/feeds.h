@@ -54,5 +54,6 @@ bool feed_image(Target target, std::span<const std::uint8_t> bytes);
 bool feed_profile(std::span<const std::uint8_t> bytes);
 bool feed_config(std::span<const std::uint8_t> bytes);
 bool feed_compact(std::span<const std::uint8_t> bytes);
+bool feed_coded(std::span<const std::uint8_t> bytes);
 
 }  // namespace imgmesh::fuzz

@@ -40,7 +40,8 @@ Target target_at(std::uint32_t index) {
     constexpr Target kShares[] = {Target::kContainer, Target::kPng,     Target::kJpeg,   Target::kContainer,
                                   Target::kTiff,      Target::kExr,     Target::kWebp,   Target::kContainer,
                                   Target::kBmp,       Target::kTga,     Target::kPnm,    Target::kEdits,
-                                  Target::kContainer, Target::kProfile, Target::kConfig, Target::kCompact};
+                                  Target::kContainer, Target::kProfile, Target::kConfig, Target::kCompact,
+                                  Target::kCoded};
     return kShares[index % std::size(kShares)];
 }
 

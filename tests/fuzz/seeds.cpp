@@ -164,6 +164,8 @@ std::vector<Bytes> seeds(Target target) {
             });
         case Target::kCompact:
             return compact_seeds();
+        case Target::kCoded:
+            return coded_seeds();
         case Target::kConfig:
             break;
     }

@@ -1,4 +1,4 @@
-// Good BMP, TGA and Netpbm files and compact streams to start from.
+// Good BMP, TGA and Netpbm files, compact streams and coded pictures to start from.
 #pragma once
 
 #include <vector>
@@ -12,5 +12,6 @@ std::vector<Bytes> bmp_seeds();
 std::vector<Bytes> tga_seeds();
 std::vector<Bytes> netpbm_seeds();
 std::vector<Bytes> compact_seeds();
+std::vector<Bytes> coded_seeds();
 
 }  // namespace imgmesh::fuzz

@@ -11,9 +11,9 @@
 namespace imgmesh::fuzz {
 namespace {
 
-constexpr const char* kNames[] = {"container", "png",     "jpeg",  "tiff",   "exr",    "webp",
-                                  "bmp",       "tga",     "pnm",   "gif",    "hdr",    "jp2",
-                                  "heif",      "profile", "edits", "config", "compact"};
+constexpr const char* kNames[] = {"container", "png",     "jpeg",  "tiff",   "exr",     "webp",
+                                  "bmp",       "tga",     "pnm",   "gif",    "hdr",     "jp2",
+                                  "heif",      "profile", "edits", "config", "compact", "coded"};
 static_assert(std::size(kNames) == static_cast<std::size_t>(kLastTarget) + 1);
 
 bool feed_container(std::span<const std::uint8_t> bytes) {
@@ -71,6 +71,8 @@ bool feed(Target target, std::span<const std::uint8_t> bytes) {
             return feed_config(bytes);
         case Target::kCompact:
             return feed_compact(bytes);
+        case Target::kCoded:
+            return feed_coded(bytes);
         default:
             return feed_image(target, bytes);
     }

@@ -14,7 +14,7 @@ namespace imgmesh::fuzz {
 
 /// kGif to kHeif are the formats of imgmesh-codecs, decoded in this process. kProfile is an ICC profile
 /// alone, kConfig a file for --config, kCompact a container's compact
-/// stream by itself.
+/// stream by itself, kCoded a coded picture.
 enum class Target {
     kContainer,
     kPng,
@@ -32,9 +32,10 @@ enum class Target {
     kProfile,
     kEdits,
     kConfig,
-    kCompact
+    kCompact,
+    kCoded
 };
-inline constexpr Target kLastTarget = Target::kCompact;
+inline constexpr Target kLastTarget = Target::kCoded;
 
 /// container, png, and so on.
 const char* name_of(Target target);
