@@ -32,7 +32,7 @@ apt-get install -qq -y --no-install-recommends ./imgmesh_*.deb >install.log 2>&1
 echo "==> installed with $(grep -c '^Setting up' install.log) packages in all"
 
 dpkg -L imgmesh >listed
-tools="build reconstruct info compare convert warp segment"
+tools="build reconstruct info compare convert warp segment encode decode"
 for tool in $tools; do
     imgmesh-$tool --help >/dev/null
     imgmesh-$tool --version

@@ -144,6 +144,12 @@ void read_texture(const Asset& asset, View buffer, Findings& findings, Container
     container.facts.texture_bytes = picture.size();
 }
 
+// Refuses a file of another kind.
+[[noreturn]] void refuse_other(const std::string& path, const std::string& what, const Findings& findings) {
+    if (findings.collects()) refuse("json.syntax", what);
+    throw Error(ErrorKind::kBadFile, cat(path, ": ", what));
+}
+
 Container read(const std::string& path, const ContainerLimits& limits, Findings& findings) {
     const std::filesystem::path folder = std::filesystem::path(path).parent_path();
     FileReader files(limits.max_bytes);
@@ -151,9 +157,10 @@ Container read(const std::string& path, const ContainerLimits& limits, Findings&
     if (const std::string_view image = image_signature(main); !image.empty()) {
         const std::string what = cat("is ", image == "EXR" || image == "HDR" ? "an " : "a ", image,
                                      " image, not a container; imgmesh-build makes one of it");
-        if (findings.collects()) refuse("json.syntax", what);
-        throw Error(ErrorKind::kBadFile, cat(path, ": ", what));
+        refuse_other(path, what, findings);
     }
+    if (has_coded_signature(main))
+        refuse_other(path, "is a coded picture, not a container; imgmesh-decode draws it", findings);
     GlbView glb{{reinterpret_cast<const char*>(main.data()), main.size()}, {}};
     if (is_glb(main)) glb = unpack_glb(main, findings);
     Asset asset = asset_from_json(glb.json, limits, findings);

@@ -48,6 +48,10 @@ std::string_view image_signature(Bytes bytes) {
     return "";
 }
 
+bool has_coded_signature(Bytes bytes) {
+    return has_at(bytes, 0, "\x9AIM"sv);
+}
+
 bool has_glb_signature(Bytes bytes) {
     return has_at(bytes, 0, "glTF");
 }

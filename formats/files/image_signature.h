@@ -11,6 +11,9 @@ namespace imgmesh {
 /// signature there.
 std::string_view image_signature(std::span<const std::uint8_t> bytes);
 
+/// Returns whether bytes begin as a coded picture does (.imgm, docs/codec-format.md).
+bool has_coded_signature(std::span<const std::uint8_t> bytes);
+
 /// Returns whether bytes begin as a binary glTF file does.
 bool has_glb_signature(std::span<const std::uint8_t> bytes);
 

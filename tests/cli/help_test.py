@@ -40,6 +40,8 @@ class Help(CliCase):
                 self.build("photo.png", "--level-faces", "1500,200", output="photo.glb")
                 self.build("photo.png", output="download.glb")
                 self.build("sprite.png", "--level-faces", "800,200", output="sprite.glb")
+            if tool == "imgmesh-decode":
+                self.run_ok("imgmesh-encode", "photo.png", "-o", "photo.imgm", "-q")
             for command, meaning in commands:
                 with self.subTest(command):
                     self.assertTrue(command.startswith(tool + " "), command)

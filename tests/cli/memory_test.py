@@ -33,10 +33,12 @@ class Memory(CliCase):
         picture_files.png(cls.inputs / "in.png", scene())
         subprocess.run([BIN / "imgmesh-build", "in.png", "-o", "in.glb", "-q", "--preset", "fast"], cwd=cls.inputs,
                        check=True)
+        subprocess.run([BIN / "imgmesh-encode", "in.png", "-o", "in.imgm", "-q", "--effort", "1"], cwd=cls.inputs,
+                       check=True)
 
     def setUp(self):
         super().setUp()
-        for name in ("in.png", "in.glb"):
+        for name in ("in.png", "in.glb", "in.imgm"):
             shutil.copy(self.inputs / name, self.folder)
         self.jobs = {
             "imgmesh-build": ["in.png", "-o", "out.glb"],
@@ -46,6 +48,8 @@ class Memory(CliCase):
             "imgmesh-convert": ["in.glb", "-o", "out.glb", "--texture"],
             "imgmesh-warp": ["in.glb", "--image", "in.png", "--handle", "200,150:9,-4", "-o", "out.png"],
             "imgmesh-segment": ["in.glb", "-o", "out.png"],
+            "imgmesh-encode": ["in.png", "-o", "out.imgm", "--effort", "1"],
+            "imgmesh-decode": ["in.imgm", "-o", "out.png"],
         }
         self.assertEqual(sorted(self.jobs), sorted(TOOLS))
 
@@ -97,6 +101,8 @@ class Memory(CliCase):
                  ("imgmesh-build", ["in.png", "-o", "out.glb", "--map", "trivial", "--refine", "0"]),
                  ("imgmesh-reconstruct", ["in.glb", "-o", "out.png", "--mode", "gouraud", "--scale", "2"]),
                  ("imgmesh-reconstruct", ["in.glb", "-o", "out.png", "--mode", "smooth", "--image", "in.png"]),
+                 ("imgmesh-decode", ["in.imgm", "-o", "out.glb"]),
+                 ("imgmesh-decode", ["in.imgm", "-o", "out.png", "--scale", "3"]),
                  ("imgmesh-compare", ["in.glb"]), ("imgmesh-compare", ["in.png", "in.png"])]
         for tool, args in jobs:
             with self.subTest(tool=tool, args=args):

@@ -13,6 +13,7 @@ class Pipes(CliCase):
         super().setUp()
         picture_files.png(self.folder / "in.png", picture_files.noise(24, 16))
         self.run_ok("imgmesh-build", "in.png", "-o", "in.glb", "-q")
+        self.run_ok("imgmesh-encode", "in.png", "-o", "in.imgm", "-q", "--vertices", "9")
 
     def piped(self, tool, *args, data=b"", **kwargs):
         return subprocess.run([str(BIN / tool), *args], cwd=self.folder, input=data, timeout=300, check=False,
@@ -40,13 +41,17 @@ class Pipes(CliCase):
                                          ("imgmesh-warp", "in.glb", ["--handle", "3,3:1,1"], "glb"),
                                          ("imgmesh-warp", "in.glb", ["--handle", "3,3:1,1", "--image", "in.png"], "png"),
                                          ("imgmesh-convert", "in.glb", ["--draco", "none"], "glb"),
-                                         ("imgmesh-convert", "in.glb", [], "ply")):
+                                         ("imgmesh-convert", "in.glb", [], "ply"),
+                                         ("imgmesh-encode", "in.png", ["--vertices", "9"], "imgm"),
+                                         ("imgmesh-decode", "in.imgm", [], "png"),
+                                         ("imgmesh-decode", "in.imgm", [], "glb")):
             with self.subTest(tool=tool, kind=kind):
                 self.run_ok(tool, source, "-o", f"x.{kind}", *args, "-q")
                 expected = (self.folder / f"x.{kind}").read_bytes()
                 os.remove(self.folder / f"x.{kind}")
                 usual = kind in ("glb", "png") and (kind == "png") == (tool != "imgmesh-convert" and "--image" in args
-                                                                       or tool in ("imgmesh-segment", "imgmesh-reconstruct"))
+                                                                       or tool in ("imgmesh-segment", "imgmesh-reconstruct",
+                                                                                   "imgmesh-decode"))
                 result = self.piped(tool, "-", "-o", "-", *args, "--json", *([] if usual else ["--format", kind]),
                                     data=(self.folder / source).read_bytes())
                 self.assertEqual(result.returncode, 0, result.stderr)

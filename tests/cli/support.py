@@ -11,7 +11,7 @@ import jsonschema
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 BIN = pathlib.Path(os.environ["IMGMESH_BIN"])
 TOOLS = ("imgmesh-build", "imgmesh-reconstruct", "imgmesh-info", "imgmesh-compare", "imgmesh-convert", "imgmesh-warp",
-         "imgmesh-segment")
+         "imgmesh-segment", "imgmesh-encode", "imgmesh-decode")
 
 
 def schema_of(tool):

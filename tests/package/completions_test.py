@@ -21,6 +21,8 @@ CASES = (("imgmesh-build --pres", ["--preset"], ["--json"]),
          ("imgmesh-build -o ", ["photo.png"], []),
          ("imgmesh-build pho", ["photo.png"], []),
          ("imgmesh-warp --no", ["--no-overwrite"], ["--overwrite"]),
+         ("imgmesh-encode --tune ", ["psnr", "luma", "ssim"], ["half"]),
+         ("imgmesh-decode pho", ["photo.png"], []),
          ("imgmesh-warp --handle 1,2:3,4 --sol", ["--solver"], []))
 
 

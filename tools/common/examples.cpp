@@ -67,13 +67,27 @@ constexpr Example kSegment[] = {
      "The object that pixel 20,20 is inside, and pixel 0,0 is not, as a mask for imgmesh-build"},
 };
 
+constexpr Example kEncode[] = {
+    {"imgmesh-encode photo.png -o photo.imgm",
+     "A mesh of one vertex for every 108 pixels, in a few kilobytes"},
+    {"imgmesh-encode photo.png -o small.imgm --bytes 2000", "As good as 2000 bytes allow"},
+    {"imgmesh-encode *.jpg -o coded/ --psnr 25", "As small as an error of 25 dB allows, of each image"},
+};
+
+constexpr Example kDecode[] = {
+    {"imgmesh-decode photo.imgm -o again.png", "The image"},
+    {"imgmesh-decode photo.imgm -o large.png --scale 2", "The image at twice its size, from the same mesh"},
+    {"imgmesh-decode photo.imgm -o plain.glb", "Its mesh, for engines and viewers"},
+    {"imgmesh-decode photo.imgm --info", "Size, channels and vertices"},
+};
+
 }  // namespace
 
 std::span<const Example> examples_of(const std::string& tool) {
     const std::pair<const char*, std::span<const Example>> all[] = {
         {"imgmesh-build", kBuild},     {"imgmesh-reconstruct", kReconstruct}, {"imgmesh-info", kInfo},
         {"imgmesh-compare", kCompare}, {"imgmesh-convert", kConvert},         {"imgmesh-warp", kWarp},
-        {"imgmesh-segment", kSegment}};
+        {"imgmesh-segment", kSegment}, {"imgmesh-encode", kEncode},           {"imgmesh-decode", kDecode}};
     for (const auto& [name, examples] : all)
         if (tool == name) return examples;
     return {};

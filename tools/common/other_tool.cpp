@@ -25,8 +25,10 @@ std::string other_tool(const std::string& tool, const std::string& path) {
         other = "imgmesh-reconstruct";
     else if (among(kContainers))
         other = tool == "imgmesh-reconstruct" ? "imgmesh-convert" : "imgmesh-build";
+    else if (extension == ".imgm")
+        other = "imgmesh-encode";
     if (other.empty() || other == tool) return "";
-    if (other == "imgmesh-build") from = "an image";
+    if (other == "imgmesh-build" || other == "imgmesh-encode") from = "an image";
     return cat("; ", other, " writes ", extension, " from ", from);
 }
 

@@ -18,6 +18,7 @@ constexpr const char* kDevelop = "develop it to TIFF, EXR or PNG";
 constexpr const char* kDraw = "draw it as PNG first";
 constexpr const char* kUnpack = "unpack it first";
 constexpr const char* kFrames = "take its frames out as PNG first";
+constexpr const char* kDecode = "imgmesh-decode draws it as PNG";
 constexpr const char* kData = "write its values as TIFF or EXR";
 
 struct Signature {
@@ -31,6 +32,7 @@ constexpr Signature kSignatures[] = {
     {0, "\xFF\x0A"sv, "JPEG XL", kSave},
     {0, "\0\0\0\x0CJXL "sv, "JPEG XL", kSave},
     {0, "II\xBC"sv, "JPEG XR", kSave},
+    {0, "\x9AIM"sv, "a coded picture (.imgm)", kDecode},
     {0, "gimp xcf"sv, "a GIMP file (XCF)", kSave},
     {0, "DDS "sv, "a DirectDraw surface (DDS)", kSave},
     {0, "\xABKTX "sv, "a Khronos texture (KTX)", kSave},
