@@ -1,10 +1,10 @@
-// Decodes coded meshes (.imgm, image/x-imgm) in browsers, workers and Node. It needs no other file:
+// Decodes coded pictures (.imgm) in browsers, workers and Node. It needs no other file:
 //
 //     import { decode, drawTo, info } from "./imgm.js";
 //     drawTo(document.querySelector("canvas"), bytes);
 //
-// It draws the same pixels as imgmesh-decode, as docs/codec-format.md says: all arithmetic is that of whole numbers
-// below 2^53. Names of steps are those of libcore/coding.
+// It draws the same bytes as imgmesh-decode. docs/codec-format.md explains each step, by the same names. All numbers are
+// whole and below 2^53. State is in variables of functions rather than in objects, so that minified code is small.
 
 /**
  * @typedef {{ width: number, height: number, channels: number }} Info  channels: 1 grey, 2 grey and alpha, 3 RGB,
@@ -16,664 +16,429 @@
 
 const MAX_PIXELS = 2 ** 26, MAX_SIDE = 65535, NONE = -1;
 
-const clamp = (x, low, high) => (x < low ? low : x > high ? high : x);
-const { abs, floor, max, min } = Math;
+const { abs, clz32, floor, max, min, sign } = Math;
+const clamp = (x, low, high) => max(low, min(x, high));
 // Exact for |a| < 2^52.
 const divide = (a, b) => floor(a / b);
 const rounded = (a, b) => divide(2 * a + b, 2 * b);
+const squared = (x, y) => x * x + y * y;
 /** How many bits a number below 2^53 takes. */
-const bitWidth = (x) => (x < 2 ** 32 ? 32 - Math.clz32(x) : 64 - Math.clz32(x / 2 ** 32));
-const next = (i) => (i === 2 ? 0 : i + 1);
-const before = (i) => (i === 0 ? 2 : i - 1);
+const bitWidth = (x) => (x < 2 ** 32 ? 32 - clz32(x) : 64 - clz32(x / 2 ** 32));
 
 function fail(text) {
-  throw new Error(`the coded picture ${text}`);
+  throw new Error(`The coded picture ${text}.`);
+}
+const endsEarly = () => fail("ends too early");
+function checkSize(width, height) {
+  if (!(width <= MAX_SIDE && height <= MAX_SIDE && width * height <= MAX_PIXELS)) fail(`is too large: ${width} x ${height}`);
 }
 
 // ---- Header
 
 function readHeader(bytes) {
-  if (bytes.length < 4 || bytes[0] !== 0x9a || bytes[1] !== 0x49 || bytes[2] !== 0x4d)
-    fail("is none: it does not begin with its signature");
-  if (bytes[3] >> 4 !== 1) fail(`has version ${bytes[3] >> 4}, not 1`);
-  if (bytes[3] & 12) fail("has bits set that version 1 does not know");
   let at = 4;
   const side = () => {
     let number = 0;
     for (let shift = 0; shift < 21; shift += 7) {
-      if (at === bytes.length) fail("ends too early");
+      if (at >= bytes.length) endsEarly();
       const byte = bytes[at++];
       number |= (byte & 127) << shift;
       if (byte < 128) return number + 1;
     }
     return fail("has a size of more than three bytes");
   };
+  if (bytes[0] !== 0x9a || bytes[1] !== 0x49 || bytes[2] !== 0x4d) fail("is none");
+  if (bytes[3] >> 2 !== 4) fail("has an unknown version");
   const width = side(), height = side();
-  if (width > MAX_SIDE || height > MAX_SIDE || width * height > MAX_PIXELS)
-    fail(`is ${width} x ${height} pixels, more than ${MAX_SIDE} a side or ${MAX_PIXELS} in all`);
+  checkSize(width, height);
   return { width, height, channels: (bytes[3] & 3) + 1, at };
 }
 
-// ---- Range coder and bit models
+// ---- Bit models
 
-class RangeDecoder {
-  constructor(bytes, at) {
-    this.bytes = bytes;
-    this.at = at;
-    this.missing = 0;
-    this.range = 2 ** 32 - 1;
-    this.value = 0;
-    for (let i = 0; i < 4; ++i) this.value = ((this.value << 8) | this.next()) >>> 0;
-  }
-
-  next() {
-    if (this.at < this.bytes.length) return this.bytes[this.at++];
-    ++this.missing;
-    return 0;
-  }
-
-  /** A bit that is 1 with a probability, in 1/2^15. */
-  bit(probability) {
-    const bound = (this.range >>> 15) * probability, bit = this.value < bound;
-    if (bit) this.range = bound;
-    else {
-      this.value -= bound;
-      this.range -= bound;
-    }
-    while (this.range < 2 ** 24) {
-      this.range *= 256;
-      this.value = ((this.value << 8) | this.next()) >>> 0;
-    }
-    return bit ? 1 : 0;
-  }
-
-  bits(count) {
-    let number = 0;
-    while (count-- > 0) number = 2 * number + this.bit(1 << 14);
-    return number;
-  }
-
-  /** An exponential Golomb code. */
-  number(order, most = 31 - order) {
-    let bits = 0;
-    while (bits < most && this.bit(1 << 14)) ++bits;
-    const high = 2 ** bits + this.bits(bits) - 1;
-    return high * 2 ** order + this.bits(order);
-  }
-
-  checkEnd() {
-    if (this.missing > 4) fail("ends too early");
-  }
-}
-
-const MAX_ODDS = 2047;
+const MAX_ODDS = 2047, EVEN = 1 << 14;
 const LOGISTIC = [22, 36, 60, 98, 162, 267, 439, 720, 1179, 1921, 3108, 4971, 7812, 11955, 17625, 24743, 32768];
-const logistic = (i) => (i <= 16 ? LOGISTIC[i] : 65536 - LOGISTIC[32 - i]);
-/** The probability of log odds in 1/256, in 1/2^16. */
+const logistic = (i) => (i > 16 ? 65536 - LOGISTIC[32 - i] : LOGISTIC[i]);
+/** The probability of log odds in 1/256 (from -MAX_ODDS), in 1/2^16. */
 const PROBABILITY = Int32Array.from({ length: 2 * MAX_ODDS + 1 }, (_, i) => {
-  const part = (i + 1) & 127, k = (i + 1) >> 7;
+  const part = ++i & 127, k = i >> 7;
   return (logistic(k) * (128 - part) + logistic(k + 1) * part + 64) >> 7;
 });
 /** The log odds of a probability in 1/2^12. */
 const ODDS = new Int16Array(4096);
-for (let p = 0, odds = -MAX_ODDS; p < 4096; ++p) {
+for (let p = 0, odds = -MAX_ODDS; p < 4096; ODDS[p++] = odds)
   while (odds < MAX_ODDS && PROBABILITY[odds + MAX_ODDS] < 16 * p + 8) ++odds;
-  ODDS[p] = odds;
-}
-const RATE = Int32Array.from({ length: 251 }, (_, seen) => divide(327680, 10 * seen + 25));
 
-/** The contexts of the decision that comes next, and their log odds. */
-const at = new Int32Array(5), odds = new Int32Array(6);
+/** The contexts of a decision, and their log odds. */
+const context = new Int32Array(5), odds = new Int32Array(6);
 
-/** One kind of decision: each context counts on its own, and a logistic mix weighs them. */
-class BitModel {
-  /** @param {number[]} sizes  contexts of each input */
-  constructor(sizes, sets = 1) {
+/**
+ * A range decoder. end() fails if the bytes ended too early, or go on. model(sizes, sets) makes a kind of decision with
+ * so many contexts of each input; it returns a function that decodes a bit, given the log odds that are expected before
+ * anything was seen, the set of weights, and a context of each input.
+ */
+function rangeDecoder(bytes, at) {
+  let range = 2 ** 32 - 1, value = 0, missing = 0;
+  const shift = () => {
+    value = ((value << 8) | (at < bytes.length ? bytes[at] : (++missing, 0))) >>> 0;
+    ++at;
+  };
+  for (let i = 0; i < 4; ++i) shift();
+
+  /** A bit that is 1 with a probability in 1/2^15. */
+  const bit = (probability) => {
+    const bound = (range >>> 15) * probability, isOne = value < bound;
+    if (isOne) range = bound;
+    else {
+      value -= bound;
+      range -= bound;
+    }
+    for (; range < 2 ** 24; shift()) range *= 256;
+    return +isOne;
+  };
+  const bits = (count) => {
+    let number = 0;
+    while (count-- > 0) number = 2 * number + bit(EVEN);
+    return number;
+  };
+  /** An exponential Golomb code. */
+  const number = (order) => {
+    let count = 0;
+    while (count < 31 - order && bit(EVEN)) ++count;
+    return (2 ** count + bits(count) - 1) * 2 ** order + bits(order);
+  };
+  const end = (last) => {
+    if (missing > 4) endsEarly();
+    if (last && at < bytes.length) fail("goes on after its end");
+  };
+
+  const model = (sizes, sets = 1) => {
     const inputs = sizes.length;
-    this.inputs = inputs;
-    this.first = sizes.map((_, i) => sizes.slice(0, i).reduce((a, b) => a + b, 0));
-    const all = this.first[inputs - 1] + sizes[inputs - 1];
-    this.probability = new Uint16Array(all).fill(1 << 15);
-    this.seen = new Uint8Array(all);
-    this.weight = new Int32Array(sets * (inputs + 1)).fill(floor((0.6 * (1 << 14)) / inputs));
-    for (let set = 0; set < sets; ++set) this.weight[set * (inputs + 1) + inputs] = 1 << 14;
-    this.settling = new Int32Array(sets);
-  }
-
-  /** Decodes the bit of the contexts `at`. prior: the log odds before anything was seen. */
-  code(coder, prior = 0, set = 0) {
-    const { inputs, first, probability, seen, weight } = this, from = set * (inputs + 1);
-    let sum = 0;
-    for (let i = 0; i < inputs; ++i) {
-      at[i] += first[i];
-      odds[i] = ODDS[probability[at[i]] >> 4];
-      sum += weight[from + i] * odds[i];
-    }
-    odds[inputs] = prior;
-    sum += weight[from + inputs] * prior;
-    const mixed = PROBABILITY[clamp(sum >> 14, -MAX_ODDS, MAX_ODDS) + MAX_ODDS];
-    const bit = coder.bit(clamp(mixed >> 1, 16, 32768 - 16)), target = bit ? 65535 : 0;
-    const error = target - mixed, settled = this.settling[set] === 500, shift = settled ? 17 : 16;
-    if (!settled) ++this.settling[set];
-    for (let i = 0; i <= inputs; ++i)
-      weight[from + i] = clamp(weight[from + i] + ((odds[i] * error + (1 << (shift - 1))) >> shift), -65536, 65536);
-    for (let i = 0; i < inputs; ++i) {
-      const c = at[i];
-      probability[c] += ((target - probability[c]) * RATE[seen[c]]) >> 15;
-      if (seen[c] < 250) ++seen[c];
-    }
-    return bit;
-  }
+    let all = 0;
+    const first = sizes.map((size) => (all += size) - size);
+    const probability = new Uint16Array(all).fill(32768), seen = new Uint8Array(all), settled = new Int32Array(sets);
+    const weight = new Int32Array(sets * (inputs + 1)).map((_, i) => (++i % (inputs + 1) ? floor(9830 / inputs) : 16384));
+    return (prior, set, a, b, c, d = 0, e = 0) => {
+      const from = set * (inputs + 1);
+      let sum = 0;
+      context[0] = a;
+      context[1] = b;
+      context[2] = c;
+      context[3] = d;
+      context[4] = e;
+      odds[inputs] = prior;
+      for (let i = 0; i <= inputs; ++i) {
+        if (i < inputs) odds[i] = ODDS[probability[(context[i] += first[i])] >> 4];
+        sum += weight[from + i] * odds[i];
+      }
+      const mixed = PROBABILITY[clamp(sum >> 14, -MAX_ODDS, MAX_ODDS) + MAX_ODDS];
+      const out = bit(clamp(mixed >> 1, 16, 32752)), target = out * 65535, slower = settled[set] < 500 ? 16 : 17;
+      if (slower < 17) ++settled[set];
+      for (let i = 0; i <= inputs; ++i) {
+        const w = from + i, k = context[i];
+        weight[w] = clamp(weight[w] + ((odds[i] * (target - mixed) + (1 << (slower - 1))) >> slower), -65536, 65536);
+        if (i < inputs) {
+          probability[k] += ((target - probability[k]) * floor(327680 / (10 * seen[k] + 25))) >> 15;
+          if (seen[k] < 250) ++seen[k];
+        }
+      }
+      return out;
+    };
+  };
+  return { bits, number, end, model };
 }
 
 // ---- Points: counts of vertices in cells that halve until each is one point of the grid
 
-const LEVELS = 24, COUNTS = 16;
 const pair = (a, b, most) => min(a, most) * (most + 1) + min(b, most);
-
+const capped = (number) => min(number, 15);
+const cellsOf = (points, level) => (points + (1 << level) - 1) >> level;
+const roomOf = (cell, level, points) => clamp(points - (cell << level), 0, 1 << level);
 /** 128 log2, by its first bits. */
 function roughLog(n) {
   const whole = bitWidth(n) - 1;
-  return whole * 128 + (whole >= 7 ? n >> (whole - 7) : n << (7 - whole)) - 128;
+  return whole * 128 + floor(n * 2 ** (7 - whole)) - 128;
 }
 
-class HalvesModel {
-  constructor() {
-    this.side = new BitModel([256, 256, 256, LEVELS * 8, 1250]);
-    this.tie = new BitModel([COUNTS * LEVELS, 512, COUNTS]);
-    this.excess = new BitModel([COUNTS * COUNTS, LEVELS * COUNTS, 64]);
-  }
-
-  /** How many of `count` vertices are in the first half. The names are those of the format's description. */
-  code(coder, count, level, down, roomFirst, roomSecond, before, after, first, second, beside, cornerBefore, cornerAfter) {
-    if (roomFirst === 0) return 0;
-    if (roomSecond === 0) return count;
-    if (count >= roomFirst + roomSecond) return roomFirst;
-    const half = count >> 1;
-    level = min(level, LEVELS - 1);
-    if (!(count & 1)) {
-      const size = min(half, COUNTS - 1);
-      at[0] = size * LEVELS + level;
-      at[1] = min(before + after, 7) * 64 + pair(first + second, beside, 7);
-      at[2] = size;
-      if (this.tie.code(coder)) return half;
-    }
-    const few = min(count, 4) - 1;
-    at[0] = few * 64 + pair(before, after, 7);
-    at[1] = few * 64 + pair(first, second, 7);
-    at[2] = few * 64 + pair(cornerBefore, cornerAfter, 7);
-    at[3] = (level * 4 + few) * 2 + down;
-    at[4] = pair(before + first, after + second, 24) * 2 + (few > 0 ? 1 : 0);
-    const room = clamp(((roughLog(roomFirst) - roughLog(roomSecond)) * 177) >> 7, -600, 600);
-    const toFirst = this.side.code(coder, room);
-    let larger = half + 1;
-    for (let more = 0; larger < count; ++more, ++larger) {
-      const counted = min(more, COUNTS - 1);
-      at[0] = min(bitWidth(count), COUNTS - 1) * COUNTS + counted;
-      at[1] = level * COUNTS + counted;
-      at[2] = pair(count, more, 7);
-      if (!this.excess.code(coder)) break;
-    }
-    const taken = toFirst ? larger : count - larger;
-    return clamp(taken, max(count - roomSecond, 0), min(count, roomFirst));
-  }
-}
-
-const cellsOf = (points, level) => (points === 0 ? 0 : ((points - 1) >> level) + 1);
-const roomOf = (first, level, points) => clamp(points - first, 0, 1 << level);
-
-/** Decodes points of a grid. Returns x + y * columns of each, in raster order. */
-function codePoints(coder, columns, rows, count) {
-  const found = new Uint32Array(count);
-  if (count === 0) return found;
-  const model = new HalvesModel();
-  let levelX = 0;
-  while (1 << levelX < max(columns, rows)) ++levelX;
-  let levelY = levelX, width = 1, height = 1;
+/** Decodes points of a grid. Returns row * columns + column of each, in raster order. */
+function codePoints({ model }, columns, rows, count) {
+  const found = [], side = model([256, 256, 256, 192, 1250]), tie = model([384, 512, 16]), excess = model([256, 384, 64]);
+  if (!count) return found;
+  let levelX = bitWidth(max(columns, rows) - 1), levelY = levelX, width = 1, height = 1;
   // Counts of the cells, with two rings of empty ones around them.
   let now = new Uint32Array(25);
   now[12] = count;
-  while (levelX > 0 || levelY > 0) {
-    const down = levelX === levelY, nextX = down ? levelX : levelX - 1, nextY = down ? levelY - 1 : levelY;
-    const nextWidth = cellsOf(columns, nextX), nextHeight = cellsOf(rows, nextY);
-    const r = width + 4, s = nextWidth + 4;
-    const then = new Uint32Array(s * (nextHeight + 4));
+  while (levelX + levelY > 0) {
+    const down = +(levelX === levelY), level = min(levelX, 23), nextX = levelX - 1 + down, nextY = levelY - down;
+    const nextWidth = cellsOf(columns, nextX), nextHeight = cellsOf(rows, nextY), s = width + 4, t = nextWidth + 4;
+    const next = new Uint32Array(t * (nextHeight + 4));
+    // Steps from half to half and aside from them, among the cells and among the halves.
+    const [onCell, onHalf, byCell, byHalf] = down ? [s, t, 1, 1] : [1, 1, s, t];
+
+    /** How many of `here` vertices are in the first half j of cell i; the second half is k. */
+    const firstOf = (here, i, j, k, roomFirst, roomSecond) => {
+      if (!roomFirst) return 0;
+      if (!roomSecond) return here;
+      if (here >= roomFirst + roomSecond) return roomFirst;
+      const before = 2 * next[j - onHalf], after = now[i + onCell], beside = now[i + byCell];
+      const first = next[j - byHalf], second = next[k - byHalf], half = here >> 1, few = min(here, 4) - 1;
+      if (here % 2 < 1 && tie(0, 0, capped(half) * 24 + level, min(before + after, 7) * 64 + pair(first + second, beside, 7), capped(half)))
+        return half;
+      const corner = next[j - onHalf - byHalf], corners = down
+        ? pair(corner + next[j - onHalf + byHalf], (now[i + onCell - byCell] + now[i + onCell + byCell] + 1) >> 1, 7)
+        : pair(2 * corner + now[i - onCell + byCell], 2 * next[k + onHalf - byHalf] + now[i + onCell + byCell], 7);
+      const isFirst = side(clamp(((roughLog(roomFirst) - roughLog(roomSecond)) * 177) >> 7, -600, 600), 0,
+        few * 64 + pair(before, after, 7), few * 64 + pair(first, second, 7), few * 64 + corners,
+        (level * 4 + few) * 2 + down, pair(before + first, after + second, 24) * 2 + min(few, 1));
+      let more = 0;
+      while (half + 1 + more < here &&
+        excess(0, 0, capped(bitWidth(here)) * 16 + capped(more), level * 16 + capped(more), pair(here, more, 7)))
+        ++more;
+      more += half + 1;
+      return clamp(isFirst ? more : here - more, max(here - roomSecond, 0), min(here, roomFirst));
+    };
+
     for (let y = 0; y < height; ++y)
-      for (let x = 0, i = (y + 2) * r + 2; x < width; ++x, ++i) {
-        const here = now[i];
-        if (here === 0) continue;
-        let inFirst, j, k;
-        if (down) {
-          j = (2 * y + 2) * s + x + 2;
-          k = j + s;
-          const wide = roomOf(x << levelX, levelX, columns), top = (2 * y) << nextY;
-          inFirst = model.code(coder, here, levelX, 1, wide * roomOf(top, nextY, rows),
-            wide * roomOf(top + (1 << nextY), nextY, rows), 2 * then[j - s], now[i + r], then[j - 1], then[k - 1],
-            now[i + 1], then[j - s - 1] + then[j - s + 1], (now[i + r - 1] + now[i + r + 1] + 1) >>> 1);
-        } else {
-          j = (y + 2) * s + 2 * x + 2;
-          k = j + 1;
-          const high = roomOf(y << levelY, levelY, rows), left = (2 * x) << nextX;
-          inFirst = model.code(coder, here, levelX, 0, high * roomOf(left, nextX, columns),
-            high * roomOf(left + (1 << nextX), nextX, columns), 2 * then[j - 1], now[i + 1], then[j - s], then[k - s],
-            now[i + r], 2 * then[j - s - 1] + now[i + r - 1], 2 * then[k - s + 1] + now[i + r + 1]);
-        }
-        then[j] = inFirst;
-        if (inFirst < here) then[k] = here - inFirst;
+      for (let x = 0; x < width; ++x) {
+        const i = (y + 2) * s + x + 2, here = now[i];
+        if (!here) continue;
+        const j = ((y << down) + 2) * t + (x << (1 - down)) + 2, k = j + onHalf;
+        const room = down ? roomOf(x, levelX, columns) : roomOf(y, levelY, rows);
+        const half = (cell) => room * (down ? roomOf(2 * y + cell, nextY, rows) : roomOf(2 * x + cell, nextX, columns));
+        next[j] = firstOf(here, i, j, k, half(0), half(1));
+        next[k] += here - next[j];
       }
-    now = then;
+    now = next;
     levelX = nextX;
     levelY = nextY;
     width = nextWidth;
     height = nextHeight;
   }
-  for (let y = 0, n = 0; y < rows; ++y)
-    for (let x = 0; x < columns; ++x) if (now[(y + 2) * (columns + 4) + x + 2]) found[n++] = y * columns + x;
+  for (let y = 0; y < rows; ++y)
+    for (let x = 0; x < columns; ++x) if (now[(y + 2) * (columns + 4) + x + 2]) found.push(y * columns + x);
   return found;
 }
 
-/** Decodes all points as row * columns + column of the whole grid, in raster order. */
+/** Decodes all points of the whole grid. */
 function codeAllPoints(coder, columns, rows, most) {
-  const across = columns - 2, down = rows - 2, line = 2 * (across + down);
-  const inner = coder.number(7), outer = coder.number(4);
-  if (inner > across * down || outer > line || inner + outer > most)
-    fail(`says to hold ${inner + outer} vertices, more than its grid or its bytes have room for`);
-  const border = codePoints(coder, line, 1, outer), inside = codePoints(coder, across, down, inner);
-  const place = new Uint32Array(4 + outer + inner);
-  place.set([0, columns - 1, (rows - 1) * columns, rows * columns - 1]);
-  let n = 4;
+  const across = columns - 2, down = rows - 2, line = 2 * (across + down), inner = coder.number(7), outer = coder.number(4);
+  if (inner > across * down || outer > line || inner + outer > most) fail("has no room for its vertices");
+  const corners = [0, columns - 1, (rows - 1) * columns, rows * columns - 1];
   // Top, right, bottom, left.
-  for (let k of border) {
-    if (k < across) place[n++] = k + 1;
-    else if ((k -= across) < down) place[n++] = (k + 2) * columns - 1;
-    else if ((k -= down) < across) place[n++] = (rows - 1) * columns + k + 1;
-    else place[n++] = (k - across + 1) * columns;
-  }
-  for (const k of inside) place[n++] = (floor(k / across) + 1) * columns + (k % across) + 1;
-  return place.sort();
+  const border = codePoints(coder, line, 1, outer).map((k) =>
+    k < across ? k + 1
+    : (k -= across) < down ? (k + 2) * columns - 1
+    : (k -= down) < across ? corners[2] + k + 1
+    : (k - across + 1) * columns);
+  const inside = codePoints(coder, across, down, inner).map((k) => (floor(k / across) + 1) * columns + (k % across) + 1);
+  return Uint32Array.from([...corners, ...border, ...inside]).sort();
 }
 
-// ---- A triangulation whose faces change in place
+// ---- Faces. Half-edge e = 3 f + i is the edge of face f opposite its corner i, from corner[after(e)] to
+// corner[ahead(e)], counter-clockwise on screen; twin[e] is the same edge of the face beyond it.
 
-/** Spreads the bits of a number below 2^18 to every second place. */
-function spread(n) {
-  const half = (x) => {
-    x = (x | (x << 8)) & 0x00ff00ff;
-    x = (x | (x << 4)) & 0x0f0f0f0f;
-    x = (x | (x << 2)) & 0x33333333;
-    return (x | (x << 1)) & 0x55555555;
-  };
-  return half(n >> 12) * 2 ** 24 + half(n & 4095);
-}
-
-class Triangulation {
-  /** x, y: quarter pixels of each vertex; order: the vertices as they are inserted */
-  constructor(x, y, order) {
-    const count = x.length;
-    this.x = x;
-    this.y = y;
-    this.size = 2;
-    this.corner = new Int32Array(6 * count); // counter-clockwise on screen
-    this.across = new Int32Array(6 * count).fill(NONE); // the face beyond the edge opposite each corner
-    this.known = new Uint8Array(2 * count);
-    this.faceOf = new Int32Array(count); // one of each vertex
-    // In raster order the first row and the last one end with corners.
-    let topRight = 0, bottomLeft = count - 1;
-    while (topRight + 1 < count && y[topRight + 1] === y[0]) ++topRight;
-    while (y[bottomLeft - 1] === y[count - 1]) --bottomLeft;
-    const corners = [0, bottomLeft, count - 1, topRight];
-    this.set(0, 0, bottomLeft, count - 1, NONE, 1, NONE);
-    this.set(1, 0, count - 1, topRight, NONE, NONE, 0);
-    this.faceOf[topRight] = 1;
-    let near = 0;
-    for (const v of order) if (!corners.includes(v)) near = this.insert(v, near);
-  }
-
-  set(f, a, b, c, acrossA, acrossB, acrossC) {
-    const { corner, across } = this, i = 3 * f;
-    corner[i] = a;
-    corner[i + 1] = b;
-    corner[i + 2] = c;
-    across[i] = acrossA;
-    across[i + 1] = acrossB;
-    across[i + 2] = acrossC;
-  }
-
-  /** Twice the area: positive if a, b, c run counter-clockwise on screen. */
-  area(a, b, c) {
-    const { x, y } = this;
-    return (y[b] - y[a]) * (x[c] - x[a]) - (x[b] - x[a]) * (y[c] - y[a]);
-  }
-
-  /** Whether d lies inside the circle through a, b, c. */
-  inCircle(a, b, c, d) {
-    const { x, y } = this;
-    const ax = x[a] - x[d], ay = y[a] - y[d], bx = x[b] - x[d], by = y[b] - y[d], cx = x[c] - x[d], cy = y[c] - y[d];
-    const aa = ax * ax + ay * ay, bb = bx * bx + by * by, cc = cx * cx + cy * cy;
-    const bc = bx * cy - by * cx, ca = cx * ay - cy * ax, ab = ax * by - ay * bx;
-    const sum = aa * bc + bb * ca + cc * ab;
-    // Sums below 2^53 are exact; larger ones are off by less than 2^-50 of their parts.
-    const size = aa * abs(bc) + bb * abs(ca) + cc * abs(ab);
-    if (size < 2 ** 53 || abs(sum) > size * 2 ** -50) return sum < 0;
-    const big = BigInt;
-    return big(aa) * big(bc) + big(bb) * big(ca) + big(cc) * big(ab) < 0n;
-  }
-
-  /** Which corner of f is v. */
-  cornerAt(f, v) {
-    const { corner } = this;
-    return corner[3 * f] === v ? 0 : corner[3 * f + 1] === v ? 1 : 2;
-  }
-  /** The face across the edge of f that is opposite its corner v. */
-  beyond(f, v) {
-    return this.across[3 * f + this.cornerAt(f, v)];
-  }
-  /** Which corner of f is opposite its edge to g. */
-  facing(f, g) {
-    const { across } = this;
-    return across[3 * f] === g ? 0 : across[3 * f + 1] === g ? 1 : 2;
-  }
-  /** Which corner of f is opposite its edge that starts at vertex a. */
-  opposite(f, a) {
-    return before(this.cornerAt(f, a));
-  }
-
-  /** The face on the left of the edge from a to b, or NONE beyond the border: sought in both directions in turn. */
-  faceAt(a, b) {
-    const { corner, across } = this;
-    for (let f = this.faceOf[a], g = f; f !== NONE || g !== NONE; ) {
-      if (f !== NONE) {
-        const i = this.cornerAt(f, a);
-        if (corner[3 * f + next(i)] === b) return f;
-        f = across[3 * f + next(i)];
-      }
-      if (g !== NONE) {
-        const i = this.cornerAt(g, a);
-        if (corner[3 * g + next(i)] === b) return g;
-        g = across[3 * g + before(i)];
-      }
-    }
-    return NONE;
-  }
-
-  /** Sets f as the face across the edge of g that runs from -> to as g sees it. */
-  setAcross(f, g, from, to) {
-    const { corner, across } = this;
-    if (g !== NONE)
-      for (let i = 0; i < 3; ++i)
-        if (corner[3 * g + next(i)] === from && corner[3 * g + before(i)] === to) across[3 * g + i] = f;
-  }
-
-  insert(v, near) {
-    const { corner, across, faceOf } = this;
-    // Walks towards the place.
-    let f = near, edge = 3;
-    for (let found = false; !found; ) {
-      found = true;
-      edge = 3;
-      for (let i = 0; i < 3; ++i) {
-        const side = this.area(corner[3 * f + next(i)], corner[3 * f + before(i)], v);
-        if (side === 0) edge = i;
-        if (side >= 0) continue;
-        f = across[3 * f + i];
-        found = false;
-        break;
-      }
-    }
-    const stack = [];
-    const settle = (g) => {
-      const a = corner[3 * g + 1], b = corner[3 * g + 2];
-      this.setAcross(g, across[3 * g], b, a);
-      faceOf[v] = faceOf[a] = faceOf[b] = g;
-      stack.push(g);
-    };
-    const first = edge === 3 ? 0 : edge;
-    const o = corner[3 * f + first], a = corner[3 * f + next(first)], b = corner[3 * f + before(first)];
-    const atAB = across[3 * f + first], atBO = across[3 * f + next(first)], atOA = across[3 * f + before(first)];
-    const g = this.size++;
-    if (edge === 3) {
-      const h = this.size++;
-      this.set(f, v, o, a, atOA, g, h);
-      this.set(g, v, a, b, atAB, h, f);
-      this.set(h, v, b, o, atBO, f, g);
-      settle(f);
-      settle(g);
-      settle(h);
-    } else {
-      // v divides the edge (a, b) of (o, a, b); beyond it is (q, b, a).
-      this.set(f, v, o, a, atOA, NONE, g);
-      this.set(g, v, b, o, atBO, f, NONE);
-      if (atAB !== NONE) {
-        const e = atAB, j = this.opposite(e, b), q = corner[3 * e + j];
-        const atQB = across[3 * e + before(j)], atAQ = across[3 * e + next(j)], h = this.size++;
-        this.set(e, v, q, b, atQB, g, h);
-        this.set(h, v, a, q, atAQ, e, f);
-        across[3 * f + 1] = h;
-        across[3 * g + 2] = e;
-        settle(e);
-        settle(h);
-      }
-      settle(f);
-      settle(g);
-    }
-    this.legalise(v, stack);
-    return faceOf[v];
-  }
-
-  /** Flips edges opposite the new vertex until none has a vertex inside its circle. */
-  legalise(v, stack) {
-    const { corner, across, faceOf } = this;
-    while (stack.length > 0) {
-      const f = stack.pop(), i = this.cornerAt(f, v), g = across[3 * f + i];
-      if (g === NONE) continue;
-      const a = corner[3 * f + next(i)], b = corner[3 * f + before(i)], j = this.opposite(g, b), q = corner[3 * g + j];
-      if (!this.inCircle(v, a, b, q)) continue;
-      const atVA = across[3 * f + before(i)], atBV = across[3 * f + next(i)];
-      const atQB = across[3 * g + before(j)], atAQ = across[3 * g + next(j)];
-      this.set(f, v, a, q, atAQ, g, atVA);
-      this.set(g, v, q, b, atQB, atBV, f);
-      this.setAcross(f, atAQ, q, a);
-      this.setAcross(g, atBV, v, b);
-      faceOf[v] = faceOf[a] = faceOf[q] = f;
-      faceOf[b] = g;
-      stack.push(f, g);
-    }
-  }
-
-  /** Triangulates what lies between an edge and a chain of vertices on its left, by Delaunay's rule. */
-  fill(chain, from, to, out) {
-    if (chain.length === 0) return;
-    let best = 0;
-    for (let k = 1; k < chain.length; ++k) if (this.inCircle(from, to, chain[best], chain[k])) best = k;
-    out.push(from, to, chain[best]);
-    this.fill(chain.slice(0, best), from, chain[best], out);
-    this.fill(chain.slice(best + 1), chain[best], to, out);
-  }
-
-  /** Makes (a, b, c) a known face in place of strip[0]; the strip leads from there to c, and is filled again. */
-  fixFace(a, b, c, strip) {
-    const { corner, across, faceOf } = this;
-    this.known[strip[0]] = 1;
-    if (strip.length === 1) {
-      faceOf[a] = faceOf[b] = faceOf[c] = strip[0];
-      return;
-    }
-    const sides = [], left = [], right = [];
-    strip.forEach((f, k) => {
-      for (let i = 0; i < 3; ++i) sides.push(corner[3 * f + next(i)], corner[3 * f + before(i)], across[3 * f + i]);
-      if (k + 1 === strip.length) return;
-      const dropped = corner[3 * f + this.facing(f, strip[k + 1])];
-      const apex = corner[3 * f + (k === 0 ? this.opposite(f, a) : this.facing(f, strip[k - 1]))];
-      (dropped === (left.length ? left[left.length - 1] : a) ? left : right).push(apex);
-    });
-    const filled = [a, b, c];
-    this.fill(left, a, c, filled);
-    this.fill(right.reverse(), c, b, filled);
-    strip.forEach((f, k) => {
-      const [p, q, r] = filled.slice(3 * k, 3 * k + 3);
-      this.set(f, p, q, r, NONE, NONE, NONE);
-      faceOf[p] = faceOf[q] = faceOf[r] = f;
-    });
-    strip.forEach((f) => {
-      for (let i = 0; i < 3; ++i) {
-        const from = corner[3 * f + next(i)], to = corner[3 * f + before(i)];
-        let g = NONE;
-        for (const e of strip)
-          for (let j = 0; j < 3; ++j)
-            if (g === NONE && corner[3 * e + next(j)] === to && corner[3 * e + before(j)] === from) g = e;
-        if (g === NONE) {
-          for (let j = 0; j < sides.length; j += 3) if (sides[j] === from && sides[j + 1] === to) g = sides[j + 2];
-          this.setAcross(f, g, to, from);
-        }
-        across[3 * f + i] = g;
-      }
-    });
-  }
-}
-
-// ---- Faces, found one by one from the border inwards
+const faceOf = (e) => floor(e / 3);
+const after = (e) => (e % 3 > 1 ? e - 2 : e + 1);
+const ahead = (e) => (e % 3 ? e - 1 : e + 2);
 
 const MAX_STEPS = 24, MAX_COTANGENT = 2 ** 20, CLASSES = 13;
 
 /** Classes of a cotangent in 1/256: octaves of its magnitude, 0 to 12. */
 function classOf(cotangent) {
-  const size = abs(cotangent), level = size < 32 ? 0 : min(6, bitWidth(size) - 5);
+  const level = clamp(bitWidth(abs(cotangent)) - 5, 0, 6);
   return cotangent < 0 ? 6 - level : 6 + level;
 }
 
-/** There is no way on. */
-const NO_STEP = { face: NONE };
+/** Decodes the faces of vertices at (x, y). Returns three corners of each. */
+function codeFaces({ model }, x, y, order) {
+  const count = x.length, corner = new Int32Array(6 * count), twin = new Int32Array(9 * count).fill(NONE);
+  let size = 2;
 
-class FaceCoder {
-  constructor(faces) {
-    this.faces = faces;
-    this.gates = [];
-    this.reached = new Uint8Array(faces.x.length);
-    this.stop = new BitModel([24 * CLASSES, 12 * (CLASSES + 1), CLASSES * (CLASSES + 1), 8 * CLASSES, 512]);
-    this.side = new BitModel([4 * CLASSES, 81, 2 * CLASSES, 256]);
-    for (let i = 0; i < 3 * faces.size; ++i) {
-      const f = 3 * floor(i / 3), k = i - f;
-      if (faces.across[i] === NONE) this.gates.push([faces.corner[f + next(k)], faces.corner[f + before(k)]]);
-    }
-  }
+  /** Twice the area: positive if a, b, c run counter-clockwise on screen. */
+  const area = (a, b, c) => (y[b] - y[a]) * (x[c] - x[a]) - (x[b] - x[a]) * (y[c] - y[a]);
+  /** Whether d lies inside the circle through a, b, c. */
+  const inCircle = (a, b, c, d) => {
+    const ax = x[a] - x[d], ay = y[a] - y[d], bx = x[b] - x[d], by = y[b] - y[d], cx = x[c] - x[d], cy = y[c] - y[d];
+    const aa = squared(ax, ay), bb = squared(bx, by), cc = squared(cx, cy);
+    const bc = bx * cy - by * cx, ca = cx * ay - cy * ax, ab = ax * by - ay * bx, sum = aa * bc + bb * ca + cc * ab;
+    // Sums below 2^53 are exact; larger ones are off by less than 2^-50 of their parts.
+    const size = aa * abs(bc) + bb * abs(ca) + cc * abs(ab), big = BigInt;
+    return (size < 2 ** 53 || abs(sum) > size * 2 ** -50 ? sum
+      : big(aa) * big(bc) + big(bb) * big(ca) + big(cc) * big(ab)) < 0;
+  };
+  const link = (e, t) => {
+    twin[e] = t;
+    if (t >= 0) twin[t] = e;
+  };
+  const setFace = (f, a, b, c) => {
+    corner[3 * f] = a;
+    corner[3 * f + 1] = b;
+    corner[3 * f + 2] = c;
+  };
 
-  code(coder) {
-    const { faces, gates, reached } = this;
-    while (gates.length > 0) {
-      const [a, b] = gates.pop(), first = faces.faceAt(a, b);
-      if (first === NONE || faces.known[first]) continue;
-      const { apex, strip } = this.walk(coder, a, b, first);
-      faces.fixFace(a, b, apex, strip);
-      gates.push([a, apex], [apex, b]);
-      reached[a] = reached[b] = reached[apex] = 1;
-    }
-  }
-
-  walk(coder, a, b, first) {
-    let step = this.reach(a, b, first, a, b, NONE, NONE), last = step, length = 1;
-    const strip = [first];
-    this.setGate(a, b, first);
-    for (let depth = 0; depth < MAX_STEPS; ++depth) {
-      if (step.mayStop) {
-        last = step;
-        length = strip.length;
+  // The Delaunay triangulation, vertex by vertex. In raster order the first row and the last one end with corners.
+  let right = 0, left = count - 1, near = 0;
+  while (y[right + 1] === y[0]) ++right;
+  while (y[left - 1] === y[count - 1]) --left;
+  setFace(0, 0, left, count - 1);
+  setFace(1, 0, count - 1, right);
+  link(1, 5);
+  for (const v of order) {
+    if (!v || v === left || v === right || v === count - 1) continue;
+    // Walks towards the place. edge: on which it lies
+    let f = near, edge = NONE;
+    for (let i = 0; i < 3; ++i) {
+      const e = 3 * f + i, side = area(corner[after(e)], corner[ahead(e)], v);
+      if (!side) edge = e;
+      if (side < 0) {
+        f = faceOf(twin[e]);
+        edge = i = NONE;
       }
-      const left = this.ahead(a, b, step, true), right = this.ahead(a, b, step, false);
-      const goLeft = left.face !== NONE, goRight = right.face !== NONE;
-      if (!goLeft && !goRight) break;
-      if (step.mayStop && this.stops(coder, a, b, depth, step, left, right)) break;
-      const toLeft = goLeft && goRight ? this.turnsLeft(coder, a, b, depth, step, left, right) : goLeft;
-      step = toLeft ? left : right;
-      strip.push(step.face);
     }
-    strip.length = length;
-    return { apex: last.apex, strip };
+    // The faces around it: of each the vertices after v, and what is beyond them.
+    const e = edge < 0 ? 3 * f : edge, o = corner[e], a = corner[after(e)], b = corner[ahead(e)], t = twin[e], g = size++;
+    const one = [f, o, a, twin[ahead(e)]], two = [g, b, o, twin[after(e)]];
+    let fan = [two, one], stack = [f, g], isRing = true;
+    if (edge < 0) {
+      two[0] = size++;
+      fan = [one, [g, a, b, t], two];
+      stack.push(two[0]);
+    } else if (t >= 0) {
+      const q = corner[t], h = size++;
+      stack = [faceOf(t), h, f, g];
+      fan = [one, [h, a, q, twin[after(t)]], [faceOf(t), q, b, twin[ahead(t)]], two];
+    } else isRing = false;
+    fan.forEach(([f, a, b, beyond], i) => {
+      setFace(f, v, a, b);
+      link(3 * f, beyond);
+      const next = fan[i + 1] ?? (isRing ? fan[0] : NONE);
+      link(3 * f + 1, next < 0 ? NONE : 3 * next[0] + 2);
+    });
+    if (!isRing) twin[3 * g + 2] = NONE;
+    near = stack[stack.length - 1];
+    // Flips edges opposite v until none has a vertex inside its circle.
+    while (stack.length) {
+      const f = stack.pop(), e = 3 * f, t = twin[e], g = faceOf(t);
+      if (t < 0) continue;
+      const a = corner[e + 1], b = corner[e + 2], q = corner[t], beyond = twin[after(t)], other = twin[ahead(t)];
+      if (!inCircle(v, a, b, q)) continue;
+      const last = twin[e + 1];
+      setFace(f, v, a, q);
+      setFace(g, v, q, b);
+      link(e, beyond);
+      link(3 * g, other);
+      link(3 * g + 1, last);
+      link(e + 1, 3 * g + 2);
+      stack.push(f, g);
+      near = f;
+    }
   }
 
-  cotangent(a, b, c) {
-    const { x, y } = this.faces;
+  // Gates are half-edges of known faces. What lies beyond the border counts as known.
+  const known = new Uint8Array(3 * count), reached = new Uint8Array(count), gates = [], outside = 3 * size;
+  for (let e = 0, t = outside; e < outside; ++e)
+    if (twin[e] < 0) {
+      known[faceOf(t)] = 1;
+      gates.push(t);
+      link(e, t++);
+    }
+  const stop = model([24 * CLASSES, 12 * (CLASSES + 1), CLASSES * (CLASSES + 1), 8 * CLASSES, 512]);
+  const turn = model([4 * CLASSES, 81, 2 * CLASSES, 256]);
+
+  const cotangent = (a, b, c) => {
     const dot = (x[a] - x[c]) * (x[b] - x[c]) + (y[a] - y[c]) * (y[b] - y[c]);
-    return clamp(Math.trunc((dot * 256) / this.faces.area(a, b, c)), -MAX_COTANGENT, MAX_COTANGENT);
-  }
+    return clamp(Math.trunc((dot * 256) / area(a, b, c)), -MAX_COTANGENT, MAX_COTANGENT);
+  };
 
-  /**
-   * A step into a face through the edge from left to right. An apex may be reached if it is lower than what was
-   * passed on either side: lowLeft as seen from a, lowRight as seen from b.
-   */
-  reach(a, b, face, left, right, lowLeft, lowRight) {
-    const { faces } = this, { corner } = faces;
-    let apex = corner[3 * face];
-    for (let i = 1; apex === left || apex === right; ++i) apex = corner[3 * face + i];
-    const inFront = faces.area(a, b, apex) > 0;
-    const goesLeft = lowLeft === NONE ? inFront : faces.area(a, apex, lowLeft) > 0;
-    const goesRight = lowRight === NONE ? inFront : faces.area(apex, b, lowRight) > 0;
-    const mayStop = goesLeft && goesRight, cotangent = mayStop ? this.cotangent(a, b, apex) : MAX_COTANGENT;
-    return { face, left, right, lowLeft, lowRight, apex, goesLeft, goesRight, mayStop, cotangent };
-  }
-
-  ahead(a, b, from, toLeft) {
-    if (!(toLeft ? from.goesLeft : from.goesRight)) return NO_STEP;
-    const { left, right, apex, lowLeft, lowRight } = from;
-    const face = this.faces.beyond(from.face, toLeft ? right : left);
-    if (face === NONE || this.faces.known[face]) return NO_STEP;
-    return toLeft
-      ? this.reach(a, b, face, left, apex, lowLeft, from.goesRight ? apex : lowRight)
-      : this.reach(a, b, face, apex, right, from.goesLeft ? apex : lowLeft, lowRight);
-  }
-
-  /** Keeps what contexts need of the gate: the vertex behind it, and its squared length. */
-  setGate(a, b, first) {
-    const { faces } = this, { x, y } = faces;
-    const face = faces.beyond(first, faces.corner[3 * first + faces.opposite(first, a)]);
-    this.behind = face === NONE ? NONE : faces.corner[3 * face + faces.opposite(face, b)];
-    this.edge = (x[a] - x[b]) ** 2 + (y[a] - y[b]) ** 2;
-  }
-
-  /** How far c is from completing a parallelogram, in octaves of its square over that of the edge. */
-  missOf(a, b, c) {
-    const { faces: { x, y }, behind: o } = this;
-    if (o === NONE) return 15;
-    const miss = (x[a] + x[b] - x[o] - x[c]) ** 2 + (y[a] + y[b] - y[o] - y[c]) ** 2;
-    return min(15, bitWidth(divide(miss * 64, this.edge)));
-  }
-
-  stops(coder, a, b, depth, step, left, right) {
-    const { faces, reached, behind } = this, { apex, cotangent } = step;
-    const isKnown = (v) => {
-      const g = faces.beyond(step.face, v);
-      return g === NONE || faces.known[g] === 1;
+  /** Makes (a, b, c) the first face of a strip of half-edges, and triangulates by Delaunay's rule what else it covers. */
+  const refill = (a, b, c, strip) => {
+    const faces = strip.map(faceOf), left = [], right = [], filled = [[a, b, c]], edges = [];
+    strip.slice(1).forEach((e, i) =>
+      (corner[twin[e]] === (left.length ? left[left.length - 1] : a) ? left : right).push(corner[strip[i]]));
+    const each = (use) => faces.forEach((f) => [0, 1, 2].forEach((i) => use(3 * f + i, corner[3 * f + after(i)], corner[3 * f + ahead(i)])));
+    const fill = (chain, from, to) => {
+      if (!chain.length) return;
+      let best = 0;
+      for (let k = 1; k < chain.length; ++k) if (inCircle(from, to, chain[best], chain[k])) best = k;
+      filled.push([from, to, chain[best]]);
+      fill(chain.slice(0, best), from, chain[best]);
+      fill(chain.slice(best + 1), chain[best], to);
     };
-    const known = (step.left === a && isKnown(step.right) ? 1 : 0) + (step.right === b && isKnown(step.left) ? 1 : 0);
-    const k = min(depth, 3), own = classOf(cotangent);
-    const of = (s) => (s.face === NONE ? MAX_COTANGENT : s.cotangent), after = min(of(left), of(right));
-    const gap = after === MAX_COTANGENT ? CLASSES : classOf(after - cotangent);
-    let flat = CLASSES, other = 15;
-    if (behind !== NONE) {
-      flat = classOf(cotangent + this.cotangent(b, a, behind));
-      if (after !== MAX_COTANGENT)
-        other = this.missOf(a, b, left.face !== NONE && after === left.cotangent ? left.apex : right.apex);
-    }
-    const thin = max(this.cotangent(b, apex, a), this.cotangent(apex, a, b));
-    at[0] = ((k * 3 + known) * 2 + reached[apex]) * CLASSES + own;
-    at[1] = (k * 3 + known) * (CLASSES + 1) + gap;
-    at[2] = own * (CLASSES + 1) + flat;
-    at[3] = (classOf(thin) * 4 + k) * 2 + reached[apex];
-    at[4] = (this.missOf(a, b, apex) * 16 + other) * 2 + (k > 0 ? 1 : 0);
-    return this.stop.code(coder);
-  }
+    fill(left, a, c);
+    fill(right.reverse(), c, b);
+    // Half-edges around the strip, then those within it, seek their twins.
+    each((e, from, to) => faces.includes(faceOf(twin[e])) || edges.push([to, from, twin[e]]));
+    faces.forEach((f, i) => setFace(f, ...filled[i]));
+    each((e, from, to) => edges.push([from, to, e]));
+    each((e, from, to) => link(e, edges.find((edge) => edge[0] === to && edge[1] === from)[2]));
+  };
 
-  turnsLeft(coder, a, b, depth, step, left, right) {
-    const turned = left.cotangent > right.cotangent, first = turned ? right : left, second = turned ? left : right;
-    const k = min(depth, 3);
-    const kind = (s) =>
-      (s.mayStop ? 1 + this.reached[s.apex] : 0) * 3 + (s.goesLeft ? (s.goesRight ? 2 : 1) : 0);
-    const lean = this.cotangent(b, step.apex, a) - this.cotangent(step.apex, a, b);
-    at[0] = k * CLASSES + classOf(second.cotangent - first.cotangent);
-    at[1] = kind(first) * 9 + kind(second);
-    at[2] = classOf(turned ? -lean : lean) * 2 + (k > 0 ? 1 : 0);
-    at[3] = this.missOf(a, b, first.apex) * 16 + this.missOf(a, b, second.apex);
-    return turned !== (this.side.code(coder) === 1);
+  while (gates.length) {
+    const gate = gates.pop(), start = twin[gate];
+    if (known[faceOf(start)]) continue;
+    const a = corner[after(start)], b = corner[ahead(start)], behind = gate < outside ? corner[gate] : NONE;
+
+    /** A step into a face through a half-edge. Apexes must be lower than those passed, seen from a and from b. */
+    const reach = (e, lowLeft, lowRight) => {
+      const apex = corner[e], inFront = area(a, b, apex) > 0;
+      const goesLeft = lowLeft < 0 ? inFront : area(a, apex, lowLeft) > 0;
+      const goesRight = lowRight < 0 ? inFront : area(apex, b, lowRight) > 0, mayStop = goesLeft && goesRight;
+      const angle = mayStop ? cotangent(a, b, apex) : MAX_COTANGENT;
+      const lows = [goesLeft ? apex : lowLeft, goesRight ? apex : lowRight, lowLeft, lowRight];
+      return { e, apex, goesLeft, goesRight, mayStop, angle, lows };
+    };
+    const onLeft = ({ e, goesLeft, lows }) => {
+      const t = twin[ahead(e)];
+      return goesLeft && !known[faceOf(t)] && reach(t, lows[2], lows[1]);
+    };
+    const onRight = ({ e, goesRight, lows }) => {
+      const t = twin[after(e)];
+      return goesRight && !known[faceOf(t)] && reach(t, lows[0], lows[3]);
+    };
+    /** How far c is from completing a parallelogram, in octaves of its square over that of the edge. */
+    const missOf = (c) =>
+      behind < 0 ? 15 : capped(bitWidth(divide(
+        64 * squared(x[a] + x[b] - x[behind] - x[c], y[a] + y[b] - y[behind] - y[c]), squared(x[a] - x[b], y[a] - y[b]))));
+
+    let step = reach(start, NONE, NONE), length = 1;
+    const strip = [start];
+    for (let depth = 0; depth < MAX_STEPS; ++depth) {
+      const { e, apex, mayStop, angle } = step, k = min(depth, 3), later = min(k, 1);
+      if (mayStop) length = strip.length;
+      const left = onLeft(step), right = onRight(step);
+      if (!left && !right) break;
+      const atA = cotangent(b, apex, a), atB = cotangent(apex, a, b);
+      if (mayStop) {
+        const sides = (corner[after(e)] === a && known[faceOf(twin[ahead(e)])]) + (corner[ahead(e)] === b && known[faceOf(twin[after(e)])]);
+        const angleOf = (s) => (s ? s.angle : MAX_COTANGENT), next = min(angleOf(left), angleOf(right));
+        const gap = next < MAX_COTANGENT ? classOf(next - angle) : CLASSES;
+        const other = next < MAX_COTANGENT ? missOf((next === left.angle ? left : right).apex) : 15;
+        const flat = behind < 0 ? CLASSES : classOf(angle + cotangent(b, a, behind)), own = classOf(angle), isReached = reached[apex];
+        if (stop(0, 0, ((k * 3 + sides) * 2 + isReached) * CLASSES + own, (k * 3 + sides) * (CLASSES + 1) + gap,
+          own * (CLASSES + 1) + flat, (classOf(max(atA, atB)) * 4 + k) * 2 + isReached, (missOf(apex) * 16 + other) * 2 + later))
+          break;
+      }
+      let goesLeft = left;
+      if (left && right) {
+        const turned = left.angle > right.angle, [first, second] = turned ? [right, left] : [left, right];
+        const kind = (s) => (s.mayStop ? 3 + 3 * reached[s.apex] : 0) + (s.goesLeft ? 1 + s.goesRight : 0);
+        goesLeft = turned !== !!turn(0, 0, k * CLASSES + classOf(second.angle - first.angle), kind(first) * 9 + kind(second),
+          classOf(turned ? atB - atA : atA - atB) * 2 + later, missOf(first.apex) * 16 + missOf(second.apex));
+      }
+      step = goesLeft ? left : right;
+      strip.push(step.e);
+    }
+
+    // The face from a and b to the last apex where the walk might stop takes the place of the strip's first one. What
+    // else the strip covers is triangulated by Delaunay's rule again.
+    strip.length = length;
+    const f = faceOf(start), c = corner[strip[length - 1]];
+    if (length > 1) refill(a, b, c, strip);
+    known[f] = reached[a] = reached[b] = reached[c] = 1;
+    // Its other two edges, from a to the apex and on to b.
+    for (const v of [b, a]) gates.push(3 * f + [0, 1, 2].find((i) => corner[3 * f + i] === v));
   }
+  return corner.subarray(0, 3 * size);
 }
 
 // ---- Colours, in 1/64 of a grey level
@@ -691,9 +456,8 @@ const log16 = (number) => log2(number) >> 4;
 
 /** 2^14 2^(-t / 1024). */
 function halfPower(t) {
-  if (t >= 14 * 1024) return 0;
   const i = (t >> 6) & 15, part = t & 63;
-  return ((POWER[i] * (64 - part) + POWER[i + 1] * part) >> 6) >> (t >> 10);
+  return t < 14336 ? ((POWER[i] * (64 - part) + POWER[i + 1] * part) >> 6) >> (t >> 10) : 0;
 }
 
 /** step * 2^(log / 16), times 2^(1/16) */
@@ -702,268 +466,185 @@ function halfDistance(step, log) {
   return max(floor(step * halfPower((15 - (l & 15)) * 64) * 2 ** ((l >> 4) - 18)), 1);
 }
 
-/** Sorts `order` stably by keys below `size`. */
-function sortBy(key, order, size) {
-  const first = new Uint32Array(size + 1), out = new Uint32Array(order.length);
-  for (const i of order) ++first[key[i] + 1];
+/** Sorts items stably by keys below `size`. */
+function sortBy(key, items, size) {
+  const first = new Uint32Array(size + 1), out = new Uint32Array(items.length);
+  for (const i of items) ++first[key[i] + 1];
   for (let k = 0; k < size; ++k) first[k + 1] += first[k];
-  for (const i of order) out[first[key[i]]++] = i;
+  for (const i of items) out[first[key[i]]++] = i;
   return out;
 }
 
-const MOST_NEIGHBORS = 12;
-
-/** What the colours are predicted from, and how finely they are coded, by the shape alone. */
-function planColors(faces, right, bottom) {
-  const { x, y, corner } = faces, count = x.length, edges = 3 * faces.size;
-  const later = new Uint32Array(edges), earlier = new Uint32Array(edges), area = new Float64Array(edges);
-  const star = new Float64Array(count);
-  for (let i = 0; i < edges; ++i) {
-    const f = 3 * floor(i / 3), a = corner[i], b = corner[f + next(i - f)];
-    area[i] = i === f ? faces.area(a, b, corner[f + 2]) : area[f];
-    later[i] = max(a, b);
-    earlier[i] = min(a, b);
-    star[a] += area[i];
-  }
-  // By the later vertex, then by the earlier one downwards.
-  const order = sortBy(later, sortBy(earlier, Uint32Array.from(later, (_, i) => i), count).reverse(), count);
-  const first = new Uint32Array(count + 1), neighbor = new Uint32Array(edges), weight = new Int32Array(edges);
-  let n = 0;
-  for (let v = 0, i = 0; v < count; ++v) {
-    first[v] = n;
-    while (i < edges && later[order[i]] === v) {
-      const u = earlier[order[i]];
-      let both = 0;
-      for (; i < edges && later[order[i]] === v && earlier[order[i]] === u; ++i) both += area[order[i]];
-      if (n - first[v] === MOST_NEIGHBORS) continue;
-      const squared = (x[v] - x[u]) ** 2 + (y[v] - y[u]) ** 2;
-      neighbor[n] = u;
-      weight[n++] = (18 * log2(squared + 16) + 51 * log2(both + 8) + 22 * log2(star[u] + 8)) >> 6;
-    }
-    let most = 0;
-    for (let k = first[v]; k < n; ++k) most = max(most, weight[k]);
-    for (let k = first[v]; k < n; ++k) weight[k] = max(halfPower(4 * (most - weight[k])) >> 2, 1);
-  }
-  first[count] = n;
-  const mean = divide(6 * right * bottom, count);
-  const fineness = Int32Array.from(star, (own) =>
-    floor(Math.sqrt(4096 * clamp(divide(4096 * mean, max(own, 1)), 455, 36864))));
-  return { first, neighbor, weight, fineness };
-}
-
 /**
- * By channel: how the distance over which a guess halves follows from the spread, the surprise, the number of
- * neighbours, the fineness and the levels of two channels before; the same around neighbours; the guess's weight and
- * the pull of neighbours.
+ * By channel: how the distance over which a guess halves follows from nothing, the spread, the surprise, the number of
+ * neighbours, the fineness and the levels of two channels before; how that around neighbours differs; the guess's
+ * weight; the pull of neighbours.
  */
 const SHAPES = [
   [20, 26, 41, -1072, 20, 0, 0, -4, 92, 223],
   [4, 118, 36, -1104, -74, 944, 0, -24, 146, 184],
   [-38, 38, 26, -496, -118, 816, 3776, 1, 303, 205],
 ];
-const LEAST_COLOR = -32768, MOST_COLOR = 32767, ESCAPE = 16, ODDS_BUCKETS = 24, LOG_BUCKETS = 16, NEAR_BUCKETS = 7;
+const ODDS_BUCKETS = 24, LOG_BUCKETS = 16, NEAR_BUCKETS = 7, MOST_NEIGHBORS = 12, ESCAPE = 16;
 
 const bucket = (value, first, width, count) => clamp(divide(value - first, width), 0, count - 1);
 const oddsBucket = (odds) => bucket(odds, -768, 64, ODDS_BUCKETS);
 const logBucket = (log) => bucket(log, -64, 10, LOG_BUCKETS);
 const oddsBetween = (yes, no) => clamp(((log2(yes + 1) - log2(no + 1)) * 177) >> 8, -1800, 1800);
+const inRange = (color) => clamp(color, -32768, 32767);
 
-class ColorDecoder {
-  constructor(plan, channels, steps) {
-    const count = plan.fineness.length * channels;
-    this.plan = plan;
-    this.channels = channels;
-    this.steps = steps;
-    this.color = new Int32Array(count);
-    this.calm = new Int32Array(count); // colours drawn towards what had been expected of them
-    this.surprise = new Int32Array(count); // how far they were from that
-    this.guessed = [0, 0, 0, 0];
-    this.level = [0, 0, 0, 0];
-    this.zero = new BitModel([4 * ODDS_BUCKETS, 16 * LOG_BUCKETS, 4 * LOG_BUCKETS * LOG_BUCKETS, 256, 4 * NEAR_BUCKETS], 4);
-    this.sign = new BitModel([4 * ODDS_BUCKETS, 4 * NEAR_BUCKETS, 36], 4);
-    this.size = new BitModel([16 * ODDS_BUCKETS, ESCAPE * LOG_BUCKETS, ESCAPE * LOG_BUCKETS], 3);
-    // The mixture: around which values, over which distances they halve, and what they weigh.
-    this.place = new Int32Array(MOST_NEIGHBORS + 1);
-    this.half = new Int32Array(MOST_NEIGHBORS + 1);
-    this.share = new Int32Array(MOST_NEIGHBORS + 1);
-  }
+/** Decodes the colours of vertices. steps: of each channel; mean: of the areas of stars. */
+function codeColors({ model, number }, x, y, corner, steps, mean) {
+  const count = x.length, channels = steps.length, edges = corner.length;
+  const later = new Uint32Array(edges), earlier = new Uint32Array(edges), area = new Float64Array(edges);
+  const star = new Float64Array(count), color = new Int32Array(count * channels), calm = color.slice(), surprise = color.slice();
+  corner.forEach((a, e) => {
+    const b = corner[after(e)], c = corner[ahead(e)];
+    area[e] = (y[b] - y[a]) * (x[c] - x[a]) - (x[b] - x[a]) * (y[c] - y[a]);
+    later[e] = max(a, b);
+    earlier[e] = min(a, b);
+    star[a] += area[e];
+  });
+  // Edges by their later vertex, then by the earlier one downwards.
+  const order = sortBy(later, sortBy(earlier, later.map((_, e) => e), count).reverse(), count);
+  const zero = model([4 * ODDS_BUCKETS, 16 * LOG_BUCKETS, 4 * LOG_BUCKETS * LOG_BUCKETS, 256, 4 * NEAR_BUCKETS], 4);
+  const negative = model([4 * ODDS_BUCKETS, 4 * NEAR_BUCKETS, 36], 4);
+  const larger = model([16 * ODDS_BUCKETS, ESCAPE * LOG_BUCKETS, ESCAPE * LOG_BUCKETS], 3);
 
-  /** The mean of some values around a vertex: of the sum of f(i) with the plan's weights. */
-  mean(vertex, channel, round, f) {
-    const { first, neighbor, weight } = this.plan;
-    let sum = 0, all = 0;
-    for (let k = first[vertex]; k < first[vertex + 1]; ++k) {
-      sum += weight[k] * f(neighbor[k] * this.channels + channel);
-      all += weight[k];
+  for (let v = 0, i = 0; v < count; ++v) {
+    // Neighbours that are known, and their weights.
+    const known = [], weights = [], guessed = [], levels = [0, 0, 0, 0];
+    while (later[order[i]] === v) {
+      const u = earlier[order[i]];
+      let both = 0;
+      for (; later[order[i]] === v && earlier[order[i]] === u; ++i) both += area[order[i]];
+      if (known.length < MOST_NEIGHBORS) {
+        known.push(u);
+        weights.push((18 * log2(squared(x[v] - x[u], y[v] - y[u]) + 16) + 51 * log2(both + 8) + 22 * log2(star[u] + 8)) >> 6);
+      }
     }
-    return round(sum, all);
-  }
+    const most = max(...weights);
+    let all = 0;
+    weights.forEach((w, k) => (all += weights[k] = max(halfPower(4 * (most - w)) >> 2, 1)));
+    const neighbors = known.length, fineness = floor(Math.sqrt(4096 * clamp(divide(4096 * mean, max(star[v], 1)), 455, 36864)));
+    const stepOf = (channel) => max((steps[channel] * fineness + 2048) >> 12, 1);
 
-  stepOf(vertex, channel) {
-    return max((this.steps[channel] * this.plan.fineness[vertex] + 2048) >> 12, 1);
-  }
+    for (let channel = 0; channel < channels; ++channel) {
+      /** The mean of something of neighbours by their places in the arrays. */
+      const average = (round, of) => {
+        let sum = 0;
+        for (let k = 0; k < neighbors; ++k) sum += weights[k] * of(known[k] * channels + channel);
+        return round(sum, all);
+      };
+      const at = v * channels + channel, step = stepOf(channel), half = (step + 1) >> 1;
+      let value = v ? color[at - channels] : channel ? (channel === 3 || channels === 2 ? 16320 : 0) : channels < 3 ? 8192 : 14208;
+      let around = 0, before = 8 * step, nearest = 0;
+      if (neighbors) {
+        value = average(rounded, (n) => calm[n]);
+        if (channels > 2 && (channel === 1 || channel === 2)) {
+          // Colour changes with lightness as it does among the neighbours, damped.
+          const guess = value, light = (n) => calm[n - channel] - guessed[0];
+          const both = average(divide, (n) => light(n) * (calm[n] - guess)), own = average(divide, (n) => light(n) ** 2);
+          const slope = clamp(rounded(256 * both, own + floor((3 * stepOf(0) ** 2) / 2) + 1), -1024, 1024);
+          value = inRange(value + ((slope * (color[at - channel] - guessed[0]) + 256) >> 9));
+        }
+        around = average(divide, (n) => abs(color[n] - value));
+        before = average(rounded, (n) => surprise[n]);
+        nearest = color[known[weights.indexOf(max(...weights))] * channels + channel] - value;
+      }
+      guessed[channel] = value;
+      const logOf = (distance) => log16(1 + (step >> 4) + distance) - log16(step), spread = logOf(around), surprised = logOf(before);
 
-  /** Colour changes with lightness as it does among the neighbours, damped. */
-  gainWithLight(vertex, channel, value) {
-    const { calm, guessed, channels } = this, light = (i) => calm[i - channel] - guessed[0];
-    const both = this.mean(vertex, channel, divide, (i) => light(i) * (calm[i] - value));
-    const own = this.mean(vertex, channel, divide, (i) => light(i) ** 2), step = this.stepOf(vertex, 0);
-    const variance = own + floor((3 * step * step) / 2) + 1;
-    const slope = clamp(rounded(256 * both, variance), -1024, 1024);
-    return (slope * (this.color[vertex * channels] - guessed[0]) + 256) >> 9;
-  }
+      // The mixture: around which values, over which distances they halve, and what they weigh.
+      const shape = SHAPES[min(channel, 2)], before0 = channel ? levels[0] : 0, before1 = channel > 1 ? levels[1] : 0;
+      const log = shape[0] + ((shape[1] * spread + shape[2] * surprised + shape[3] * min(neighbors, 5) +
+        shape[4] * (log16(fineness) - 192) + shape[5] * min(abs(before0), 3) + shape[6] * min(abs(before1), 3)) >> 8);
+      const own = max((all * shape[8]) >> 8, 1), total = (all + own) * 2 ** 14, far = halfDistance(step, log), near = halfDistance(step, log + shape[7]);
+      const places = known.map((u) => value + (((color[u * channels + channel] - value) * shape[9]) >> 8));
+      const part = (apart, half) => {
+        const out = halfPower(floor((1024 * abs(apart)) / half)) >> 1;
+        return apart < 0 ? out : (1 << 14) - out;
+      };
+      const below = (place) => {
+        let sum = own * part(place - value, far);
+        for (let k = 0; k < neighbors; ++k) sum += weights[k] * part(place - places[k], near);
+        return sum;
+      };
+      /** The weight of what lies farther from 0 than a level does, on its side. */
+      const beyond = (side, size) => {
+        const place = below(value + side * (size * step + half));
+        return side < 0 ? place : total - place;
+      };
 
-  /** The weight of the mixture below a value, times 2^14. */
-  below(value) {
-    const { place, half, share } = this;
-    let sum = 0;
-    for (let k = 0; k < this.parts; ++k) {
-      const apart = value - place[k], part = halfPower(floor((1024 * abs(apart)) / half[k])) >> 1;
-      sum += share[k] * (apart < 0 ? part : (1 << 14) - part);
+      const less = beyond(-1, 0), more = beyond(1, 0), spreadBucket = logBucket(spread), surpriseBucket = logBucket(surprised);
+      const eighths = divide(8 * nearest, step), off = abs(eighths), away = (off > 1) + (off > 5) + (off > 13);
+      const nearBucket = channel * NEAR_BUCKETS + (eighths < 0 ? 3 - away : 3 + away);
+      let bits = oddsBetween(less + more, total - less - more), level = 0;
+      if (zero(bits, channel, channel * ODDS_BUCKETS + oddsBucket(bits), (channel * LOG_BUCKETS + spreadBucket) * 4 + clamp(neighbors, 1, 4) - 1,
+        (channel * LOG_BUCKETS + surpriseBucket) * LOG_BUCKETS + spreadBucket,
+        ((channel * 4 + min(abs(before0), 3)) * 4 + min(abs(before1), 3)) * 4 + (surpriseBucket >> 2), nearBucket)) {
+        bits = oddsBetween(less, more);
+        const side = negative(bits, channel, channel * ODDS_BUCKETS + oddsBucket(bits), nearBucket,
+          (channel * 3 + sign(before0) + 1) * 3 + sign(before1) + 1) ? -1 : 1;
+        let size = 1, atLeast = side < 0 ? less : more;
+        for (; size < ESCAPE; ++size) {
+          const rest = beyond(side, size), few = min(size, 3);
+          bits = oddsBetween(rest, atLeast - rest);
+          if (!larger(bits, few - 1, (few * 4 + channel) * ODDS_BUCKETS + oddsBucket(bits), size * LOG_BUCKETS + spreadBucket,
+            size * LOG_BUCKETS + surpriseBucket))
+            break;
+          atLeast = rest;
+        }
+        if (size === ESCAPE) size += min(number(0), 2 ** 16);
+        level = side * size;
+      }
+      levels[channel] = level;
+      color[at] = inRange(value + step * level);
+      const miss = neighbors ? color[at] - value : 0;
+      calm[at] = color[at] - ((miss * (channel ? 4 : 3) + 8) >> 4);
+      surprise[at] = abs(miss);
     }
-    return sum;
   }
-
-  /** The weight of what lies farther from 0 than that level does. */
-  beyond(level) {
-    const half = (this.step + 1) >> 1, middle = this.value + level * this.step;
-    return level < 0 ? this.below(middle - half) : this.all - this.below(middle + half);
-  }
-
-  guess(vertex, channel) {
-    const { plan, channels, color, calm } = this, { first, neighbor, weight } = plan;
-    const from = first[vertex], to = first[vertex + 1], step = this.stepOf(vertex, channel);
-    let value, spread = 0, surprise = 8 * step;
-    this.step = step;
-    this.neighbors = to - from;
-    this.nearest = 0;
-    if (from === to) {
-      if (vertex > 0) value = color[(vertex - 1) * channels + channel];
-      else if (channel === 0) value = 64 * (channels < 3 ? 128 : 222);
-      else value = channels % 2 === 0 && channel === channels - 1 ? 64 * 255 : 0;
-    } else {
-      value = this.mean(vertex, channel, rounded, (i) => calm[i]);
-      if (channels >= 3 && (channel === 1 || channel === 2))
-        value = clamp(value + this.gainWithLight(vertex, channel, value), LEAST_COLOR, MOST_COLOR);
-      spread = this.mean(vertex, channel, divide, (i) => abs(color[i] - value));
-      surprise = this.mean(vertex, channel, rounded, (i) => this.surprise[i]);
-      let most = from;
-      for (let k = from + 1; k < to; ++k) if (weight[k] > weight[most]) most = k;
-      this.nearest = color[neighbor[most] * channels + channel] - value;
+  // From lightness and colour to red, green and blue.
+  if (channels > 2)
+    for (let i = 0; i < color.length; i += channels) {
+      const light = 9459 * color[i] + 8192, across = 11585 * color[i + 1], along = 6689 * color[i + 2];
+      color[i + 1] = (light - 13377 * color[i + 2]) >> 14;
+      color[i] = (light + across + along) >> 14;
+      color[i + 2] = (light - across + along) >> 14;
     }
-    this.value = this.guessed[channel] = value;
-    const base = 1 + (step >> 4), stepLog = log16(step);
-    this.spread = log16(base + spread) - stepLog;
-    this.surprised = log16(base + surprise) - stepLog;
-    this.setMixture(vertex, channel);
-  }
-
-  setMixture(vertex, channel) {
-    const { plan, color, channels, place, half, share, value } = this, { first, neighbor, weight } = plan;
-    const shape = SHAPES[min(channel, 2)];
-    let sum = shape[1] * this.spread + shape[2] * this.surprised + shape[3] * min(this.neighbors, 5) +
-      shape[4] * (log16(plan.fineness[vertex]) - 192);
-    for (let i = 0; i < min(channel, 2); ++i) sum += shape[5 + i] * min(abs(this.level[i]), 3);
-    const log = shape[0] + (sum >> 8), around = halfDistance(this.step, log + shape[7]);
-    let all = 0, n = 1;
-    for (let k = first[vertex]; k < first[vertex + 1]; ++k, ++n) {
-      all += share[n] = weight[k];
-      half[n] = around;
-      place[n] = value + (((color[neighbor[k] * channels + channel] - value) * shape[9]) >> 8);
-    }
-    place[0] = value;
-    half[0] = halfDistance(this.step, log);
-    share[0] = max((all * shape[8]) >> 8, 1);
-    this.parts = n;
-    this.all = (all + share[0]) * 2 ** 14;
-    this.less = this.below(value - ((this.step + 1) >> 1));
-    this.more = this.beyond(0);
-  }
-
-  nearBucket() {
-    const eighths = divide(8 * this.nearest, this.step), size = abs(eighths);
-    const away = size < 2 ? 0 : size < 6 ? 1 : size < 14 ? 2 : 3;
-    return eighths < 0 ? 3 - away : 3 + away;
-  }
-
-  codeLevel(coder, channel) {
-    const { less, more } = this, around = logBucket(this.spread), surprise = logBucket(this.surprised);
-    const one = channel > 0 ? this.level[0] : 0, two = channel > 1 ? this.level[1] : 0, near = this.nearBucket();
-    let odds = oddsBetween(less + more, this.all - less - more);
-    at[0] = channel * ODDS_BUCKETS + oddsBucket(odds);
-    at[1] = (channel * LOG_BUCKETS + around) * 4 + clamp(this.neighbors, 1, 4) - 1;
-    at[2] = (channel * LOG_BUCKETS + surprise) * LOG_BUCKETS + around;
-    at[3] = ((channel * 4 + min(abs(one), 3)) * 4 + min(abs(two), 3)) * 4 + (surprise >> 2);
-    at[4] = channel * NEAR_BUCKETS + near;
-    if (!this.zero.code(coder, odds, channel)) return 0;
-    odds = oddsBetween(less, more);
-    at[0] = channel * ODDS_BUCKETS + oddsBucket(odds);
-    at[1] = channel * NEAR_BUCKETS + near;
-    at[2] = (channel * 3 + Math.sign(one) + 1) * 3 + Math.sign(two) + 1;
-    const sign = this.sign.code(coder, odds, channel) ? -1 : 1;
-    let atLeast = sign < 0 ? less : more;
-    for (let size = 1; size < ESCAPE; ++size) {
-      const larger = this.beyond(sign * size), few = min(size, 3);
-      odds = oddsBetween(larger, atLeast - larger);
-      at[0] = (few * 4 + channel) * ODDS_BUCKETS + oddsBucket(odds);
-      at[1] = size * LOG_BUCKETS + around;
-      at[2] = size * LOG_BUCKETS + surprise;
-      if (!this.size.code(coder, odds, few - 1)) return sign * size;
-      atLeast = larger;
-    }
-    return sign * (ESCAPE + min(coder.number(0), 2 ** 16));
-  }
-
-  code(coder, vertex, channel) {
-    this.guess(vertex, channel);
-    const level = this.codeLevel(coder, channel), i = vertex * this.channels + channel;
-    const color = clamp(this.value + this.step * level, LEAST_COLOR, MOST_COLOR);
-    const off = this.neighbors === 0 ? 0 : color - this.value;
-    this.color[i] = color;
-    this.calm[i] = color - ((off * (channel === 0 ? 3 : 4) + 8) >> 4);
-    this.surprise[i] = abs(off);
-    this.level[channel] = level;
-  }
+  return color;
 }
 
-/** Takes channels of lightness and colour to red, green and blue. */
-function toRgb(color, channels) {
-  for (let i = 0; i < color.length; i += channels) {
-    const light = 9459 * color[i] + 8192, across = 11585 * color[i + 1], along = 6689 * color[i + 2];
-    color[i + 1] = (light - 13377 * color[i + 2]) >> 14;
-    color[i] = (light + across + along) >> 14;
-    color[i + 2] = (light - across + along) >> 14;
-  }
-}
-
-// ---- A stream
+// ---- A file
 
 function readMesh(bytes) {
-  const { width, height, channels, at: start } = readHeader(bytes);
-  const coder = new RangeDecoder(bytes, start);
+  const { width, height, channels, at } = readHeader(bytes), coder = rangeDecoder(bytes, at), steps = [];
   const step = min(coder.number(2), 4 * MAX_SIDE) + 1, right = 4 * max(width - 1, 1), bottom = 4 * max(height - 1, 1);
   const columns = floor((right + step - 1) / step) + 1, rows = floor((bottom + step - 1) / step) + 1;
-  if (columns * rows > MAX_PIXELS) fail(`has a grid of ${columns} x ${rows} points, more than ${MAX_PIXELS}`);
-  const steps = [];
-  for (let k = 0, base = 0; k < channels; ++k) {
-    const index = k === 0 ? (base = coder.bits(8)) : base - 8 + coder.bits(5);
-    if (index < 0 || index > 143) fail(`has a colour step of index ${index}, not 0 to 143`);
+  if (columns * rows > MAX_PIXELS) fail("has too fine a grid");
+  const first = coder.bits(8);
+  for (let k = 0; k < channels; ++k) {
+    const index = k ? first - 8 + coder.bits(5) : first;
+    if (index < 0 || index > 143) fail("has an unknown colour step");
     steps.push((16 + (index & 15)) << (index >> 4));
   }
   const points = codeAllPoints(coder, columns, rows, 8 * bytes.length);
-  coder.checkEnd();
+  coder.end();
   const x = Int32Array.from(points, (p) => min((p % columns) * step, right));
   const y = Int32Array.from(points, (p) => min(floor(p / columns) * step, bottom));
+  // Along a curve that fills the plane: bits of columns and rows in turn.
+  const spread = (n) => {
+    let out = 0;
+    for (let bit = 0; n >> bit; ++bit) out += ((n >> bit) & 1) * 4 ** bit;
+    return out;
+  };
   const curve = Float64Array.from(points, (p) => 2 * spread(floor(p / columns)) + spread(p % columns));
-  const faces = new Triangulation(x, y, Uint32Array.from(points, (_, v) => v).sort((v, w) => curve[v] - curve[w]));
-  new FaceCoder(faces).code(coder);
-  coder.checkEnd();
-  const colors = new ColorDecoder(planColors(faces, right, bottom), channels, steps);
-  for (let v = 0; v < points.length; ++v) for (let k = 0; k < channels; ++k) colors.code(coder, v, k);
-  coder.checkEnd();
-  if (coder.at < bytes.length) fail(`has ${bytes.length - coder.at} bytes after its end`);
-  if (channels > 2) toRgb(colors.color, channels);
-  return { width, height, channels, x, y, right, bottom, corner: faces.corner, faces: faces.size, color: colors.color };
+  const corner = codeFaces(coder, x, y, points.map((_, v) => v).sort((v, w) => curve[v] - curve[w]));
+  coder.end();
+  const color = codeColors(coder, x, y, corner, steps, divide(6 * right * bottom, points.length));
+  coder.end(true);
+  return { width, height, channels, x, y, right, bottom, corner, color };
 }
 
 // ---- Drawing: vertices lie on 1/16 of a pixel, colours of pixels are in 1/2^16 of a grey level
@@ -977,62 +658,54 @@ function placeOf(at, last, from, to) {
 }
 
 /** Draws RGBA. Each face is linear in its colours; a later one overwrites. */
-function draw(mesh, width, height) {
-  const { channels, color, corner } = mesh, data = new Uint8ClampedArray(4 * width * height);
-  const px = mesh.x.map((at) => placeOf(at, mesh.right, mesh.width, width));
-  const py = mesh.y.map((at) => placeOf(at, mesh.bottom, mesh.height, height));
-  const hasAlpha = channels % 2 === 0, source = channels < 3 ? [0, 0, 0, 1] : [0, 1, 2, 3];
-  // At one pixel the colour, and what it gains to the right and down; opaque without alpha.
+function draw({ channels, x, y, corner, color, ...mesh }, width, height) {
+  const data = new Uint8ClampedArray(4 * width * height);
+  const px = x.map((at) => placeOf(at, mesh.right, mesh.width, width)), py = y.map((at) => placeOf(at, mesh.bottom, mesh.height, height));
+  // Of each channel of a pixel: the colour at one place, and what it gains to the right and down. Opaque without alpha.
   const here = [0, 0, 0, 255 * 65536], right = [0, 0, 0, 0], down = [0, 0, 0, 0];
-  for (let f = 0; f < 3 * mesh.faces; f += 3) {
-    let a = corner[f], b = corner[f + 1], c = corner[f + 2];
-    let area = (px[b] - px[a]) * (py[c] - py[a]) - (py[b] - py[a]) * (px[c] - px[a]);
-    if (area === 0) continue;
-    if (area < 0) {
-      [b, c] = [c, b];
-      area = -area;
-    }
-    const ax = px[a], ay = py[a], ux = px[b] - ax, uy = py[b] - ay, vx = px[c] - ax, vy = py[c] - ay;
-    const top = max((min(ay, py[b], py[c]) + SUB - 1) >> 4, 0), bottom = min(max(ay, py[b], py[c]) >> 4, height - 1);
-    let placedX = NONE, placedY = 0;
-    for (let y = top; y <= bottom; ++y) {
+  for (let f = 0; f < corner.length; f += 3) {
+    const a = corner[f];
+    let b = corner[f + 1], c = corner[f + 2];
+    const cross = (ux, uy, vx, vy) => ux * vy - uy * vx;
+    if (cross(px[b] - px[a], py[b] - py[a], px[c] - px[a], py[c] - py[a]) < 0) [b, c] = [c, b];
+    const ax = px[a], ay = py[a], ux = px[b] - ax, uy = py[b] - ay, vx = px[c] - ax, vy = py[c] - ay, area = cross(ux, uy, vx, vy);
+    if (!area) continue;
+    const bottom = min(max(ay, py[b], py[c]) >> 4, height - 1);
+    let isPlaced = false, placedX = 0, placedY = 0;
+    for (let y = max((min(ay, py[b], py[c]) + SUB - 1) >> 4, 0); y <= bottom; ++y) {
       let from = 0, to = width - 1;
-      for (let i = 0; i < 3; ++i) {
-        const p = i === 0 ? a : i === 1 ? b : c, q = i === 0 ? b : i === 1 ? c : a, rise = py[q] - py[p];
-        const rest = (px[q] - px[p]) * (SUB * y - py[p]) + rise * px[p];
+      const narrow = (p, q) => {
+        const rise = py[q] - py[p], rest = (px[q] - px[p]) * (SUB * y - py[p]) + rise * px[p];
         if (rise < 0) from = max(from, -divide(rest, -SUB * rise));
-        else if (rise > 0) to = min(to, divide(rest, SUB * rise));
-      }
+        else if (rise) to = min(to, divide(rest, SUB * rise));
+      };
+      narrow(a, b);
+      narrow(b, c);
+      narrow(c, a);
       if (from > to) continue;
-      if (placedX === NONE) {
+      if (!isPlaced) {
+        isPlaced = true;
         placedX = from;
         placedY = y;
-        const wx = SUB * from - ax, wy = SUB * y - ay, weight1 = wx * vy - wy * vx, weight2 = ux * wy - uy * wx;
+        const wx = SUB * from - ax, wy = SUB * y - ay;
         const slope = (rise) => divide(SUB * TO_PIXEL * rise + floor(area / 2), area) | 0;
-        for (let k = hasAlpha ? 3 : 2; k >= 0; --k) {
-          const s = source[k], base = color[a * channels + s];
+        for (let k = 3 - (channels & 1); k >= 0; --k) {
+          const s = channels > 2 ? k : k >> 1 & k, base = color[a * channels + s];
           const d1 = color[b * channels + s] - base, d2 = color[c * channels + s] - base;
-          const above = weight1 * d1 + weight2 * d2, whole = divide(above, area);
+          const above = cross(wx, wy, vx, vy) * d1 + cross(ux, uy, wx, wy) * d2, whole = divide(above, area);
           here[k] = (base + whole) * TO_PIXEL + rounded(TO_PIXEL * (above - whole * area), area);
           right[k] = slope(d1 * vy - d2 * uy);
           down[k] = slope(d2 * ux - d1 * vx);
         }
       }
-      const stepsX = from - placedX, stepsY = y - placedY;
       const [dr, dg, db, da] = right;
-      let [red, green, blue, alpha] = here.map((value, k) => (value + right[k] * stepsX + down[k] * stepsY) | 0);
+      let [red, green, blue, alpha] = here.map((value, k) => (value + right[k] * (from - placedX) + down[k] * (y - placedY)) | 0);
       for (let i = 4 * (y * width + from), end = 4 * (y * width + to); i <= end; i += 4) {
         const opacity = clamp((alpha + 32768) >> 16, 0, 255);
-        if (opacity === 255) {
-          data[i] = (red + 32768) >> 16;
-          data[i + 1] = (green + 32768) >> 16;
-          data[i + 2] = (blue + 32768) >> 16;
-        } else {
-          const half = floor(alpha / 2), level = (value) => (opacity === 0 ? 0 : divide(255 * value + half, alpha));
-          data[i] = level(red);
-          data[i + 1] = level(green);
-          data[i + 2] = level(blue);
-        }
+        const level = (value) => (opacity > 254 ? (value + 32768) >> 16 : opacity && divide(255 * value + floor(alpha / 2), alpha));
+        data[i] = level(red);
+        data[i + 1] = level(green);
+        data[i + 2] = level(blue);
         data[i + 3] = opacity;
         red = (red + dr) | 0;
         green = (green + dg) | 0;
@@ -1068,22 +741,17 @@ export function info(bytes) {
  */
 export function decode(bytes, { width, height, scale = 1 } = {}) {
   const mesh = readMesh(bytesOf(bytes)), whole = (x) => max(1, Math.round(x));
-  if (width === undefined && height !== undefined) scale = height / mesh.height;
-  if (height === undefined && width !== undefined) scale = width / mesh.width;
+  if (width) scale = width / mesh.width;
+  else if (height) scale = height / mesh.height;
   width = whole(width ?? mesh.width * scale);
   height = whole(height ?? mesh.height * scale);
-  if (!(width <= MAX_SIDE && height <= MAX_SIDE && width * height <= MAX_PIXELS))
-    fail(`cannot be drawn at ${width} x ${height} pixels: at most ${MAX_SIDE} a side and ${MAX_PIXELS} in all`);
+  checkSize(width, height);
   // One column of a picture that has only one is drawn, and repeated.
-  const columns = mesh.width === 1 ? 1 : width, rows = mesh.height === 1 ? 1 : height;
-  let data = draw(mesh, columns, rows);
-  if (columns !== width || rows !== height) {
-    const pixels = new Uint32Array(data.buffer), all = new Uint32Array(width * height);
-    for (let y = 0, i = 0; y < height; ++y)
-      for (let x = 0; x < width; ++x) all[i++] = pixels[min(y, rows - 1) * columns + min(x, columns - 1)];
-    data = new Uint8ClampedArray(all.buffer);
-  }
-  return { width, height, channels: mesh.channels, data };
+  const columns = mesh.width < 2 ? 1 : width, rows = mesh.height < 2 ? 1 : height, data = draw(mesh, columns, rows);
+  if (columns * rows === width * height) return { width, height, channels: mesh.channels, data };
+  const pixels = new Uint32Array(data.buffer), all = new Uint32Array(width * height);
+  for (let i = 0; i < all.length; ++i) all[i] = pixels[min(floor(i / width), rows - 1) * columns + min(i % width, columns - 1)];
+  return { width, height, channels: mesh.channels, data: new Uint8ClampedArray(all.buffer) };
 }
 
 /**
