@@ -21,6 +21,8 @@ const clamp = (x, low, high) => max(low, min(x, high));
 // Exact for |a| < 2^52.
 const divide = (a, b) => floor(a / b);
 const rounded = (a, b) => divide(2 * a + b, 2 * b);
+/** The whole part of x 2^shift. */
+const scaled = (x, shift) => (shift < 0 ? floor(x / 2 ** -shift) : x << shift);
 const squared = (x, y) => x * x + y * y;
 /** How many bits a number below 2^53 takes. */
 const bitWidth = (x) => (x < 2 ** 32 ? 32 - clz32(x) : 64 - clz32(x / 2 ** 32));
@@ -68,6 +70,9 @@ const PROBABILITY = Int32Array.from({ length: 2 * MAX_ODDS + 1 }, (_, i) => {
 const ODDS = new Int16Array(4096);
 for (let p = 0, odds = -MAX_ODDS; p < 4096; ODDS[p++] = odds)
   while (odds < MAX_ODDS && PROBABILITY[odds + MAX_ODDS] < 16 * p + 8) ++odds;
+
+/** How fast a context learns that has seen so many bits, in 1/2^15. */
+const RATE = Int32Array.from({ length: 251 }, (_, seen) => 327680 / (10 * seen + 25));
 
 /** The contexts of a decision, and their log odds. */
 const context = new Int32Array(5), odds = new Int32Array(6);
@@ -138,7 +143,7 @@ function rangeDecoder(bytes, at) {
         const w = from + i, k = context[i];
         weight[w] = clamp(weight[w] + ((odds[i] * (target - mixed) + (1 << (slower - 1))) >> slower), -65536, 65536);
         if (i < inputs) {
-          probability[k] += ((target - probability[k]) * floor(327680 / (10 * seen[k] + 25))) >> 15;
+          probability[k] += ((target - probability[k]) * RATE[seen[k]]) >> 15;
           if (seen[k] < 250) ++seen[k];
         }
       }
@@ -157,7 +162,7 @@ const roomOf = (cell, level, points) => clamp(points - (cell << level), 0, 1 << 
 /** 128 log2, by its first bits. */
 function roughLog(n) {
   const whole = bitWidth(n) - 1;
-  return whole * 128 + floor(n * 2 ** (7 - whole)) - 128;
+  return whole * 128 + scaled(n, 7 - whole) - 128;
 }
 
 /** Decodes points of a grid. Returns row * columns + column of each, in raster order. */
@@ -204,8 +209,8 @@ function codePoints({ model }, columns, rows, count) {
         if (!here) continue;
         const j = ((y << down) + 2) * t + (x << (1 - down)) + 2, k = j + onHalf;
         const room = down ? roomOf(x, levelX, columns) : roomOf(y, levelY, rows);
-        const half = (cell) => room * (down ? roomOf(2 * y + cell, nextY, rows) : roomOf(2 * x + cell, nextX, columns));
-        next[j] = firstOf(here, i, j, k, half(0), half(1));
+        const cell = 2 * (down ? y : x), level = down ? nextY : nextX, points = down ? rows : columns;
+        next[j] = firstOf(here, i, j, k, room * roomOf(cell, level, points), room * roomOf(cell + 1, level, points));
         next[k] += here - next[j];
       }
     now = next;
@@ -373,32 +378,35 @@ function codeFaces({ model }, x, y, order) {
     each((e, from, to) => link(e, edges.find((edge) => edge[0] === to && edge[1] === from)[2]));
   };
 
+  let a, b, behind;
+  /** A step into a face through a half-edge. Apexes must be lower than those passed, seen from a and from b. */
+  const reach = (e, lowLeft, lowRight) => {
+    const apex = corner[e], inFront = area(a, b, apex) > 0;
+    const goesLeft = lowLeft < 0 ? inFront : area(a, apex, lowLeft) > 0;
+    const goesRight = lowRight < 0 ? inFront : area(apex, b, lowRight) > 0, mayStop = goesLeft && goesRight;
+    const angle = mayStop ? cotangent(a, b, apex) : MAX_COTANGENT;
+    const lows = [goesLeft ? apex : lowLeft, goesRight ? apex : lowRight, lowLeft, lowRight];
+    return { e, apex, goesLeft, goesRight, mayStop, angle, lows };
+  };
+  const onLeft = ({ e, goesLeft, lows }) => {
+    const t = twin[ahead(e)];
+    return goesLeft && !known[faceOf(t)] && reach(t, lows[2], lows[1]);
+  };
+  const onRight = ({ e, goesRight, lows }) => {
+    const t = twin[after(e)];
+    return goesRight && !known[faceOf(t)] && reach(t, lows[0], lows[3]);
+  };
+  /** How far c is from completing a parallelogram, in octaves of its square over that of the edge. */
+  const missOf = (c) =>
+    behind < 0 ? 15 : capped(bitWidth(divide(
+      64 * squared(x[a] + x[b] - x[behind] - x[c], y[a] + y[b] - y[behind] - y[c]), squared(x[a] - x[b], y[a] - y[b]))));
+
   while (gates.length) {
     const gate = gates.pop(), start = twin[gate];
     if (known[faceOf(start)]) continue;
-    const a = corner[after(start)], b = corner[ahead(start)], behind = gate < outside ? corner[gate] : NONE;
-
-    /** A step into a face through a half-edge. Apexes must be lower than those passed, seen from a and from b. */
-    const reach = (e, lowLeft, lowRight) => {
-      const apex = corner[e], inFront = area(a, b, apex) > 0;
-      const goesLeft = lowLeft < 0 ? inFront : area(a, apex, lowLeft) > 0;
-      const goesRight = lowRight < 0 ? inFront : area(apex, b, lowRight) > 0, mayStop = goesLeft && goesRight;
-      const angle = mayStop ? cotangent(a, b, apex) : MAX_COTANGENT;
-      const lows = [goesLeft ? apex : lowLeft, goesRight ? apex : lowRight, lowLeft, lowRight];
-      return { e, apex, goesLeft, goesRight, mayStop, angle, lows };
-    };
-    const onLeft = ({ e, goesLeft, lows }) => {
-      const t = twin[ahead(e)];
-      return goesLeft && !known[faceOf(t)] && reach(t, lows[2], lows[1]);
-    };
-    const onRight = ({ e, goesRight, lows }) => {
-      const t = twin[after(e)];
-      return goesRight && !known[faceOf(t)] && reach(t, lows[0], lows[3]);
-    };
-    /** How far c is from completing a parallelogram, in octaves of its square over that of the edge. */
-    const missOf = (c) =>
-      behind < 0 ? 15 : capped(bitWidth(divide(
-        64 * squared(x[a] + x[b] - x[behind] - x[c], y[a] + y[b] - y[behind] - y[c]), squared(x[a] - x[b], y[a] - y[b]))));
+    a = corner[after(start)];
+    b = corner[ahead(start)];
+    behind = gate < outside ? corner[gate] : NONE;
 
     let step = reach(start, NONE, NONE), length = 1;
     const strip = [start];
@@ -449,7 +457,7 @@ const POWER = [16384, 15689, 15024, 14387, 13777, 13193, 12634, 12098, 11585, 11
 
 /** 256 log2 of a number from 1 to 2^53. */
 function log2(number) {
-  const whole = bitWidth(number) - 1, twelve = floor(number * 2 ** (12 - whole)), i = (twelve >> 8) & 15, part = twelve & 255;
+  const whole = bitWidth(number) - 1, twelve = scaled(number, 12 - whole), i = (twelve >> 8) & 15, part = twelve & 255;
   return 256 * whole + ((LOG[i] * (256 - part) + LOG[i + 1] * part + 128) >> 8);
 }
 const log16 = (number) => log2(number) >> 4;
@@ -463,7 +471,7 @@ function halfPower(t) {
 /** step * 2^(log / 16), times 2^(1/16) */
 function halfDistance(step, log) {
   const l = clamp(log, -80, 144) + 80;
-  return max(floor(step * halfPower((15 - (l & 15)) * 64) * 2 ** ((l >> 4) - 18)), 1);
+  return max(floor((step * halfPower((15 - (l & 15)) * 64) * (1 << (l >> 4))) / 2 ** 18), 1);
 }
 
 /** Sorts items stably by keys below `size`. */
@@ -485,11 +493,10 @@ const SHAPES = [
   [4, 118, 36, -1104, -74, 944, 0, -24, 146, 184],
   [-38, 38, 26, -496, -118, 816, 3776, 1, 303, 205],
 ];
-const ODDS_BUCKETS = 24, LOG_BUCKETS = 16, NEAR_BUCKETS = 7, MOST_NEIGHBORS = 12, ESCAPE = 16;
 
 const bucket = (value, first, width, count) => clamp(divide(value - first, width), 0, count - 1);
-const oddsBucket = (odds) => bucket(odds, -768, 64, ODDS_BUCKETS);
-const logBucket = (log) => bucket(log, -64, 10, LOG_BUCKETS);
+const oddsBucket = (odds) => bucket(odds, -768, 64, 24);
+const logBucket = (log) => bucket(log, -64, 10, 16);
 const oddsBetween = (yes, no) => clamp(((log2(yes + 1) - log2(no + 1)) * 177) >> 8, -1800, 1800);
 const inRange = (color) => clamp(color, -32768, 32767);
 
@@ -507,100 +514,101 @@ function codeColors({ model, number }, x, y, corner, steps, mean) {
   });
   // Edges by their later vertex, then by the earlier one downwards.
   const order = sortBy(later, sortBy(earlier, later.map((_, e) => e), count).reverse(), count);
-  const zero = model([4 * ODDS_BUCKETS, 16 * LOG_BUCKETS, 4 * LOG_BUCKETS * LOG_BUCKETS, 256, 4 * NEAR_BUCKETS], 4);
-  const negative = model([4 * ODDS_BUCKETS, 4 * NEAR_BUCKETS, 36], 4);
-  const larger = model([16 * ODDS_BUCKETS, ESCAPE * LOG_BUCKETS, ESCAPE * LOG_BUCKETS], 3);
+  const zero = model([96, 256, 1024, 256, 28], 4), negative = model([96, 28, 36], 4), larger = model([384, 256, 256], 3);
+
+  // Of a vertex: its neighbours that are known, their weights and the sum of those, and what goes on in one channel.
+  let neighbors, weights, all, fineness, channel, at, step, value, places, far, near, own;
+  const stepOf = (channel) => max((steps[channel] * fineness + 2048) >> 12, 1);
+  /** The mean of something of neighbours, by their places in the arrays. */
+  const average = (round, of) => {
+    let sum = 0;
+    for (let k = 0; k < neighbors.length; ++k) sum += weights[k] * of(neighbors[k] * channels + channel);
+    return round(sum, all);
+  };
+  const part = (apart, half) => {
+    const out = halfPower(divide(1024 * abs(apart), half)) >> 1;
+    return apart < 0 ? out : EVEN - out;
+  };
+  /** The mixture's weight of what lies farther from 0 than a level does, on its side. */
+  const beyond = (side, size) => {
+    const place = value + side * (size * step + ((step + 1) >> 1));
+    let sum = own * part(place - value, far);
+    for (let k = 0; k < places.length; ++k) sum += weights[k] * part(place - places[k], near);
+    return side < 0 ? sum : (all + own) * EVEN - sum;
+  };
+  const logOf = (distance) => log16(1 + (step >> 4) + distance) - log16(step);
 
   for (let v = 0, i = 0; v < count; ++v) {
-    // Neighbours that are known, and their weights.
-    const known = [], weights = [], guessed = [], levels = [0, 0, 0, 0];
+    const guessed = [], levels = [0, 0, 0, 0];
+    neighbors = [];
+    weights = [];
+    all = 0;
     while (later[order[i]] === v) {
       const u = earlier[order[i]];
       let both = 0;
       for (; later[order[i]] === v && earlier[order[i]] === u; ++i) both += area[order[i]];
-      if (known.length < MOST_NEIGHBORS) {
-        known.push(u);
+      if (neighbors.length < 12) {
+        neighbors.push(u);
         weights.push((18 * log2(squared(x[v] - x[u], y[v] - y[u]) + 16) + 51 * log2(both + 8) + 22 * log2(star[u] + 8)) >> 6);
       }
     }
-    const most = max(...weights);
-    let all = 0;
-    weights.forEach((w, k) => (all += weights[k] = max(halfPower(4 * (most - w)) >> 2, 1)));
-    const neighbors = known.length, fineness = floor(Math.sqrt(4096 * clamp(divide(4096 * mean, max(star[v], 1)), 455, 36864)));
-    const stepOf = (channel) => max((steps[channel] * fineness + 2048) >> 12, 1);
+    const most = max(...weights), nearest = neighbors[weights.indexOf(most)], known = neighbors.length;
+    weights = weights.map((w) => max(halfPower(4 * (most - w)) >> 2, 1));
+    for (const w of weights) all += w;
+    fineness = floor(Math.sqrt(4096 * clamp(divide(4096 * mean, max(star[v], 1)), 455, 36864)));
 
-    for (let channel = 0; channel < channels; ++channel) {
-      /** The mean of something of neighbours by their places in the arrays. */
-      const average = (round, of) => {
-        let sum = 0;
-        for (let k = 0; k < neighbors; ++k) sum += weights[k] * of(known[k] * channels + channel);
-        return round(sum, all);
-      };
-      const at = v * channels + channel, step = stepOf(channel), half = (step + 1) >> 1;
-      let value = v ? color[at - channels] : channel ? (channel === 3 || channels === 2 ? 16320 : 0) : channels < 3 ? 8192 : 14208;
-      let around = 0, before = 8 * step, nearest = 0;
-      if (neighbors) {
+    for (channel = 0; channel < channels; ++channel) {
+      at = v * channels + channel;
+      step = stepOf(channel);
+      value = v ? color[at - channels] : channel ? (channel > 2 || channels < 3 ? 16320 : 0) : channels < 3 ? 8192 : 14208;
+      let spread = 0, surprised = 8 * step, off = 0;
+      if (known) {
         value = average(rounded, (n) => calm[n]);
         if (channels > 2 && (channel === 1 || channel === 2)) {
           // Colour changes with lightness as it does among the neighbours, damped.
-          const guess = value, light = (n) => calm[n - channel] - guessed[0];
-          const both = average(divide, (n) => light(n) * (calm[n] - guess)), own = average(divide, (n) => light(n) ** 2);
-          const slope = clamp(rounded(256 * both, own + floor((3 * stepOf(0) ** 2) / 2) + 1), -1024, 1024);
-          value = inRange(value + ((slope * (color[at - channel] - guessed[0]) + 256) >> 9));
+          const light = (n) => calm[n - channel] - guessed[0], both = average(divide, (n) => light(n) * (calm[n] - value));
+          const variance = average(divide, (n) => light(n) ** 2) + floor((3 * stepOf(0) ** 2) / 2) + 1;
+          value = inRange(value +
+            ((clamp(rounded(256 * both, variance), -1024, 1024) * (color[at - channel] - guessed[0]) + 256) >> 9));
         }
-        around = average(divide, (n) => abs(color[n] - value));
-        before = average(rounded, (n) => surprise[n]);
-        nearest = color[known[weights.indexOf(max(...weights))] * channels + channel] - value;
+        spread = average(divide, (n) => abs(color[n] - value));
+        surprised = average(rounded, (n) => surprise[n]);
+        off = divide(8 * (color[nearest * channels + channel] - value), step);
       }
       guessed[channel] = value;
-      const logOf = (distance) => log16(1 + (step >> 4) + distance) - log16(step), spread = logOf(around), surprised = logOf(before);
+      spread = logOf(spread);
+      surprised = logOf(surprised);
 
       // The mixture: around which values, over which distances they halve, and what they weigh.
-      const shape = SHAPES[min(channel, 2)], before0 = channel ? levels[0] : 0, before1 = channel > 1 ? levels[1] : 0;
-      const log = shape[0] + ((shape[1] * spread + shape[2] * surprised + shape[3] * min(neighbors, 5) +
-        shape[4] * (log16(fineness) - 192) + shape[5] * min(abs(before0), 3) + shape[6] * min(abs(before1), 3)) >> 8);
-      const own = max((all * shape[8]) >> 8, 1), total = (all + own) * 2 ** 14, far = halfDistance(step, log), near = halfDistance(step, log + shape[7]);
-      const places = known.map((u) => value + (((color[u * channels + channel] - value) * shape[9]) >> 8));
-      const part = (apart, half) => {
-        const out = halfPower(floor((1024 * abs(apart)) / half)) >> 1;
-        return apart < 0 ? out : (1 << 14) - out;
-      };
-      const below = (place) => {
-        let sum = own * part(place - value, far);
-        for (let k = 0; k < neighbors; ++k) sum += weights[k] * part(place - places[k], near);
-        return sum;
-      };
-      /** The weight of what lies farther from 0 than a level does, on its side. */
-      const beyond = (side, size) => {
-        const place = below(value + side * (size * step + half));
-        return side < 0 ? place : total - place;
-      };
+      const shape = SHAPES[min(channel, 2)], one = channel ? levels[0] : 0, two = channel > 1 ? levels[1] : 0;
+      const size1 = min(abs(one), 3), size2 = min(abs(two), 3), log = shape[0] + ((shape[1] * spread + shape[2] * surprised +
+        shape[3] * min(known, 5) + shape[4] * (log16(fineness) - 192) + shape[5] * size1 + shape[6] * size2) >> 8);
+      own = max((all * shape[8]) >> 8, 1);
+      far = halfDistance(step, log);
+      near = halfDistance(step, log + shape[7]);
+      places = neighbors.map((u) => value + (((color[u * channels + channel] - value) * shape[9]) >> 8));
 
-      const less = beyond(-1, 0), more = beyond(1, 0), spreadBucket = logBucket(spread), surpriseBucket = logBucket(surprised);
-      const eighths = divide(8 * nearest, step), off = abs(eighths), away = (off > 1) + (off > 5) + (off > 13);
-      const nearBucket = channel * NEAR_BUCKETS + (eighths < 0 ? 3 - away : 3 + away);
-      let bits = oddsBetween(less + more, total - less - more), level = 0;
-      if (zero(bits, channel, channel * ODDS_BUCKETS + oddsBucket(bits), (channel * LOG_BUCKETS + spreadBucket) * 4 + clamp(neighbors, 1, 4) - 1,
-        (channel * LOG_BUCKETS + surpriseBucket) * LOG_BUCKETS + spreadBucket,
-        ((channel * 4 + min(abs(before0), 3)) * 4 + min(abs(before1), 3)) * 4 + (surpriseBucket >> 2), nearBucket)) {
+      const less = beyond(-1, 0), more = beyond(1, 0), away = (abs(off) > 1) + (abs(off) > 5) + (abs(off) > 13);
+      const nearBucket = channel * 7 + 3 + (off < 0 ? -away : away);
+      spread = logBucket(spread);
+      surprised = logBucket(surprised);
+      let bits = oddsBetween(less + more, (all + own) * EVEN - less - more), level = 0;
+      if (zero(bits, channel, channel * 24 + oddsBucket(bits), (channel * 16 + spread) * 4 + clamp(known, 1, 4) - 1,
+        (channel * 16 + surprised) * 16 + spread, ((channel * 4 + size1) * 4 + size2) * 4 + (surprised >> 2), nearBucket)) {
         bits = oddsBetween(less, more);
-        const side = negative(bits, channel, channel * ODDS_BUCKETS + oddsBucket(bits), nearBucket,
-          (channel * 3 + sign(before0) + 1) * 3 + sign(before1) + 1) ? -1 : 1;
-        let size = 1, atLeast = side < 0 ? less : more;
-        for (; size < ESCAPE; ++size) {
-          const rest = beyond(side, size), few = min(size, 3);
+        const side = negative(bits, channel, channel * 24 + oddsBucket(bits), nearBucket, (channel * 3 + sign(one) + 1) * 3 + sign(two) + 1) ? -1 : 1;
+        let atLeast = side < 0 ? less : more;
+        for (level = 1; level < 16; ++level) {
+          const rest = beyond(side, level), few = min(level, 3);
           bits = oddsBetween(rest, atLeast - rest);
-          if (!larger(bits, few - 1, (few * 4 + channel) * ODDS_BUCKETS + oddsBucket(bits), size * LOG_BUCKETS + spreadBucket,
-            size * LOG_BUCKETS + surpriseBucket))
-            break;
+          if (!larger(bits, few - 1, (few * 4 + channel) * 24 + oddsBucket(bits), level * 16 + spread, level * 16 + surprised)) break;
           atLeast = rest;
         }
-        if (size === ESCAPE) size += min(number(0), 2 ** 16);
-        level = side * size;
+        level = side * (level < 16 ? level : level + min(number(0), 2 ** 16));
       }
       levels[channel] = level;
       color[at] = inRange(value + step * level);
-      const miss = neighbors ? color[at] - value : 0;
+      const miss = known ? color[at] - value : 0;
       calm[at] = color[at] - ((miss * (channel ? 4 : 3) + 8) >> 4);
       surprise[at] = abs(miss);
     }
@@ -634,11 +642,7 @@ function readMesh(bytes) {
   const x = Int32Array.from(points, (p) => min((p % columns) * step, right));
   const y = Int32Array.from(points, (p) => min(floor(p / columns) * step, bottom));
   // Along a curve that fills the plane: bits of columns and rows in turn.
-  const spread = (n) => {
-    let out = 0;
-    for (let bit = 0; n >> bit; ++bit) out += ((n >> bit) & 1) * 4 ** bit;
-    return out;
-  };
+  const spread = (n) => (n ? 4 * spread(n >> 1) + (n & 1) : 0);
   const curve = Float64Array.from(points, (p) => 2 * spread(floor(p / columns)) + spread(p % columns));
   const corner = codeFaces(coder, x, y, points.map((_, v) => v).sort((v, w) => curve[v] - curve[w]));
   coder.end();
@@ -663,34 +667,33 @@ function draw({ channels, x, y, corner, color, ...mesh }, width, height) {
   const px = x.map((at) => placeOf(at, mesh.right, mesh.width, width)), py = y.map((at) => placeOf(at, mesh.bottom, mesh.height, height));
   // Of each channel of a pixel: the colour at one place, and what it gains to the right and down. Opaque without alpha.
   const here = [0, 0, 0, 255 * 65536], right = [0, 0, 0, 0], down = [0, 0, 0, 0];
+  const cross = (ux, uy, vx, vy) => ux * vy - uy * vx;
+  let row, from, to, area;
+  const narrow = (p, q) => {
+    const rise = py[q] - py[p], rest = (px[q] - px[p]) * (SUB * row - py[p]) + rise * px[p];
+    if (rise < 0) from = max(from, -divide(rest, -SUB * rise));
+    else if (rise) to = min(to, divide(rest, SUB * rise));
+  };
+  const slope = (rise) => divide(SUB * TO_PIXEL * rise + floor(area / 2), area) | 0;
   for (let f = 0; f < corner.length; f += 3) {
-    const a = corner[f];
-    let b = corner[f + 1], c = corner[f + 2];
-    const cross = (ux, uy, vx, vy) => ux * vy - uy * vx;
-    if (cross(px[b] - px[a], py[b] - py[a], px[c] - px[a], py[c] - py[a]) < 0) [b, c] = [c, b];
-    const ax = px[a], ay = py[a], ux = px[b] - ax, uy = py[b] - ay, vx = px[c] - ax, vy = py[c] - ay, area = cross(ux, uy, vx, vy);
-    if (!area) continue;
-    const bottom = min(max(ay, py[b], py[c]) >> 4, height - 1);
-    let isPlaced = false, placedX = 0, placedY = 0;
-    for (let y = max((min(ay, py[b], py[c]) + SUB - 1) >> 4, 0); y <= bottom; ++y) {
-      let from = 0, to = width - 1;
-      const narrow = (p, q) => {
-        const rise = py[q] - py[p], rest = (px[q] - px[p]) * (SUB * y - py[p]) + rise * px[p];
-        if (rise < 0) from = max(from, -divide(rest, -SUB * rise));
-        else if (rise) to = min(to, divide(rest, SUB * rise));
-      };
+    const a = corner[f], ax = px[a], ay = py[a];
+    let b = corner[f + 1], c = corner[f + 2], placedX = NONE, placedY = 0;
+    if (cross(px[b] - ax, py[b] - ay, px[c] - ax, py[c] - ay) < 0) [b, c] = [c, b];
+    const ux = px[b] - ax, uy = py[b] - ay, vx = px[c] - ax, vy = py[c] - ay, bottom = min(max(ay, py[b], py[c]) >> 4, height - 1);
+    area = cross(ux, uy, vx, vy);
+    for (row = max((min(ay, py[b], py[c]) + SUB - 1) >> 4, 0); area && row <= bottom; ++row) {
+      from = 0;
+      to = width - 1;
       narrow(a, b);
       narrow(b, c);
       narrow(c, a);
       if (from > to) continue;
-      if (!isPlaced) {
-        isPlaced = true;
+      if (placedX < 0) {
         placedX = from;
-        placedY = y;
-        const wx = SUB * from - ax, wy = SUB * y - ay;
-        const slope = (rise) => divide(SUB * TO_PIXEL * rise + floor(area / 2), area) | 0;
+        placedY = row;
+        const wx = SUB * from - ax, wy = SUB * row - ay;
         for (let k = 3 - (channels & 1); k >= 0; --k) {
-          const s = channels > 2 ? k : k >> 1 & k, base = color[a * channels + s];
+          const s = channels > 2 ? k : k === 3 ? 1 : 0, base = color[a * channels + s];
           const d1 = color[b * channels + s] - base, d2 = color[c * channels + s] - base;
           const above = cross(wx, wy, vx, vy) * d1 + cross(ux, uy, wx, wy) * d2, whole = divide(above, area);
           here[k] = (base + whole) * TO_PIXEL + rounded(TO_PIXEL * (above - whole * area), area);
@@ -698,19 +701,16 @@ function draw({ channels, x, y, corner, color, ...mesh }, width, height) {
           down[k] = slope(d2 * ux - d1 * vx);
         }
       }
-      const [dr, dg, db, da] = right;
-      let [red, green, blue, alpha] = here.map((value, k) => (value + right[k] * (from - placedX) + down[k] * (y - placedY)) | 0);
-      for (let i = 4 * (y * width + from), end = 4 * (y * width + to); i <= end; i += 4) {
-        const opacity = clamp((alpha + 32768) >> 16, 0, 255);
-        const level = (value) => (opacity > 254 ? (value + 32768) >> 16 : opacity && divide(255 * value + floor(alpha / 2), alpha));
-        data[i] = level(red);
-        data[i + 1] = level(green);
-        data[i + 2] = level(blue);
-        data[i + 3] = opacity;
-        red = (red + dr) | 0;
-        green = (green + dg) | 0;
-        blue = (blue + db) | 0;
-        alpha = (alpha + da) | 0;
+      const start = (k) => (here[k] + right[k] * (from - placedX) + down[k] * (row - placedY)) | 0, end = 4 * (row * width + to);
+      for (let k = 0; k < 3; ++k) {
+        let value = start(k), alpha = start(3);
+        for (let i = 4 * (row * width + from); i <= end; i += 4) {
+          const opacity = clamp((alpha + 32768) >> 16, 0, 255);
+          data[i + k] = opacity > 254 ? (value + 32768) >> 16 : opacity && divide(255 * value + floor(alpha / 2), alpha);
+          data[i + 3] = opacity;
+          value = (value + right[k]) | 0;
+          alpha = (alpha + right[3]) | 0;
+        }
       }
     }
   }
