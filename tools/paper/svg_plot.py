@@ -26,16 +26,16 @@ def _round_step(span, count):
     return next(step * power for step in (1, 2, 5, 10) if step * power >= raw)
 
 
-def _y_axis(top_value):
-    """Scale from 0 to a round number, and the lines and labels of the axis."""
-    step = _round_step(top_value, 5)
-    ceiling = math.ceil(top_value / step) * step
-    to_y = lambda value: HEIGHT - BOTTOM - value / ceiling * (HEIGHT - TOP - BOTTOM)
+def _y_axis(top_value, floor=0):
+    """Scale from `floor` to a round number, and the lines and labels of the axis."""
+    step = _round_step(top_value - floor, 5)
+    count = math.ceil((top_value - floor) / step)
+    to_y = lambda value: HEIGHT - BOTTOM - (value - floor) / (count * step) * (HEIGHT - TOP - BOTTOM)
     body = []
-    for k in range(round(ceiling / step) + 1):
-        y = to_y(k * step)
+    for k in range(count + 1):
+        y = to_y(floor + k * step)
         body.append(f'<line x1="{LEFT}" y1="{y:.1f}" x2="{WIDTH - RIGHT}" y2="{y:.1f}" stroke="#ddd"/>'
-                    f'<text x="{LEFT - 6}" y="{y + 4:.1f}" text-anchor="end">{k * step:g}</text>')
+                    f'<text x="{LEFT - 6}" y="{y + 4:.1f}" text-anchor="end">{floor + k * step:g}</text>')
     return to_y, body
 
 
@@ -48,12 +48,12 @@ def _legend(names, left=WIDTH - RIGHT - 172):
     return body
 
 
-def curves(title, x_label, y_label, series):
-    """series: {name: [(x, y), ...]}, x > 0 on a logarithmic axis, y >= 0."""
+def curves(title, x_label, y_label, series, floor=0):
+    """series: {name: [(x, y), ...]}, x > 0 on a logarithmic axis, y >= floor."""
     xs = sorted({x for points in series.values() for x, _ in points})
     low, high = math.log(xs[0]), math.log(xs[-1])
     to_x = lambda x: LEFT + (math.log(x) - low) / (high - low) * (WIDTH - LEFT - RIGHT - 10) + 5
-    to_y, body = _y_axis(max(y for points in series.values() for _, y in points))
+    to_y, body = _y_axis(max(y for points in series.values() for _, y in points), floor)
     for x in xs:
         body.append(f'<text x="{to_x(x):.1f}" y="{HEIGHT - BOTTOM + 15}" text-anchor="middle">{x:g}</text>')
     for color, points in zip(COLORS, series.values()):
