@@ -34,6 +34,7 @@ from measures import area_average  # noqa: E402
 from peers import AVIF, AVIF_PAYLOAD, LOSSLESS, PEERS, avif_payload  # noqa: E402
 from points import MESH, PictureRun, chosen  # noqa: E402
 
+SCHEMA = "imgmesh-compression.report.schema.json"
 GROUPS = ("photographs", "thumbnails", "drawings", "smooth")
 BYTES = (1000, 2000, 3000, 4000, 6000, 8000, 12000, 16000, 32000)
 THUMBNAIL_SIDE, THUMBNAIL_BYTES = 144, (200, 400)
@@ -175,7 +176,7 @@ def main(arguments):
     o.out.mkdir(parents=True, exist_ok=True)
     comparison = Comparison(o, {path.stem: Image.open(path).convert("RGB") for path in paths})
     comparison.run()
-    figures = {"versions": comparison.cache.versions, "empty_bytes": comparison.empty_bytes(),
+    figures = {"$schema": SCHEMA, "versions": comparison.cache.versions, "empty_bytes": comparison.empty_bytes(),
                "lossless_bytes": comparison.lossless, "groups": comparison.results}
     (o.out / "compression.json").write_text(json.dumps(figures, indent=1) + "\n", "utf-8")
     report.write(figures, o.bytes, comparison.shown, o.out)

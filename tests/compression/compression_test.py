@@ -3,6 +3,7 @@
 programs are not needed."""
 import contextlib
 import io
+import json
 import math
 import os
 import pathlib
@@ -12,6 +13,7 @@ import tempfile
 import unittest
 import xml.etree.ElementTree
 
+import jsonschema
 import numpy as np
 from PIL import Image
 
@@ -155,8 +157,12 @@ class ReportTest(FolderTest):
             return {"mesh": {"1000": [point(990, 27)], "2000": [point(1990, 30)]},
                     "AVIF": {"1000": avif, "2000": [point(1950, 28)]}}
         photographs = {"a": codecs([point(980, 25)]), "b": codecs([])}
-        return {"versions": {"libavif-bin": "1"}, "empty_bytes": {"AVIF": (304, 22)}, "lossless_bytes": {"a": {}, "b": {}},
-                "groups": {"photographs": photographs, "drawings": photographs}}
+        return {"$schema": compression.SCHEMA, "versions": {"libavif-bin": "1"}, "empty_bytes": {"AVIF": [304, 22]},
+                "lossless_bytes": {"a": {}, "b": {}}, "groups": {"photographs": photographs, "drawings": photographs}}
+
+    def test_these_figures_are_such_as_it_writes(self):
+        schema = json.loads((HERE.parents[1] / "schemas" / compression.SCHEMA).read_text("utf-8"))
+        jsonschema.Draft202012Validator(schema).validate(self.figures())
 
     def test_means(self):
         title, _, head, rows = tables.all_tables(self.figures())[0]
