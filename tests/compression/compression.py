@@ -32,11 +32,11 @@ import report  # noqa: E402
 from bench_process import BenchError  # noqa: E402
 from measures import area_average  # noqa: E402
 from peers import AVIF, AVIF_PAYLOAD, LOSSLESS, PEERS, avif_payload  # noqa: E402
-from points import MESH, PictureRun, chosen  # noqa: E402
+from points import MESHES, PictureRun, chosen  # noqa: E402
 
 SCHEMA = "imgmesh-compression.report.schema.json"
 GROUPS = ("photographs", "thumbnails", "drawings", "smooth")
-BYTES = (1000, 2000, 3000, 4000, 6000, 8000, 12000, 16000, 32000)
+BYTES = (1000, 2000, 4000, 8000, 16000, 32000)
 THUMBNAIL_SIDE, THUMBNAIL_BYTES = 144, (200, 400)
 SHOWN = 3  # photographs that are shown side by side
 
@@ -57,8 +57,8 @@ def options(arguments):
     parser.add_argument("out", type=pathlib.Path)
     parser.add_argument("--bytes", type=lambda text: sorted({int(n) for n in text.split(",")}), default=BYTES,
                         help=f"sizes of files (default {','.join(map(str, BYTES))})")
-    parser.add_argument("--codecs", type=some_of([MESH, *PEERS]), default=[MESH, *PEERS],
-                        help=f"some of {','.join([MESH, *PEERS])}")
+    parser.add_argument("--codecs", type=some_of([*MESHES, *PEERS]), default=["mesh", *PEERS],
+                        help=f"some of {','.join([*MESHES, *PEERS])} (default all but mesh-ssim)")
     parser.add_argument("--groups", type=some_of(GROUPS), default=GROUPS, help=f"some of {','.join(GROUPS)}")
     parser.add_argument("--jobs", type=int, default=os.cpu_count(), help="pictures at one time (default: one a core)")
     return parser.parse_args(arguments)
@@ -105,7 +105,7 @@ class Comparison:
     def __init__(self, o, photographs):
         self.o = o
         self.groups = {group: content for group, content in groups(photographs).items() if group in o.groups}
-        self.peers = [PEERS[codec] for codec in o.codecs if codec != MESH]
+        self.peers = [PEERS[codec] for codec in o.codecs if codec in PEERS]
         self.cache = PeerCache(o.out / "peers.json", self.peers)
         self.results = {group: dict.fromkeys(images) for group, (images, _) in self.groups.items()}
         self.lossless = {}
@@ -131,13 +131,13 @@ class Comparison:
         print(f"compression: {group}: {name}", file=sys.stderr, flush=True)
 
     def codecs(self, work, group, name, limits):
-        if MESH in self.o.codecs:
-            yield MESH, [(n, work.mesh_points(n, self.mesh_file(group, name, n))) for n in limits]
+        for mesh in [codec for codec in self.o.codecs if codec in MESHES]:
+            yield mesh, [(n, work.mesh_points(mesh, n, self.mesh_file(mesh, group, name, n))) for n in limits]
         for peer in [*self.peers, *([AVIF_PAYLOAD] if group == "thumbnails" and AVIF in self.peers else [])]:
             yield peer.name, [(n, self.cache.get(work, peer, n, lambda p=peer, n=n: work.peer_points(p, n))) for n in limits]
 
-    def mesh_file(self, group, name, limit):
-        folder = self.o.out / "files" / group
+    def mesh_file(self, mesh, group, name, limit):
+        folder = self.o.out / "files" / mesh / group
         folder.mkdir(parents=True, exist_ok=True)
         return folder / f"{name}-{limit}.imgm"
 
@@ -149,8 +149,8 @@ class Comparison:
         for codec, by_limit in self.results[group][name].items():
             for limit in report.SHOWN_BYTES:
                 point = chosen(by_limit.get(str(limit), []), "psnr")
-                if point and codec == MESH:
-                    drawn, _ = work.drawn_mesh(self.mesh_file(group, name, limit))
+                if point and codec in MESHES:
+                    drawn, _ = work.drawn_mesh(self.mesh_file(codec, group, name, limit))
                 elif point:
                     drawn = work.drawn(PEERS[codec], point["quality"], point["scale"], point["filter"])
                 else:

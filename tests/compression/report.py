@@ -5,7 +5,6 @@ import urllib.parse
 
 import svg_plot
 from measures import METRICS
-from points import MESH
 from tables import all_tables, codecs_of, mean
 
 UNITS = {"psnr": "RGB PSNR [dB]", "luma_psnr": "luma PSNR [dB]", "ssim": "SSIM", "ciede2000": "CIEDE2000"}
@@ -88,6 +87,6 @@ def write(figures, limits, shown, out):
     page = (f'<!doctype html><html lang="en"><meta charset="utf-8"><title>Coded meshes</title><style>{STYLE}</style>'
             "<h1>Coded meshes beside other formats</h1><p>Every file is the largest that its encoder makes within the bytes. "
             "Whole files count, headers included. Other formats may code a smaller picture, scaled up again by the better of "
-            f"Lanczos and bicubic; the {MESH} has no size.</p>" + "".join(plots.values()) +
+            "Lanczos and bicubic; a mesh has no size.</p>" + "".join(plots.values()) +
             "".join(map(html_table, tables)) + pictures + "</html>\n")
     (out / "compression.html").write_text(page, "utf-8")

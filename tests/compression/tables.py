@@ -3,8 +3,9 @@ import statistics
 
 from measures import METRICS, bd_rate
 from peers import AVIF_PAYLOAD, PEERS
-from points import MESH, chosen
+from points import MESHES, chosen
 
+MESH = "mesh"  # the one that is compared with each of the others
 LOW = 8000  # "at few bytes" of the rate differences
 COMPARED = (2000, 4000, 8000, 16000)
 FORMS = {"psnr": ".2f", "luma_psnr": ".2f", "ssim": ".3f", "ciede2000": ".2f"}
@@ -13,7 +14,7 @@ FORMS = {"psnr": ".2f", "luma_psnr": ".2f", "ssim": ".3f", "ciede2000": ".2f"}
 def codecs_of(pictures):
     """In the order of columns."""
     present = next(iter(pictures.values()))
-    return [name for name in (MESH, *PEERS, AVIF_PAYLOAD.name) if name in present]
+    return [name for name in (*MESHES, *PEERS, AVIF_PAYLOAD.name) if name in present]
 
 
 def value(points, metric, full_size=False):
@@ -51,7 +52,7 @@ def rate_table(pictures):
         return text(bd_rate(pairs), "+.1f")
 
     rows = [[peer, *(cell(peer, metric, most) for most in (1 << 30, LOW) for metric in METRICS)]
-            for peer in codecs_of(pictures) if peer != MESH]
+            for peer in codecs_of(pictures) if peer in PEERS]
     return ("Bytes of the mesh against those of others at equal quality, in percent",
             "Mean difference of the rate (BD-rate) over the qualities that both reach, negative where the mesh is smaller.",
             ["against", *METRICS.values(), *(f"{name}, up to {LOW} bytes" for name in METRICS.values())], rows)
@@ -104,7 +105,7 @@ def photograph_tables(pictures, figures_note):
                           "full and reduced sizes for each figure. Empty: some picture has no file that small.", pictures),
               means_table("Photographs, all formats at full size", f"{figures_note}: means.", pictures, full_size=True)]
     if MESH in codecs_of(pictures):
-        if len(codecs_of(pictures)) > 1:
+        if any(codec in PEERS for codec in codecs_of(pictures)):
             tables += [rate_table(pictures), lead_table(pictures)]
         tables.append(time_table(pictures))
     return tables
