@@ -157,15 +157,19 @@ void ColorGuesser::set_level(std::size_t vertex, const ColorGuess& guess, int le
     const std::size_t i = vertex * channels_ + guess.channel;
     color_[i] = static_cast<std::int32_t>(
         std::clamp<std::int64_t>(guess.value + std::int64_t{guess.step} * level, kLeast, kMost));
+    if (guess.channel < 2) before_[guess.channel] = level;
+    if (guess.neighbors == 0) {  // nothing had been known
+        calm_[i] = color_[i];
+        return;
+    }
     // Neighbours are predicted from what is not all of the surprise: part of it is the vertex's own.
-    const std::int32_t off = guess.neighbors == 0 ? 0 : color_[i] - guess.value;
+    const std::int32_t off = color_[i] - guess.value;
     calm_[i] = color_[i] - ((off * (guess.channel == 0 ? 3 : 4) + 8) >> 4);
     surprise_[i] = std::abs(off);
     std::int32_t& recent = recent_[guess.channel];
     const std::int32_t size = std::min(std::abs(level), kMostRecent) * kRecentUnit;
     recent += static_cast<std::int32_t>(
         floor_divide(size - recent, std::min<std::int64_t>(as_int(vertex) + kRecentStart, kRecentLength)));
-    if (guess.channel < 2) before_[guess.channel] = level;
 }
 
 }  // namespace imgmesh::coding
