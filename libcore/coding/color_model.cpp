@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <cmath>
 #include <cstdlib>
 
 #include "libcore/base/index.h"
@@ -46,8 +45,10 @@ std::uint32_t sign_of(int level) {
     return level < 0 ? 0 : level > 0 ? 2 : 1;
 }
 
+// The bits of a bit, as BitModel gives it to a coder.
 double cost(int odds, bool bit) {
-    return std::log2(1 + std::exp((bit ? -odds : odds) / 256.0));
+    const int one = std::clamp(probability_of(odds) >> 1, 16, (1 << 15) - 16);
+    return 15 - log2_of(static_cast<std::uint64_t>(bit ? one : (1 << 15) - one)) / 256.0;
 }
 
 }  // namespace
