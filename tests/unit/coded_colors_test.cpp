@@ -7,6 +7,7 @@
 #include "libcore/coding/color_model.h"
 #include "libcore/coding/color_transform.h"
 #include "libcore/coding/integer_math.h"
+#include "libcore/coding/later_bits.h"
 #include "libcore/coding/quantise_colors.h"
 #include "libcore/coding/range_coder.h"
 #include "tests/support/coded_shapes.h"
@@ -184,4 +185,41 @@ TEST_CASE("a constant picture takes its first colour only") {
     const QuantisedColors out = quantise_colors(lines.shape(), plan_colors(lines.shape()),
                                                 face_moments(lines.shape(), grey, 3), 3, choice);
     CHECK(out.bits < 60);
+}
+
+TEST_CASE("a plan has the neighbours before a vertex, and steps by the areas of stars") {
+    // Two columns of three rows, 1 and 7 pixels apart.
+    const CodedGrid grid{9, 9, 4};
+    const std::vector<GridPoint> point{{0, 0}, {8, 0}, {0, 1}, {8, 1}, {0, 8}, {8, 8}};
+    const std::vector<Face> faces{{0, 1, 2}, {1, 3, 2}, {2, 3, 4}, {3, 5, 4}};
+    const ColorPlan plan = plan_colors({grid, point, faces});
+    CHECK(plan.of(0).empty());
+    REQUIRE(plan.of(3).size() == 2);
+    CHECK(plan.of(3)[0].vertex == 2);
+    CHECK(plan.of(3)[1].vertex == 1);
+    for (std::size_t v = 1; v < 6; ++v) {
+        std::int32_t most = 0;
+        for (const auto& n : plan.of(v)) most = std::max(most, n.weight);
+        CHECK(most == 4096);
+    }
+    // Doubled areas: 8 for vertex 0, 64 on average.
+    CHECK(plan.fineness[0] == static_cast<std::int32_t>(4096 * std::sqrt(8.0)));
+    CHECK(plan.fineness[5] == static_cast<std::int32_t>(64 * std::sqrt(std::floor(4096 * 64.0 / 56))));
+}
+
+TEST_CASE("a colour like that of its followers costs nothing later, and more the less it is like them") {
+    std::mt19937 random(9);
+    const CrossedLines lines({30, 30, 4}, 5, random);
+    const ColorPlan plan = plan_colors(lines.shape());
+    const std::vector<double> value(lines.point.size(), 90.0);
+    LaterBits later(plan, 1, 8.0);
+    for (std::size_t v = 0; v + 1 < lines.point.size(); ++v) {
+        later.look_at(v, value);
+        CHECK(later(0, 90) == doctest::Approx(0));
+        CHECK(later(0, 95) > 0);
+        CHECK(later(0, 110) > later(0, 95));
+        CHECK(later(0, 85) == doctest::Approx(later(0, 95)));
+    }
+    later.look_at(lines.point.size() - 1, value);
+    CHECK(later(0, 200) == 0);
 }
