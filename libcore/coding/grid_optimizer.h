@@ -14,7 +14,7 @@ struct GridSchedule;
 class GridState;
 
 struct OptimizeParams {
-    int effort = 3;  ///< 1 to 5; each takes about three times as long as the one before
+    int effort = 3;  ///< 1 to 5; each takes about two to three times as long as the one before
 };
 
 /// Keeps the mesh, so that the number of vertices can change between one optimisation and the next. Works on
@@ -34,7 +34,7 @@ class GridOptimizer {
     void set_vertex_count(std::size_t vertices);
     /// Optimises with this number of vertices. The error does not rise.
     void optimize();
-    void optimize(const GridSchedule& schedule);
+    void optimize(const GridSchedule& schedule);  ///< touch_up_schedule() after set_vertex_count()
 
     std::size_t vertices() const;
     double squared_error() const;  ///< over all pixels and channels

@@ -8,7 +8,7 @@ struct GridSchedule {
     int settles = 2;                ///< flips, moves and colours after each growth and each insertion
     int rounds = 3;                 ///< exchanges before annealing
     double share = 1;               ///< of vertices that these add and remove
-    int sweeps = 100;               ///< of annealing; 0 leaves it out
+    int sweeps = 40;                ///< of annealing a mesh of 2000 vertices; 0 leaves it out
     int passes = 4;                 ///< over each part of the mesh in a sweep
     int trials = 4;                 ///< of a vertex in a sweep
     double temperature = 1;         ///< at its start, over half the squared error of a vertex
@@ -21,5 +21,9 @@ struct GridSchedule {
 
 /// Returns the schedule of an effort from 1 to 5. Figures: docs/decisions/0043-optimising-on-a-grid.md.
 const GridSchedule& grid_schedule(int effort);
+
+/// Returns the schedule for a mesh that was optimised before its number of vertices changed by a few percent:
+/// short, and cool enough to keep what was found.
+const GridSchedule& touch_up_schedule();
 
 }  // namespace imgmesh

@@ -183,6 +183,10 @@ TEST_CASE("the number of vertices is met, up and down") {
     for (const std::size_t vertices : {100, 104, 97, 30, 4, 50}) {
         optimizer.set_vertex_count(vertices);
         CHECK(optimizer.vertices() == vertices);
+        const double before = optimizer.squared_error();
+        optimizer.optimize(touch_up_schedule());
+        CHECK(optimizer.vertices() == vertices);
+        CHECK(optimizer.squared_error() <= before);
         check_legal(optimizer.result());
     }
 }
