@@ -23,8 +23,9 @@ constexpr double kStepOverError = 1.2, kSideOverGrid = 9;
 // Bits of a vertex, before anything is known.
 constexpr double kVertexBits = 15;
 constexpr int kHeaderBytes = 8;
-// Decibels that twice the vertices gain, before anything is known.
-constexpr double kDecibels = 1.8;
+// Decibels that twice the vertices gain, before anything is known; how far a mesh may be below a PSNR and
+// above it, at first and at last, before the steps of its colours do the rest.
+constexpr double kDecibels = 1.8, kBelow = 0.04, kFirstAbove = 0.3, kAbove = 0.15;
 
 // Linear in the channels, so that squared errors of what it returns weigh what `tune` says.
 struct ErrorSpace {
@@ -204,33 +205,52 @@ class PictureEncoder {
         }
     }
 
-    void reach_psnr(double wanted) {
-        // Short optimisations find the number of vertices, a long one then takes it.
-        double vertices = std::max(4.0, pixels() / 400);
-        double slope = kDecibels;
-        start(static_cast<std::size_t>(vertices));
-        double last_vertices = 0, last_psnr = 0;
-        for (int round = 0; round < 8; ++round) {
-            report(0.05 + 0.1 * round, "rate");
-            optimize(round < 4 ? 1 : params_.effort);
-            take_mesh();
-            trial_->code(usual_step_index());
-            const double reached = psnr();
-            if (std::abs(reached - wanted) < 0.04) break;
-            vertices = static_cast<double>(trial_->vertices());
-            if (last_vertices > 0 && vertices != last_vertices)
-                slope = std::clamp((reached - last_psnr) / std::log2(vertices / last_vertices), 0.5, 6.0);
-            last_vertices = vertices;
-            last_psnr = reached;
-            vertices = std::clamp(vertices * std::exp2(std::clamp((wanted - reached) / slope, -3.0, 3.0)),
-                                  4.0, pixels());
-            if (grid_step(static_cast<std::size_t>(vertices)) * 4 < step_ * 3 ||
-                grid_step(static_cast<std::size_t>(vertices)) * 3 > step_ * 4)
-                start(static_cast<std::size_t>(vertices));
-            else
-                optimizer_->set_vertex_count(
-                    std::min(static_cast<std::size_t>(vertices), most_vertices(step_)));
+    // Optimises so many vertices on a grid that suits them, and codes them. Returns the PSNR.
+    double try_vertices(std::size_t vertices, int effort) {
+        const int step = grid_step(vertices);
+        if (!optimizer_ || step * 4 < step_ * 3 || step * 3 > step_ * 4) start(vertices);
+        optimizer_->set_vertex_count(std::min(vertices, most_vertices(step_)));
+        optimize(effort);
+        take_mesh();
+        trial_->code(usual_step_index());
+        return psnr();
+    }
+
+    // Looks for the smallest mesh that has the PSNR, and leaves it in trial_ if there is one. Returns the
+    // number of vertices to try next. More vertices are better on average alone.
+    double search_psnr(double wanted, double vertices, int effort, double above) {
+        constexpr int kRounds = 5;
+        const double most = std::max(4.0, pixels());
+        // The most vertices that missed it, and the fewest that reached it.
+        double few = 3, many = most + 1, few_psnr = 0, many_psnr = 0, slope = kDecibels;
+        std::unique_ptr<MeshTrial> best;
+        for (int round = 0; round < kRounds && many - few >= 2; ++round) {
+            report(0.1 + 0.8 * round / kRounds, "rate");
+            vertices = std::clamp(std::round(vertices), few + 1, many - 1);
+            const double reached = try_vertices(static_cast<std::size_t>(vertices),
+                                                round == 0 ? effort : std::max(1, effort - 2));
+            const auto taken = static_cast<double>(trial_->vertices());
+            if (reached < wanted - kBelow) {
+                few = std::min(std::max(few, taken), many - 1);
+                few_psnr = reached;
+            } else if (taken < many) {
+                many = taken;
+                many_psnr = reached;
+                best = std::move(trial_);
+            }
+            if (few_psnr > 0 && many_psnr > 0)
+                slope = std::clamp((many_psnr - few_psnr) / std::log2(many / few), 0.5, 6.0);
+            vertices = taken * std::exp2(std::clamp((wanted - reached) / slope, -3.0, 3.0));
+            if (reached >= wanted - kBelow && reached < wanted + above) break;
         }
+        if (best) trial_ = std::move(best);
+        return std::min(vertices, most);
+    }
+
+    void reach_psnr(double wanted) {
+        // Short optimisations find about how many vertices it takes.
+        const double vertices = search_psnr(wanted, std::max(4.0, pixels() / 400), 1, kFirstAbove);
+        search_psnr(wanted, vertices, params_.effort, kAbove);
         // The steps of colours make up for the rest: the coarsest that reaches it.
         int low = 0, high = coding::kStepIndices - 1;
         while (low < high) {
