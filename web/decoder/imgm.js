@@ -23,6 +23,8 @@ const divide = (a, b) => floor(a / b);
 const rounded = (a, b) => divide(2 * a + b, 2 * b);
 /** The whole part of x 2^shift. */
 const scaled = (x, shift) => (shift < 0 ? floor(x / 2 ** -shift) : x << shift);
+const ints = (count) => new Int32Array(count);
+const cross = (ux, uy, vx, vy) => ux * vy - uy * vx;
 const squared = (x, y) => x * x + y * y;
 /** How many bits a number below 2^53 takes. */
 const bitWidth = (x) => (x < 2 ** 32 ? 32 - clz32(x) : 64 - clz32(x / 2 ** 32));
@@ -30,7 +32,7 @@ const bitWidth = (x) => (x < 2 ** 32 ? 32 - clz32(x) : 64 - clz32(x / 2 ** 32));
 function fail(text) {
   throw new Error(`The coded picture ${text}.`);
 }
-const endsEarly = () => fail("ends too early");
+const damaged = () => fail("is damaged");
 function checkSize(width, height) {
   if (!(width <= MAX_SIDE && height <= MAX_SIDE && width * height <= MAX_PIXELS)) fail(`is too large: ${width} x ${height}`);
 }
@@ -42,18 +44,18 @@ function readHeader(bytes) {
   const side = () => {
     let number = 0;
     for (let shift = 0; shift < 21; shift += 7) {
-      if (at >= bytes.length) endsEarly();
+      if (at >= bytes.length) break;
       const byte = bytes[at++];
       number |= (byte & 127) << shift;
       if (byte < 128) return number + 1;
     }
-    return fail("has a size of more than three bytes");
+    return damaged();
   };
   if (bytes[0] !== 0x9a || bytes[1] !== 0x49 || bytes[2] !== 0x4d) fail("is none");
   if (bytes[3] >> 2 !== 4) fail("has an unknown version");
   const width = side(), height = side();
   checkSize(width, height);
-  return { width, height, channels: (bytes[3] & 3) + 1, at };
+  return { width, height, channels: (bytes[3] & 3) + 1, at_: at };
 }
 
 // ---- Bit models
@@ -62,20 +64,20 @@ const MAX_ODDS = 2047, EVEN = 1 << 14;
 const LOGISTIC = [22, 36, 60, 98, 162, 267, 439, 720, 1179, 1921, 3108, 4971, 7812, 11955, 17625, 24743, 32768];
 const logistic = (i) => (i > 16 ? 65536 - LOGISTIC[32 - i] : LOGISTIC[i]);
 /** The probability of log odds in 1/256 (from -MAX_ODDS), in 1/2^16. */
-const PROBABILITY = Int32Array.from({ length: 2 * MAX_ODDS + 1 }, (_, i) => {
+const PROBABILITY = ints(2 * MAX_ODDS + 1).map((_, i) => {
   const part = ++i & 127, k = i >> 7;
   return (logistic(k) * (128 - part) + logistic(k + 1) * part + 64) >> 7;
 });
 /** The log odds of a probability in 1/2^12. */
-const ODDS = new Int16Array(4096);
+const ODDS = ints(4096);
 for (let p = 0, odds = -MAX_ODDS; p < 4096; ODDS[p++] = odds)
   while (odds < MAX_ODDS && PROBABILITY[odds + MAX_ODDS] < 16 * p + 8) ++odds;
 
 /** How fast a context learns that has seen so many bits, in 1/2^15. */
-const RATE = Int32Array.from({ length: 251 }, (_, seen) => 327680 / (10 * seen + 25));
+const RATE = ints(251).map((_, seen) => 327680 / (10 * seen + 25));
 
 /** The contexts of a decision, and their log odds. */
-const context = new Int32Array(5), odds = new Int32Array(6);
+const context = ints(5), odds = ints(6);
 
 /**
  * A range decoder. end() fails if the bytes ended too early, or go on. model(sizes, sets) makes a kind of decision with
@@ -113,16 +115,15 @@ function rangeDecoder(bytes, at) {
     return (2 ** count + bits(count) - 1) * 2 ** order + bits(order);
   };
   const end = (last) => {
-    if (missing > 4) endsEarly();
-    if (last && at < bytes.length) fail("goes on after its end");
+    if (missing > 4 || (last && at < bytes.length)) damaged();
   };
 
   const model = (sizes, sets = 1) => {
     const inputs = sizes.length;
     let all = 0;
     const first = sizes.map((size) => (all += size) - size);
-    const probability = new Uint16Array(all).fill(32768), seen = new Uint8Array(all), settled = new Int32Array(sets);
-    const weight = new Int32Array(sets * (inputs + 1)).map((_, i) => (++i % (inputs + 1) ? floor(9830 / inputs) : 16384));
+    const probability = ints(all).fill(32768), seen = ints(all), settled = ints(sets);
+    const weight = ints(sets * (inputs + 1)).map((_, i) => (++i % (inputs + 1) ? floor(9830 / inputs) : 16384));
     return (prior, set, a, b, c, d = 0, e = 0) => {
       const from = set * (inputs + 1);
       let sum = 0;
@@ -150,7 +151,7 @@ function rangeDecoder(bytes, at) {
       return out;
     };
   };
-  return { bits, number, end, model };
+  return { bits_: bits, number_: number, end_: end, model_: model };
 }
 
 // ---- Points: counts of vertices in cells that halve until each is one point of the grid
@@ -166,17 +167,17 @@ function roughLog(n) {
 }
 
 /** Decodes points of a grid. Returns row * columns + column of each, in raster order. */
-function codePoints({ model }, columns, rows, count) {
+function codePoints({ model_: model }, columns, rows, count) {
   const found = [], side = model([256, 256, 256, 192, 1250]), tie = model([384, 512, 16]), excess = model([256, 384, 64]);
   if (!count) return found;
   let levelX = bitWidth(max(columns, rows) - 1), levelY = levelX, width = 1, height = 1;
   // Counts of the cells, with two rings of empty ones around them.
-  let now = new Uint32Array(25);
+  let now = ints(25);
   now[12] = count;
   while (levelX + levelY > 0) {
     const down = +(levelX === levelY), level = min(levelX, 23), nextX = levelX - 1 + down, nextY = levelY - down;
     const nextWidth = cellsOf(columns, nextX), nextHeight = cellsOf(rows, nextY), s = width + 4, t = nextWidth + 4;
-    const next = new Uint32Array(t * (nextHeight + 4));
+    const next = ints(t * (nextHeight + 4));
     // Steps from half to half and aside from them, among the cells and among the halves.
     const [onCell, onHalf, byCell, byHalf] = down ? [s, t, 1, 1] : [1, 1, s, t];
 
@@ -226,8 +227,8 @@ function codePoints({ model }, columns, rows, count) {
 
 /** Decodes all points of the whole grid. */
 function codeAllPoints(coder, columns, rows, most) {
-  const across = columns - 2, down = rows - 2, line = 2 * (across + down), inner = coder.number(7), outer = coder.number(4);
-  if (inner > across * down || outer > line || inner + outer > most) fail("has no room for its vertices");
+  const across = columns - 2, down = rows - 2, line = 2 * (across + down), inner = coder.number_(7), outer = coder.number_(4);
+  if (inner > across * down || outer > line || inner + outer > most) damaged();
   const corners = [0, columns - 1, (rows - 1) * columns, rows * columns - 1];
   // Top, right, bottom, left.
   const border = codePoints(coder, line, 1, outer).map((k) =>
@@ -236,7 +237,7 @@ function codeAllPoints(coder, columns, rows, most) {
     : (k -= down) < across ? corners[2] + k + 1
     : (k - across + 1) * columns);
   const inside = codePoints(coder, across, down, inner).map((k) => (floor(k / across) + 1) * columns + (k % across) + 1);
-  return Uint32Array.from([...corners, ...border, ...inside]).sort();
+  return Int32Array.from([...corners, ...border, ...inside]).sort();
 }
 
 // ---- Faces. Half-edge e = 3 f + i is the edge of face f opposite its corner i, from corner[after(e)] to
@@ -255,22 +256,23 @@ function classOf(cotangent) {
 }
 
 /** Decodes the faces of vertices at (x, y). Returns three corners of each. */
-function codeFaces({ model }, x, y, order) {
-  const count = x.length, corner = new Int32Array(6 * count), twin = new Int32Array(9 * count).fill(NONE);
+function codeFaces({ model_: model }, x, y, order) {
+  const count = x.length, corner = ints(6 * count), twin = ints(9 * count).fill(NONE);
   let size = 2;
 
   /** Twice the area: positive if a, b, c run counter-clockwise on screen. */
-  const area = (a, b, c) => (y[b] - y[a]) * (x[c] - x[a]) - (x[b] - x[a]) * (y[c] - y[a]);
+  const area = (a, b, c) => cross(x[c] - x[a], y[c] - y[a], x[b] - x[a], y[b] - y[a]);
   /** Whether d lies inside the circle through a, b, c. */
   const inCircle = (a, b, c, d) => {
     const ax = x[a] - x[d], ay = y[a] - y[d], bx = x[b] - x[d], by = y[b] - y[d], cx = x[c] - x[d], cy = y[c] - y[d];
     const aa = squared(ax, ay), bb = squared(bx, by), cc = squared(cx, cy);
-    const bc = bx * cy - by * cx, ca = cx * ay - cy * ax, ab = ax * by - ay * bx, sum = aa * bc + bb * ca + cc * ab;
+    const bc = cross(bx, by, cx, cy), ca = cross(cx, cy, ax, ay), ab = cross(ax, ay, bx, by), sum = aa * bc + bb * ca + cc * ab;
     // Sums below 2^53 are exact; larger ones are off by less than 2^-50 of their parts.
     const size = aa * abs(bc) + bb * abs(ca) + cc * abs(ab), big = BigInt;
     return (size < 2 ** 53 || abs(sum) > size * 2 ** -50 ? sum
       : big(aa) * big(bc) + big(bb) * big(ca) + big(cc) * big(ab)) < 0;
   };
+  const first = (e) => corner[after(e)], last = (e) => corner[ahead(e)];
   const link = (e, t) => {
     twin[e] = t;
     if (t >= 0) twin[t] = e;
@@ -293,33 +295,31 @@ function codeFaces({ model }, x, y, order) {
     // Walks towards the place. edge: on which it lies
     let f = near, edge = NONE;
     for (let i = 0; i < 3; ++i) {
-      const e = 3 * f + i, side = area(corner[after(e)], corner[ahead(e)], v);
+      const e = 3 * f + i, side = area(first(e), last(e), v);
       if (!side) edge = e;
       if (side < 0) {
         f = faceOf(twin[e]);
         edge = i = NONE;
       }
     }
-    // The faces around it: of each the vertices after v, and what is beyond them.
-    const e = edge < 0 ? 3 * f : edge, o = corner[e], a = corner[after(e)], b = corner[ahead(e)], t = twin[e], g = size++;
-    const one = [f, o, a, twin[ahead(e)]], two = [g, b, o, twin[after(e)]];
-    let fan = [two, one], stack = [f, g], isRing = true;
+    // The faces around it: of each the vertex that comes first after v, and what is beyond.
+    const e = edge < 0 ? 3 * f : edge, t = twin[e], q = corner[t], g = size++, opposite = faceOf(t);
+    let ring = [[f, corner[e], twin[ahead(e)]], [g, last(e), twin[after(e)]]], stack = [f, g];
     if (edge < 0) {
-      two[0] = size++;
-      fan = [one, [g, a, b, t], two];
-      stack.push(two[0]);
+      ring = [ring[0], [g, first(e), t], [size++, last(e), twin[after(e)]]];
+      stack.push(size - 1);
     } else if (t >= 0) {
-      const q = corner[t], h = size++;
-      stack = [faceOf(t), h, f, g];
-      fan = [one, [h, a, q, twin[after(t)]], [faceOf(t), q, b, twin[ahead(t)]], two];
-    } else isRing = false;
-    fan.forEach(([f, a, b, beyond], i) => {
+      stack = [opposite, size, f, g];
+      ring = [ring[0], [size++, first(e), twin[after(t)]], [opposite, q, twin[ahead(t)]], ring[1]];
+    } else ring = [ring[1], ring[0], [NONE, first(e)]];
+    ring.forEach(([f, a, beyond], i) => {
+      const [next, b] = ring[i + 1] ?? ring[0];
+      if (f < 0) return;
       setFace(f, v, a, b);
       link(3 * f, beyond);
-      const next = fan[i + 1] ?? (isRing ? fan[0] : NONE);
-      link(3 * f + 1, next < 0 ? NONE : 3 * next[0] + 2);
+      link(3 * f + 1, next < 0 ? NONE : 3 * next + 2);
     });
-    if (!isRing) twin[3 * g + 2] = NONE;
+    if (edge >= 0 && t < 0) twin[3 * g + 2] = NONE;
     near = stack[stack.length - 1];
     // Flips edges opposite v until none has a vertex inside its circle.
     while (stack.length) {
@@ -327,12 +327,12 @@ function codeFaces({ model }, x, y, order) {
       if (t < 0) continue;
       const a = corner[e + 1], b = corner[e + 2], q = corner[t], beyond = twin[after(t)], other = twin[ahead(t)];
       if (!inCircle(v, a, b, q)) continue;
-      const last = twin[e + 1];
+      const old = twin[e + 1];
       setFace(f, v, a, q);
       setFace(g, v, q, b);
       link(e, beyond);
       link(3 * g, other);
-      link(3 * g + 1, last);
+      link(3 * g + 1, old);
       link(e + 1, 3 * g + 2);
       stack.push(f, g);
       near = f;
@@ -340,7 +340,7 @@ function codeFaces({ model }, x, y, order) {
   }
 
   // Gates are half-edges of known faces. What lies beyond the border counts as known.
-  const known = new Uint8Array(3 * count), reached = new Uint8Array(count), gates = [], outside = 3 * size;
+  const known = ints(3 * count), reached = ints(count), gates = [], outside = 3 * size;
   for (let e = 0, t = outside; e < outside; ++e)
     if (twin[e] < 0) {
       known[faceOf(t)] = 1;
@@ -350,32 +350,26 @@ function codeFaces({ model }, x, y, order) {
   const stop = model([24 * CLASSES, 12 * (CLASSES + 1), CLASSES * (CLASSES + 1), 8 * CLASSES, 512]);
   const turn = model([4 * CLASSES, 81, 2 * CLASSES, 256]);
 
+  /** Of the angle at c, in 1/256. */
   const cotangent = (a, b, c) => {
-    const dot = (x[a] - x[c]) * (x[b] - x[c]) + (y[a] - y[c]) * (y[b] - y[c]);
-    return clamp(Math.trunc((dot * 256) / area(a, b, c)), -MAX_COTANGENT, MAX_COTANGENT);
+    const dot = (x[a] - x[c]) * (x[b] - x[c]) + (y[a] - y[c]) * (y[b] - y[c]), size = area(a, b, c);
+    return size > 0 ? clamp(Math.trunc((dot * 256) / size), -MAX_COTANGENT, MAX_COTANGENT) : MAX_COTANGENT;
   };
 
-  /** Makes (a, b, c) the first face of a strip of half-edges, and triangulates by Delaunay's rule what else it covers. */
-  const refill = (a, b, c, strip) => {
-    const faces = strip.map(faceOf), left = [], right = [], filled = [[a, b, c]], edges = [];
-    strip.slice(1).forEach((e, i) =>
-      (corner[twin[e]] === (left.length ? left[left.length - 1] : a) ? left : right).push(corner[strip[i]]));
-    const each = (use) => faces.forEach((f) => [0, 1, 2].forEach((i) => use(3 * f + i, corner[3 * f + after(i)], corner[3 * f + ahead(i)])));
-    const fill = (chain, from, to) => {
-      if (!chain.length) return;
-      let best = 0;
-      for (let k = 1; k < chain.length; ++k) if (inCircle(from, to, chain[best], chain[k])) best = k;
-      filled.push([from, to, chain[best]]);
-      fill(chain.slice(0, best), from, chain[best]);
-      fill(chain.slice(best + 1), chain[best], to);
-    };
-    fill(left, a, c);
-    fill(right.reverse(), c, b);
-    // Half-edges around the strip, then those within it, seek their twins.
-    each((e, from, to) => faces.includes(faceOf(twin[e])) || edges.push([to, from, twin[e]]));
-    faces.forEach((f, i) => setFace(f, ...filled[i]));
-    each((e, from, to) => edges.push([from, to, e]));
-    each((e, from, to) => link(e, edges.find((edge) => edge[0] === to && edge[1] === from)[2]));
+  /**
+   * Triangulates by Delaunay's rule what lies between an edge and a chain of vertices on its left, in the faces that are
+   * free. outer: the half-edges beyond the chain. Returns the half-edge from -> to.
+   */
+  let free;
+  const fill = (chain, outer, from, to) => {
+    if (!chain.length) return outer[0];
+    let best = 0;
+    for (let k = 1; k < chain.length; ++k) if (inCircle(from, to, chain[best], chain[k])) best = k;
+    const f = faceOf(free.pop()), v = chain[best];
+    setFace(f, from, to, v);
+    link(3 * f + 1, fill(chain.slice(0, best), outer.slice(0, best + 1), from, v));
+    link(3 * f, fill(chain.slice(best + 1), outer.slice(best + 1), v, to));
+    return 3 * f + 2;
   };
 
   let a, b, behind;
@@ -383,44 +377,40 @@ function codeFaces({ model }, x, y, order) {
   const reach = (e, lowLeft, lowRight) => {
     const apex = corner[e], inFront = area(a, b, apex) > 0;
     const goesLeft = lowLeft < 0 ? inFront : area(a, apex, lowLeft) > 0;
-    const goesRight = lowRight < 0 ? inFront : area(apex, b, lowRight) > 0, mayStop = goesLeft && goesRight;
+    const goesRight = lowRight < 0 ? inFront : area(apex, b, lowRight) > 0, mayStop = inFront && goesLeft && goesRight;
     const angle = mayStop ? cotangent(a, b, apex) : MAX_COTANGENT;
     const lows = [goesLeft ? apex : lowLeft, goesRight ? apex : lowRight, lowLeft, lowRight];
-    return { e, apex, goesLeft, goesRight, mayStop, angle, lows };
+    return { e_: e, apex_: apex, goesLeft_: goesLeft, goesRight_: goesRight, mayStop_: mayStop, angle_: angle, lows_: lows };
   };
-  const onLeft = ({ e, goesLeft, lows }) => {
-    const t = twin[ahead(e)];
-    return goesLeft && !known[faceOf(t)] && reach(t, lows[2], lows[1]);
-  };
-  const onRight = ({ e, goesRight, lows }) => {
-    const t = twin[after(e)];
-    return goesRight && !known[faceOf(t)] && reach(t, lows[0], lows[3]);
-  };
+  const isKnown = (e) => known[faceOf(twin[e])];
+  const onLeft = (s) => s.goesLeft_ && !isKnown(ahead(s.e_)) && reach(twin[ahead(s.e_)], s.lows_[2], s.lows_[1]);
+  const onRight = (s) => s.goesRight_ && !isKnown(after(s.e_)) && reach(twin[after(s.e_)], s.lows_[0], s.lows_[3]);
   /** How far c is from completing a parallelogram, in octaves of its square over that of the edge. */
   const missOf = (c) =>
     behind < 0 ? 15 : capped(bitWidth(divide(
       64 * squared(x[a] + x[b] - x[behind] - x[c], y[a] + y[b] - y[behind] - y[c]), squared(x[a] - x[b], y[a] - y[b]))));
 
   while (gates.length) {
-    const gate = gates.pop(), start = twin[gate];
-    if (known[faceOf(start)]) continue;
-    a = corner[after(start)];
-    b = corner[ahead(start)];
+    const gate = gates.pop();
+    let start = twin[gate];
+    if (isKnown(gate)) continue;
+    a = first(start);
+    b = last(start);
     behind = gate < outside ? corner[gate] : NONE;
 
     let step = reach(start, NONE, NONE), length = 1;
     const strip = [start];
     for (let depth = 0; depth < MAX_STEPS; ++depth) {
-      const { e, apex, mayStop, angle } = step, k = min(depth, 3), later = min(k, 1);
+      const { e_: e, apex_: apex, mayStop_: mayStop, angle_: angle } = step, k = min(depth, 3), later = min(k, 1);
       if (mayStop) length = strip.length;
       const left = onLeft(step), right = onRight(step);
       if (!left && !right) break;
       const atA = cotangent(b, apex, a), atB = cotangent(apex, a, b);
       if (mayStop) {
-        const sides = (corner[after(e)] === a && known[faceOf(twin[ahead(e)])]) + (corner[ahead(e)] === b && known[faceOf(twin[after(e)])]);
-        const angleOf = (s) => (s ? s.angle : MAX_COTANGENT), next = min(angleOf(left), angleOf(right));
+        const sides = (first(e) === a && isKnown(ahead(e))) + (last(e) === b && isKnown(after(e)));
+        const angleOf = (s) => (s ? s.angle_ : MAX_COTANGENT), next = min(angleOf(left), angleOf(right));
         const gap = next < MAX_COTANGENT ? classOf(next - angle) : CLASSES;
-        const other = next < MAX_COTANGENT ? missOf((next === left.angle ? left : right).apex) : 15;
+        const other = next < MAX_COTANGENT ? missOf((next === left.angle_ ? left : right).apex_) : 15;
         const flat = behind < 0 ? CLASSES : classOf(angle + cotangent(b, a, behind)), own = classOf(angle), isReached = reached[apex];
         if (stop(0, 0, ((k * 3 + sides) * 2 + isReached) * CLASSES + own, (k * 3 + sides) * (CLASSES + 1) + gap,
           own * (CLASSES + 1) + flat, (classOf(max(atA, atB)) * 4 + k) * 2 + isReached, (missOf(apex) * 16 + other) * 2 + later))
@@ -428,25 +418,42 @@ function codeFaces({ model }, x, y, order) {
       }
       let goesLeft = left;
       if (left && right) {
-        const turned = left.angle > right.angle, [first, second] = turned ? [right, left] : [left, right];
-        const kind = (s) => (s.mayStop ? 3 + 3 * reached[s.apex] : 0) + (s.goesLeft ? 1 + s.goesRight : 0);
-        goesLeft = turned !== !!turn(0, 0, k * CLASSES + classOf(second.angle - first.angle), kind(first) * 9 + kind(second),
-          classOf(turned ? atB - atA : atA - atB) * 2 + later, missOf(first.apex) * 16 + missOf(second.apex));
+        const turned = left.angle_ > right.angle_, [one, two] = turned ? [right, left] : [left, right];
+        const kind = (s) => (s.mayStop_ ? 3 + 3 * reached[s.apex_] : 0) + (s.goesLeft_ ? 1 + s.goesRight_ : 0);
+        goesLeft = turned !== !!turn(0, 0, k * CLASSES + classOf(two.angle_ - one.angle_), kind(one) * 9 + kind(two),
+          classOf(turned ? atB - atA : atA - atB) * 2 + later, missOf(one.apex_) * 16 + missOf(two.apex_));
       }
       step = goesLeft ? left : right;
-      strip.push(step.e);
+      strip.push(step.e_);
     }
 
-    // The face from a and b to the last apex where the walk might stop takes the place of the strip's first one. What
-    // else the strip covers is triangulated by Delaunay's rule again.
+    // The face from a and b to the last apex where the walk might stop takes the place of the strip's first one.
     strip.length = length;
-    const f = faceOf(start), c = corner[strip[length - 1]];
-    if (length > 1) refill(a, b, c, strip);
-    known[f] = reached[a] = reached[b] = reached[c] = 1;
-    // Its other two edges, from a to the apex and on to b.
-    for (const v of [b, a]) gates.push(3 * f + [0, 1, 2].find((i) => corner[3 * f + i] === v));
+    const c = corner[strip[length - 1]];
+    if (length > 1) {
+      const left = [], right = [], outerLeft = [], outerRight = [], faces = strip.map(faceOf);
+      const outer = (e) => (faces.includes(faceOf(twin[e])) ? NONE : twin[e]);
+      strip.forEach((e, i) => {
+        const dropped = i + 1 < length ? corner[twin[strip[i + 1]]] : NONE;
+        if (dropped !== last(e)) outerLeft.push(outer(ahead(e)));
+        if (dropped !== first(e)) outerRight.unshift(outer(after(e)));
+        if (dropped >= 0) dropped === first(e) ? left.push(corner[e]) : right.unshift(corner[e]);
+      });
+      free = strip.reverse();
+      start = 3 * faceOf(free.pop()) + 2;
+      setFace(faceOf(start), a, b, c);
+      link(start, gate);
+      link(start - 1, fill(left, outerLeft, a, c));
+      link(start - 2, fill(right, outerRight, c, b));
+      // A strip that curls around a vertex borders on itself.
+      const edges = faces.flatMap((f) => [3 * f, 3 * f + 1, 3 * f + 2]);
+      for (const e of edges) if (twin[e] < 0) link(e, edges.find((d) => first(d) === last(e) && last(d) === first(e)));
+    }
+    known[faceOf(start)] = reached[a] = reached[b] = reached[c] = 1;
+    // From a to the apex, and on to b.
+    gates.push(ahead(start), after(start));
   }
-  return corner.subarray(0, 3 * size);
+  return { corner_: corner.subarray(0, 3 * size), area_: area };
 }
 
 // ---- Colours, in 1/64 of a grey level
@@ -474,15 +481,6 @@ function halfDistance(step, log) {
   return max(floor((step * halfPower((15 - (l & 15)) * 64) * (1 << (l >> 4))) / 2 ** 18), 1);
 }
 
-/** Sorts items stably by keys below `size`. */
-function sortBy(key, items, size) {
-  const first = new Uint32Array(size + 1), out = new Uint32Array(items.length);
-  for (const i of items) ++first[key[i] + 1];
-  for (let k = 0; k < size; ++k) first[k + 1] += first[k];
-  for (const i of items) out[first[key[i]]++] = i;
-  return out;
-}
-
 /**
  * By channel: how the distance over which a guess halves follows from nothing, the spread, the surprise, the number of
  * neighbours, the fineness and the levels of two channels before; how that around neighbours differs; the guess's
@@ -501,19 +499,16 @@ const oddsBetween = (yes, no) => clamp(((log2(yes + 1) - log2(no + 1)) * 177) >>
 const inRange = (color) => clamp(color, -32768, 32767);
 
 /** Decodes the colours of vertices. steps: of each channel; mean: of the areas of stars. */
-function codeColors({ model, number }, x, y, corner, steps, mean) {
+function codeColors({ model_: model, number_: number }, x, y, { corner_: corner, area_: areaOf }, steps, mean) {
   const count = x.length, channels = steps.length, edges = corner.length;
-  const later = new Uint32Array(edges), earlier = new Uint32Array(edges), area = new Float64Array(edges);
-  const star = new Float64Array(count), color = new Int32Array(count * channels), calm = color.slice(), surprise = color.slice();
+  const around = Array.from(x, () => []), area = new Float64Array(edges), star = new Float64Array(count);
+  const color = ints(count * channels), calm = color.slice(), surprise = color.slice();
+  // Edges by their later vertex.
   corner.forEach((a, e) => {
-    const b = corner[after(e)], c = corner[ahead(e)];
-    area[e] = (y[b] - y[a]) * (x[c] - x[a]) - (x[b] - x[a]) * (y[c] - y[a]);
-    later[e] = max(a, b);
-    earlier[e] = min(a, b);
-    star[a] += area[e];
+    const b = corner[after(e)];
+    star[a] += area[e] = areaOf(a, b, corner[ahead(e)]);
+    around[max(a, b)].push(min(a, b) * edges + e);
   });
-  // Edges by their later vertex, then by the earlier one downwards.
-  const order = sortBy(later, sortBy(earlier, later.map((_, e) => e), count).reverse(), count);
   const zero = model([96, 256, 1024, 256, 28], 4), negative = model([96, 28, 36], 4), larger = model([384, 256, 256], 3);
 
   // Of a vertex: its neighbours that are known, their weights and the sum of those, and what goes on in one channel.
@@ -538,23 +533,24 @@ function codeColors({ model, number }, x, y, corner, steps, mean) {
   };
   const logOf = (distance) => log16(1 + (step >> 4) + distance) - log16(step);
 
-  for (let v = 0, i = 0; v < count; ++v) {
-    const guessed = [], levels = [0, 0, 0, 0];
+  for (let v = 0; v < count; ++v) {
+    const guessed = [], levels = [0, 0, 0, 0], faces = [];
     neighbors = [];
-    weights = [];
-    all = 0;
-    while (later[order[i]] === v) {
-      const u = earlier[order[i]];
-      let both = 0;
-      for (; later[order[i]] === v && earlier[order[i]] === u; ++i) both += area[order[i]];
-      if (neighbors.length < 12) {
+    // The latest neighbour first.
+    for (const key of around[v].sort((a, b) => b - a)) {
+      const u = divide(key, edges);
+      if (u !== neighbors[neighbors.length - 1]) {
         neighbors.push(u);
-        weights.push((18 * log2(squared(x[v] - x[u], y[v] - y[u]) + 16) + 51 * log2(both + 8) + 22 * log2(star[u] + 8)) >> 6);
+        faces.push(0);
       }
+      faces[faces.length - 1] += area[key % edges];
     }
+    neighbors = neighbors.slice(0, 12);
+    weights = neighbors.map((u, k) =>
+      (18 * log2(squared(x[v] - x[u], y[v] - y[u]) + 16) + 51 * log2(faces[k] + 8) + 22 * log2(star[u] + 8)) >> 6);
+    all = 0;
     const most = max(...weights), nearest = neighbors[weights.indexOf(most)], known = neighbors.length;
-    weights = weights.map((w) => max(halfPower(4 * (most - w)) >> 2, 1));
-    for (const w of weights) all += w;
+    weights.forEach((w, k) => (all += weights[k] = max(halfPower(4 * (most - w)) >> 2, 1)));
     fineness = floor(Math.sqrt(4096 * clamp(divide(4096 * mean, max(star[v], 1)), 455, 36864)));
 
     for (channel = 0; channel < channels; ++channel) {
@@ -627,28 +623,28 @@ function codeColors({ model, number }, x, y, corner, steps, mean) {
 // ---- A file
 
 function readMesh(bytes) {
-  const { width, height, channels, at } = readHeader(bytes), coder = rangeDecoder(bytes, at), steps = [];
-  const step = min(coder.number(2), 4 * MAX_SIDE) + 1, right = 4 * max(width - 1, 1), bottom = 4 * max(height - 1, 1);
+  const { at_: at, ...info } = readHeader(bytes), { width, height, channels } = info, coder = rangeDecoder(bytes, at), steps = [];
+  const step = min(coder.number_(2), 4 * MAX_SIDE) + 1, right = 4 * max(width - 1, 1), bottom = 4 * max(height - 1, 1);
   const columns = floor((right + step - 1) / step) + 1, rows = floor((bottom + step - 1) / step) + 1;
-  if (columns * rows > MAX_PIXELS) fail("has too fine a grid");
-  const first = coder.bits(8);
+  if (columns * rows > MAX_PIXELS) damaged();
+  const first = coder.bits_(8);
   for (let k = 0; k < channels; ++k) {
-    const index = k ? first - 8 + coder.bits(5) : first;
-    if (index < 0 || index > 143) fail("has an unknown colour step");
+    const index = k ? first - 8 + coder.bits_(5) : first;
+    if (index < 0 || index > 143) damaged();
     steps.push((16 + (index & 15)) << (index >> 4));
   }
-  const points = codeAllPoints(coder, columns, rows, 8 * bytes.length);
-  coder.end();
-  const x = Int32Array.from(points, (p) => min((p % columns) * step, right));
-  const y = Int32Array.from(points, (p) => min(floor(p / columns) * step, bottom));
+  const points = codeAllPoints(coder, columns, rows, 4096 + 16 * bytes.length);
+  coder.end_();
+  const x = points.map((p) => min((p % columns) * step, right));
+  const y = points.map((p) => min(floor(p / columns) * step, bottom));
   // Along a curve that fills the plane: bits of columns and rows in turn.
   const spread = (n) => (n ? 4 * spread(n >> 1) + (n & 1) : 0);
   const curve = Float64Array.from(points, (p) => 2 * spread(floor(p / columns)) + spread(p % columns));
-  const corner = codeFaces(coder, x, y, points.map((_, v) => v).sort((v, w) => curve[v] - curve[w]));
-  coder.end();
-  const color = codeColors(coder, x, y, corner, steps, divide(6 * right * bottom, points.length));
-  coder.end(true);
-  return { width, height, channels, x, y, right, bottom, corner, color };
+  const faces = codeFaces(coder, x, y, points.map((_, v) => v).sort((v, w) => curve[v] - curve[w]));
+  coder.end_();
+  const color = codeColors(coder, x, y, faces, steps, divide(6 * right * bottom, points.length));
+  coder.end_(true);
+  return { ...info, x, y, right_: right, bottom_: bottom, corner_: faces.corner_, color_: color };
 }
 
 // ---- Drawing: vertices lie on 1/16 of a pixel, colours of pixels are in 1/2^16 of a grey level
@@ -662,12 +658,11 @@ function placeOf(at, last, from, to) {
 }
 
 /** Draws RGBA. Each face is linear in its colours; a later one overwrites. */
-function draw({ channels, x, y, corner, color, ...mesh }, width, height) {
+function draw({ channels, x, y, corner_: corner, color_: color, ...mesh }, width, height) {
   const data = new Uint8ClampedArray(4 * width * height);
-  const px = x.map((at) => placeOf(at, mesh.right, mesh.width, width)), py = y.map((at) => placeOf(at, mesh.bottom, mesh.height, height));
+  const px = x.map((at) => placeOf(at, mesh.right_, mesh.width, width)), py = y.map((at) => placeOf(at, mesh.bottom_, mesh.height, height));
   // Of each channel of a pixel: the colour at one place, and what it gains to the right and down. Opaque without alpha.
   const here = [0, 0, 0, 255 * 65536], right = [0, 0, 0, 0], down = [0, 0, 0, 0];
-  const cross = (ux, uy, vx, vy) => ux * vy - uy * vx;
   let row, from, to, area;
   const narrow = (p, q) => {
     const rise = py[q] - py[p], rest = (px[q] - px[p]) * (SUB * row - py[p]) + rise * px[p];
@@ -719,8 +714,6 @@ function draw({ channels, x, y, corner, color, ...mesh }, width, height) {
 
 // ---- What others call
 
-const bytesOf = (bytes) => (bytes instanceof Uint8Array ? bytes : new Uint8Array(bytes));
-
 /**
  * What a file says of its picture, from its first bytes.
  * @param {Uint8Array | ArrayBuffer} bytes
@@ -728,8 +721,8 @@ const bytesOf = (bytes) => (bytes instanceof Uint8Array ? bytes : new Uint8Array
  * @throws {Error} if it is none
  */
 export function info(bytes) {
-  const { width, height, channels } = readHeader(bytesOf(bytes));
-  return { width, height, channels };
+  const { at_: _, ...info } = readHeader(new Uint8Array(bytes));
+  return info;
 }
 
 /**
@@ -740,18 +733,21 @@ export function info(bytes) {
  * @throws {Error} if the bytes are no such file, or the drawing would be larger than 65535 a side or 2^26 pixels
  */
 export function decode(bytes, { width, height, scale = 1 } = {}) {
-  const mesh = readMesh(bytesOf(bytes)), whole = (x) => max(1, Math.round(x));
-  if (width) scale = width / mesh.width;
-  else if (height) scale = height / mesh.height;
+  const mesh = readMesh(new Uint8Array(bytes)), { channels } = mesh, whole = (x) => max(1, Math.round(x));
+  scale = width ? width / mesh.width : height ? height / mesh.height : scale;
   width = whole(width ?? mesh.width * scale);
   height = whole(height ?? mesh.height * scale);
   checkSize(width, height);
   // One column of a picture that has only one is drawn, and repeated.
-  const columns = mesh.width < 2 ? 1 : width, rows = mesh.height < 2 ? 1 : height, data = draw(mesh, columns, rows);
-  if (columns * rows === width * height) return { width, height, channels: mesh.channels, data };
-  const pixels = new Uint32Array(data.buffer), all = new Uint32Array(width * height);
-  for (let i = 0; i < all.length; ++i) all[i] = pixels[min(floor(i / width), rows - 1) * columns + min(i % width, columns - 1)];
-  return { width, height, channels: mesh.channels, data: new Uint8ClampedArray(all.buffer) };
+  const columns = mesh.width < 2 ? 1 : width, rows = mesh.height < 2 ? 1 : height;
+  let data = draw(mesh, columns, rows);
+  if (columns * rows < width * height) {
+    const pixels = new Uint32Array(data.buffer);
+    const all = Uint32Array.from({ length: width * height }, (_, i) =>
+      pixels[min(floor(i / width), rows - 1) * columns + min(i % width, columns - 1)]);
+    data = new Uint8ClampedArray(all.buffer);
+  }
+  return { width, height, channels, data };
 }
 
 /**
