@@ -21,13 +21,11 @@ const clamp = (x, low, high) => max(low, min(x, high));
 // Exact for |a| < 2^52.
 const divide = (a, b) => floor(a / b);
 const rounded = (a, b) => divide(2 * a + b, 2 * b);
-/** The whole part of x 2^shift. */
-const scaled = (x, shift) => (shift < 0 ? floor(x / 2 ** -shift) : x << shift);
 const ints = (count) => new Int32Array(count);
 const cross = (ux, uy, vx, vy) => ux * vy - uy * vx;
 const squared = (x, y) => x * x + y * y;
-/** How many bits a number below 2^53 takes. */
-const bitWidth = (x) => (x < 2 ** 32 ? 32 - clz32(x) : 64 - clz32(x / 2 ** 32));
+/** How many bits a number below 2^32 takes. */
+const bitWidth = (x) => 32 - clz32(x);
 
 function fail(text) {
   throw new Error(`The coded picture ${text}.`);
@@ -61,12 +59,13 @@ function readHeader(bytes) {
 // ---- Bit models
 
 const MAX_ODDS = 2047, EVEN = 1 << 14;
-const LOGISTIC = [22, 36, 60, 98, 162, 267, 439, 720, 1179, 1921, 3108, 4971, 7812, 11955, 17625, 24743, 32768];
-const logistic = (i) => (i > 16 ? 65536 - LOGISTIC[32 - i] : LOGISTIC[i]);
+/** A table of f(0), f(1), ..., rounded: no value is so near to a half that an engine's functions could matter. */
+const table = (count, f) => ints(count).map((_, i) => Math.round(f(i)));
+const LOGISTIC = table(33, (i) => 65536 / (1 + Math.exp(8 - i / 2)));
 /** The probability of log odds in 1/256 (from -MAX_ODDS), in 1/2^16. */
-const PROBABILITY = ints(2 * MAX_ODDS + 1).map((_, i) => {
+const PROBABILITY = table(2 * MAX_ODDS + 1, (i) => {
   const part = ++i & 127, k = i >> 7;
-  return (logistic(k) * (128 - part) + logistic(k + 1) * part + 64) >> 7;
+  return (LOGISTIC[k] * (128 - part) + LOGISTIC[k + 1] * part + 64) >> 7;
 });
 /** The log odds of a probability in 1/2^12. */
 const ODDS = ints(4096);
@@ -76,8 +75,8 @@ for (let p = 0, odds = -MAX_ODDS; p < 4096; ODDS[p++] = odds)
 /** How fast a context learns that has seen so many bits, in 1/2^15. */
 const RATE = ints(251).map((_, seen) => 327680 / (10 * seen + 25));
 
-/** The contexts of a decision, and their log odds. */
-const context = ints(5), odds = ints(6);
+/** The log odds of a decision's contexts. */
+const odds = ints(6);
 
 /**
  * A range decoder. end() fails if the bytes ended too early, or go on. model(sizes, sets) makes a kind of decision with
@@ -124,14 +123,9 @@ function rangeDecoder(bytes, at) {
     const first = sizes.map((size) => (all += size) - size);
     const probability = ints(all).fill(32768), seen = ints(all), settled = ints(sets);
     const weight = ints(sets * (inputs + 1)).map((_, i) => (++i % (inputs + 1) ? floor(9830 / inputs) : 16384));
-    return (prior, set, a, b, c, d = 0, e = 0) => {
+    return (prior, set, ...context) => {
       const from = set * (inputs + 1);
       let sum = 0;
-      context[0] = a;
-      context[1] = b;
-      context[2] = c;
-      context[3] = d;
-      context[4] = e;
       odds[inputs] = prior;
       for (let i = 0; i <= inputs; ++i) {
         if (i < inputs) odds[i] = ODDS[probability[(context[i] += first[i])] >> 4];
@@ -163,7 +157,7 @@ const roomOf = (cell, level, points) => clamp(points - (cell << level), 0, 1 << 
 /** 128 log2, by its first bits. */
 function roughLog(n) {
   const whole = bitWidth(n) - 1;
-  return whole * 128 + scaled(n, 7 - whole) - 128;
+  return whole * 128 + (whole < 7 ? n << (7 - whole) : n >> (whole - 7)) - 128;
 }
 
 /** Decodes points of a grid. Returns row * columns + column of each, in raster order. */
@@ -267,10 +261,9 @@ function codeFaces({ model_: model }, x, y, order) {
     const ax = x[a] - x[d], ay = y[a] - y[d], bx = x[b] - x[d], by = y[b] - y[d], cx = x[c] - x[d], cy = y[c] - y[d];
     const aa = squared(ax, ay), bb = squared(bx, by), cc = squared(cx, cy);
     const bc = cross(bx, by, cx, cy), ca = cross(cx, cy, ax, ay), ab = cross(ax, ay, bx, by), sum = aa * bc + bb * ca + cc * ab;
-    // Sums below 2^53 are exact; larger ones are off by less than 2^-50 of their parts.
+    // Sums of parts below 2^53 are exact.
     const size = aa * abs(bc) + bb * abs(ca) + cc * abs(ab), big = BigInt;
-    return (size < 2 ** 53 || abs(sum) > size * 2 ** -50 ? sum
-      : big(aa) * big(bc) + big(bb) * big(ca) + big(cc) * big(ab)) < 0;
+    return (size < 2 ** 53 ? sum : big(aa) * big(bc) + big(bb) * big(ca) + big(cc) * big(ab)) < 0;
   };
   const first = (e) => corner[after(e)], last = (e) => corner[ahead(e)];
   const link = (e, t) => {
@@ -302,39 +295,44 @@ function codeFaces({ model_: model }, x, y, order) {
         edge = i = NONE;
       }
     }
-    // The faces around it: of each the vertex that comes first after v, and what is beyond.
-    const e = edge < 0 ? 3 * f : edge, t = twin[e], q = corner[t], g = size++, opposite = faceOf(t);
-    let ring = [[f, corner[e], twin[ahead(e)]], [g, last(e), twin[after(e)]]], stack = [f, g];
-    if (edge < 0) {
-      ring = [ring[0], [g, first(e), t], [size++, last(e), twin[after(e)]]];
-      stack.push(size - 1);
-    } else if (t >= 0) {
-      stack = [opposite, size, f, g];
-      ring = [ring[0], [size++, first(e), twin[after(t)]], [opposite, q, twin[ahead(t)]], ring[1]];
-    } else ring = [ring[1], ring[0], [NONE, first(e)]];
-    ring.forEach(([f, a, beyond], i) => {
-      const [next, b] = ring[i + 1] ?? ring[0];
-      if (f < 0) return;
-      setFace(f, v, a, b);
-      link(3 * f, beyond);
-      link(3 * f + 1, next < 0 ? NONE : 3 * next + 2);
-    });
-    if (edge >= 0 && t < 0) twin[3 * g + 2] = NONE;
-    near = stack[stack.length - 1];
-    // Flips edges opposite v until none has a vertex inside its circle.
-    while (stack.length) {
-      const f = stack.pop(), e = 3 * f, t = twin[e], g = faceOf(t);
-      if (t < 0) continue;
-      const a = corner[e + 1], b = corner[e + 2], q = corner[t], beyond = twin[after(t)], other = twin[ahead(t)];
-      if (!inCircle(v, a, b, q)) continue;
-      const old = twin[e + 1];
+    // The face becomes three, but for one without area if v lies on its edge (a, b).
+    const isOnEdge = edge >= 0, e = isOnEdge ? edge : 3 * f, o = corner[e], a = first(e), b = last(e), t = twin[e];
+    const g = size + isOnEdge, h = size + !isOnEdge, stack = [f, g, h], atOA = twin[ahead(e)], atBO = twin[after(e)];
+    /** Flips the edge opposite v in face f. */
+    const flip = (f) => {
+      const e = 3 * f, t = twin[e], g = faceOf(t), a = corner[e + 1], b = corner[e + 2], q = corner[t], atAQ = twin[after(t)];
+      const atQB = twin[ahead(t)], atBV = twin[e + 1];
       setFace(f, v, a, q);
       setFace(g, v, q, b);
-      link(e, beyond);
-      link(3 * g, other);
-      link(3 * g + 1, old);
+      link(e, atAQ);
+      link(3 * g, atQB);
+      link(3 * g + 1, atBV);
       link(e + 1, 3 * g + 2);
-      stack.push(f, g);
+      return g;
+    };
+    ++size;
+    setFace(f, v, o, a);
+    setFace(h, v, b, o);
+    link(3 * f, atOA);
+    link(3 * h, atBO);
+    link(3 * h + 1, 3 * f + 2);
+    if (isOnEdge && t < 0) {
+      twin[3 * f + 1] = NONE;
+      stack.splice(1, 1);
+    } else {
+      ++size;
+      setFace(g, v, a, b);
+      link(3 * g, t);
+      link(3 * f + 1, 3 * g + 2);
+      link(3 * g + 1, 3 * h + 2);
+      if (isOnEdge) stack.splice(0, 2, flip(g), g, f);
+    }
+    near = h;
+    // Flips edges until none has a vertex inside its circle.
+    while (stack.length) {
+      const f = stack.pop(), t = twin[3 * f];
+      if (t < 0 || !inCircle(v, corner[3 * f + 1], corner[3 * f + 2], corner[t])) continue;
+      stack.push(f, flip(f));
       near = f;
     }
   }
@@ -387,7 +385,7 @@ function codeFaces({ model_: model }, x, y, order) {
   const onRight = (s) => s.goesRight_ && !isKnown(after(s.e_)) && reach(twin[after(s.e_)], s.lows_[0], s.lows_[3]);
   /** How far c is from completing a parallelogram, in octaves of its square over that of the edge. */
   const missOf = (c) =>
-    behind < 0 ? 15 : capped(bitWidth(divide(
+    behind < 0 ? 15 : bitWidth(min(32767, divide(
       64 * squared(x[a] + x[b] - x[behind] - x[c], y[a] + y[b] - y[behind] - y[c]), squared(x[a] - x[b], y[a] - y[b]))));
 
   while (gates.length) {
@@ -458,13 +456,13 @@ function codeFaces({ model_: model }, x, y, order) {
 
 // ---- Colours, in 1/64 of a grey level
 
-// 256 log2(1 + i / 16), and 2^14 2^(-i / 16).
-const LOG = [0, 22, 44, 63, 82, 100, 118, 134, 150, 165, 179, 193, 207, 220, 232, 244, 256];
-const POWER = [16384, 15689, 15024, 14387, 13777, 13193, 12634, 12098, 11585, 11094, 10624, 10173, 9742, 9329, 8933, 8555, 8192];
+const LOG = table(17, (i) => 256 * Math.log2(1 + i / 16)), POWER = table(17, (i) => 2 ** (14 - i / 16));
 
-/** 256 log2 of a number from 1 to 2^53. */
+/** 256 log2 of a number from 1 to 2^46: of its first 13 bits. */
 function log2(number) {
-  const whole = bitWidth(number) - 1, twelve = scaled(number, 12 - whole), i = (twelve >> 8) & 15, part = twelve & 255;
+  if (number >= 2 ** 30) return 4096 + log2(floor(number / 65536));
+  const whole = bitWidth(number) - 1, first = whole < 12 ? number << (12 - whole) : number >> (whole - 12);
+  const i = (first >> 8) & 15, part = first & 255;
   return 256 * whole + ((LOG[i] * (256 - part) + LOG[i + 1] * part + 128) >> 8);
 }
 const log16 = (number) => log2(number) >> 4;
@@ -545,7 +543,7 @@ function codeColors({ model_: model, number_: number }, x, y, { corner_: corner,
       }
       faces[faces.length - 1] += area[key % edges];
     }
-    neighbors = neighbors.slice(0, 12);
+    neighbors.splice(12);
     weights = neighbors.map((u, k) =>
       (18 * log2(squared(x[v] - x[u], y[v] - y[u]) + 16) + 51 * log2(faces[k] + 8) + 22 * log2(star[u] + 8)) >> 6);
     all = 0;
@@ -620,33 +618,6 @@ function codeColors({ model_: model, number_: number }, x, y, { corner_: corner,
   return color;
 }
 
-// ---- A file
-
-function readMesh(bytes) {
-  const { at_: at, ...info } = readHeader(bytes), { width, height, channels } = info, coder = rangeDecoder(bytes, at), steps = [];
-  const step = min(coder.number_(2), 4 * MAX_SIDE) + 1, right = 4 * max(width - 1, 1), bottom = 4 * max(height - 1, 1);
-  const columns = floor((right + step - 1) / step) + 1, rows = floor((bottom + step - 1) / step) + 1;
-  if (columns * rows > MAX_PIXELS) damaged();
-  const first = coder.bits_(8);
-  for (let k = 0; k < channels; ++k) {
-    const index = k ? first - 8 + coder.bits_(5) : first;
-    if (index < 0 || index > 143) damaged();
-    steps.push((16 + (index & 15)) << (index >> 4));
-  }
-  const points = codeAllPoints(coder, columns, rows, 4096 + 16 * bytes.length);
-  coder.end_();
-  const x = points.map((p) => min((p % columns) * step, right));
-  const y = points.map((p) => min(floor(p / columns) * step, bottom));
-  // Along a curve that fills the plane: bits of columns and rows in turn.
-  const spread = (n) => (n ? 4 * spread(n >> 1) + (n & 1) : 0);
-  const curve = Float64Array.from(points, (p) => 2 * spread(floor(p / columns)) + spread(p % columns));
-  const faces = codeFaces(coder, x, y, points.map((_, v) => v).sort((v, w) => curve[v] - curve[w]));
-  coder.end_();
-  const color = codeColors(coder, x, y, faces, steps, divide(6 * right * bottom, points.length));
-  coder.end_(true);
-  return { ...info, x, y, right_: right, bottom_: bottom, corner_: faces.corner_, color_: color };
-}
-
 // ---- Drawing: vertices lie on 1/16 of a pixel, colours of pixels are in 1/2^16 of a grey level
 
 const SUB = 16, TO_PIXEL = 1024;
@@ -658,11 +629,11 @@ function placeOf(at, last, from, to) {
 }
 
 /** Draws RGBA. Each face is linear in its colours; a later one overwrites. */
-function draw({ channels, x, y, corner_: corner, color_: color, ...mesh }, width, height) {
+function draw(px, py, corner, color, channels, width, height) {
   const data = new Uint8ClampedArray(4 * width * height);
-  const px = x.map((at) => placeOf(at, mesh.right_, mesh.width, width)), py = y.map((at) => placeOf(at, mesh.bottom_, mesh.height, height));
   // Of each channel of a pixel: the colour at one place, and what it gains to the right and down. Opaque without alpha.
-  const here = [0, 0, 0, 255 * 65536], right = [0, 0, 0, 0], down = [0, 0, 0, 0];
+  const here = ints(4), right = ints(4), down = ints(4);
+  here[3] = 255 << 16;
   let row, from, to, area;
   const narrow = (p, q) => {
     const rise = py[q] - py[p], rest = (px[q] - px[p]) * (SUB * row - py[p]) + rise * px[p];
@@ -733,18 +704,42 @@ export function info(bytes) {
  * @throws {Error} if the bytes are no such file, or the drawing would be larger than 65535 a side or 2^26 pixels
  */
 export function decode(bytes, { width, height, scale = 1 } = {}) {
-  const mesh = readMesh(new Uint8Array(bytes)), { channels } = mesh, whole = (x) => max(1, Math.round(x));
-  scale = width ? width / mesh.width : height ? height / mesh.height : scale;
-  width = whole(width ?? mesh.width * scale);
-  height = whole(height ?? mesh.height * scale);
+  bytes = new Uint8Array(bytes);
+  const header = readHeader(bytes), { channels } = header, right = 4 * max(header.width - 1, 1), bottom = 4 * max(header.height - 1, 1);
+  const coder = rangeDecoder(bytes, header.at_), step = min(coder.number_(2), 4 * MAX_SIDE) + 1, steps = [];
+  const columns = floor((right + step - 1) / step) + 1, rows = floor((bottom + step - 1) / step) + 1;
+  if (columns * rows > MAX_PIXELS) damaged();
+  const first = coder.bits_(8);
+  for (let k = 0; k < channels; ++k) {
+    const index = k ? first - 8 + coder.bits_(5) : first;
+    if (index < 0 || index > 143) damaged();
+    steps.push((16 + (index & 15)) << (index >> 4));
+  }
+  const points = codeAllPoints(coder, columns, rows, 4096 + 16 * bytes.length);
+  coder.end_();
+  const column = points.map((p) => p % columns), row = points.map((p) => floor(p / columns));
+  const x = column.map((at) => min(at * step, right)), y = row.map((at) => min(at * step, bottom));
+  // Along a curve that fills the plane: by the bits of rows and columns in turn.
+  const order = points.map((_, v) => v).sort((v, w) =>
+    clz32(column[v] ^ column[w]) < clz32(row[v] ^ row[w]) ? column[v] - column[w] : row[v] - row[w]);
+  const faces = codeFaces(coder, x, y, order);
+  coder.end_();
+  const color = codeColors(coder, x, y, faces, steps, divide(6 * right * bottom, points.length));
+  coder.end_(true);
+
+  const whole = (x) => max(1, Math.round(x));
+  scale = width ? width / header.width : height ? height / header.height : scale;
+  width = whole(width ?? header.width * scale);
+  height = whole(height ?? header.height * scale);
   checkSize(width, height);
   // One column of a picture that has only one is drawn, and repeated.
-  const columns = mesh.width < 2 ? 1 : width, rows = mesh.height < 2 ? 1 : height;
-  let data = draw(mesh, columns, rows);
-  if (columns * rows < width * height) {
+  const across = header.width < 2 ? 1 : width, down = header.height < 2 ? 1 : height;
+  const px = x.map((at) => placeOf(at, right, header.width, across)), py = y.map((at) => placeOf(at, bottom, header.height, down));
+  let data = draw(px, py, faces.corner_, color, channels, across, down);
+  if (across * down < width * height) {
     const pixels = new Uint32Array(data.buffer);
     const all = Uint32Array.from({ length: width * height }, (_, i) =>
-      pixels[min(floor(i / width), rows - 1) * columns + min(i % width, columns - 1)]);
+      pixels[min(floor(i / width), down - 1) * across + min(i % width, across - 1)]);
     data = new Uint8ClampedArray(all.buffer);
   }
   return { width, height, channels, data };
