@@ -7,6 +7,7 @@ import json
 import math
 import os
 import pathlib
+import re
 import struct
 import sys
 import tempfile
@@ -37,6 +38,11 @@ COPY = Peer("copy", "coreutils", "png", "cp {png} {file}", "cp {file} {png}", (0
 def point(size, psnr, scale="1", **others):
     return {"bytes": size, "scale": scale, "filter": "", "psnr": psnr, "luma_psnr": psnr, "ssim": psnr / 100,
             "ciede2000": 40 - psnr, "encode_seconds": 1, "decode_seconds": 0.1, **others}
+
+
+def validate(figures):
+    schema = json.loads((HERE.parents[1] / "schemas" / compression.SCHEMA).read_text("utf-8"))
+    jsonschema.Draft202012Validator(schema).validate(figures)
 
 
 class FolderTest(unittest.TestCase):
@@ -161,8 +167,7 @@ class ReportTest(FolderTest):
                 "lossless_bytes": {"a": {}, "b": {}}, "groups": {"photographs": photographs, "drawings": photographs}}
 
     def test_these_figures_are_such_as_it_writes(self):
-        schema = json.loads((HERE.parents[1] / "schemas" / compression.SCHEMA).read_text("utf-8"))
-        jsonschema.Draft202012Validator(schema).validate(self.figures())
+        validate(self.figures())
 
     def test_means(self):
         title, _, head, rows = tables.all_tables(self.figures())[0]
@@ -191,6 +196,30 @@ class ReportTest(FolderTest):
         self.assertEqual((o.codecs, o.bytes), (["mesh", "AVIF"], [1000, 4000]))
         with self.assertRaises(SystemExit), contextlib.redirect_stderr(io.StringIO()):
             compression.options(["bin", "in", "out", "--codecs", "GIF"])
+
+
+class RunTest(FolderTest):
+    def test_meshes_alone(self):
+        """The whole, on one small picture: figures that agree with the schema, files within the bytes, and a page whose
+        pictures are there."""
+        pictures, out = self.folder / "in", self.folder / "out"
+        pictures.mkdir()
+        own_pictures.lights().resize((64, 48)).save(pictures / "lights.png")
+        with contextlib.redirect_stdout(io.StringIO()) as printed, contextlib.redirect_stderr(io.StringIO()):
+            compression.main([str(BIN), str(pictures), str(out), "--codecs", "mesh", "--groups", "photographs", "--bytes",
+                              "200,2000", "--jobs", "1"])
+        figures = json.loads((out / "compression.json").read_text("utf-8"))
+        validate(figures)
+        by_limit = figures["groups"]["photographs"]["lights"]["mesh"]
+        self.assertLess(by_limit["200"][0]["psnr"], by_limit["2000"][0]["psnr"])
+        for limit, (only,) in by_limit.items():
+            file = out / "files" / "mesh" / "photographs" / f"lights-{limit}.imgm"
+            self.assertEqual(file.stat().st_size, only["bytes"])
+            self.assertLessEqual(only["bytes"], int(limit))
+        self.assertIn("| 2000 | ", printed.getvalue())
+        shown = re.findall('src="([^"]+)"', (out / "compression.html").read_text("utf-8"))
+        self.assertEqual(len(shown), 2)  # the original, and of the sizes that are shown the one that was asked for
+        self.assertTrue(all((out / name).exists() for name in shown))
 
 
 if __name__ == "__main__":

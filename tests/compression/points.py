@@ -71,7 +71,7 @@ class PictureRun:
     def mesh_points(self, mesh, limit, file):
         """The one point of a coded mesh, whose bytes go to `file`."""
         encode_seconds = cpu_seconds([self.tools / "imgmesh-encode", self.original, "-o", file, "--bytes", limit,
-                                      *MESHES[mesh]])
+                                      "--threads", 1, *MESHES[mesh]])
         if file.stat().st_size > limit:
             raise BenchError(f"{file}: {file.stat().st_size} bytes, expected at most {limit}")
         decoded, decode_seconds = self.drawn_mesh(file)
@@ -81,7 +81,7 @@ class PictureRun:
     def drawn_mesh(self, file):
         """The decoded picture and the CPU seconds of the whole program."""
         out = self.folder / "mesh.png"
-        seconds = cpu_seconds([self.tools / "imgmesh-decode", file, "-o", out])
+        seconds = cpu_seconds([self.tools / "imgmesh-decode", file, "-o", out, "--threads", 1])
         return Image.open(out).convert("RGB"), seconds
 
     def lossless_bytes(self, command):
