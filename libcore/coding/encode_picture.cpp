@@ -7,6 +7,7 @@
 
 #include "libcore/base/error.h"
 #include "libcore/base/index.h"
+#include "libcore/coding/error_space.h"
 #include "libcore/coding/grid_optimizer.h"
 #include "libcore/coding/grid_schedule.h"
 #include "libcore/coding/mesh_trial.h"
@@ -14,7 +15,6 @@
 namespace imgmesh {
 namespace {
 
-using coding::ColorWeights;
 using coding::MeshTrial;
 
 // The step of colours at which most error is saved for a bit, over the root mean squared error of the mesh
@@ -27,64 +27,14 @@ constexpr int kHeaderBytes = 8;
 // above it, at first and at last, before the steps of its colours do the rest.
 constexpr double kDecibels = 1.8, kBelow = 0.04, kFirstAbove = 0.3, kAbove = 0.15;
 
-// Linear in the channels, so that squared errors of what it returns weigh what `tune` says.
-struct ErrorSpace {
-    double plain = 1, luma = 0;  // squared weights of each channel's error, and of luma's
-
-    explicit ErrorSpace(Tune tune) {
-        if (tune == Tune::kPsnr) return;
-        plain = 0.25;
-        luma = 2.25;
-    }
-    // The symmetric square root of plain I + luma y y'.
-    void apply(std::span<float> rgb) const {
-        constexpr std::array<double, 3> y = {0.299, 0.587, 0.114};
-        constexpr double yy = y[0] * y[0] + y[1] * y[1] + y[2] * y[2];
-        const double value = y[0] * rgb[0] + y[1] * rgb[1] + y[2] * rgb[2];
-        const double more = (std::sqrt(plain + luma * yy) - std::sqrt(plain)) / yy * value;
-        for (std::size_t k = 0; k < 3; ++k)
-            rgb[k] = static_cast<float>(std::sqrt(plain) * rgb[k] + more * y[k]);
-    }
-};
-
-ColorWeights color_weights(Tune tune, int channels) {
-    ColorWeights weights;
-    if (tune == Tune::kPsnr || channels < 3) return weights;
-    weights.weight = {1, 0.25, 0.25, 1};
-    weights.shift = {0, 12, 12, 0};
-    return weights;
-}
-
-std::vector<float> premultiplied(const Bitmap& picture) {
-    std::vector<float> out(picture.data.begin(), picture.data.end());
-    if (!picture.has_alpha()) return out;
-    const auto channels = as_index(picture.channels);
-    for (std::size_t i = 0; i < out.size(); i += channels)
-        for (std::size_t k = 0; k + 1 < channels; ++k) out[i + k] *= out[i + channels - 1] / 255;
-    return out;
-}
-
-// A side of one pixel becomes one of two.
-ChannelGrid at_least_two(int width, int height, int channels, const std::vector<float>& samples) {
-    ChannelGrid grid(std::max(width, 2), std::max(height, 2), channels, {});
-    for (int y = 0; y < grid.height; ++y)
-        for (int x = 0; x < grid.width; ++x) {
-            const std::size_t from =
-                as_index(std::min(y, height - 1)) * as_index(width) + as_index(std::min(x, width - 1));
-            for (std::size_t k = 0; k < as_index(channels); ++k)
-                grid.data.push_back(samples[from * as_index(channels) + k]);
-        }
-    return grid;
-}
-
 class PictureEncoder {
   public:
     PictureEncoder(const Bitmap& picture, const EncodeParams& params, const Progress& progress)
         : picture_(picture),
           params_(params),
           progress_(progress),
-          samples_(premultiplied(picture)),
-          sums_(objective()) {}
+          samples_(coding::premultiplied(picture)),
+          sums_(coding::objective(picture, samples_, params.tune)) {}
 
     EncodedPicture encode() {
         if (params_.bytes)
@@ -97,14 +47,6 @@ class PictureEncoder {
     }
 
   private:
-    ChannelGrid objective() const {
-        ChannelGrid grid = at_least_two(picture_.width, picture_.height, picture_.channels, samples_);
-        const ErrorSpace space(params_.tune);
-        if (params_.tune != Tune::kPsnr && picture_.channels >= 3)
-            for (std::size_t i = 0; i < grid.pixel_count(); ++i)
-                space.apply(std::span(grid.data).subspan(i * as_index(picture_.channels), 3));
-        return grid;
-    }
     double pixels() const { return double(picture_.width) * picture_.height; }
     double samples() const { return pixels() * picture_.channels; }
     void report(double fraction, std::string_view stage) const {
@@ -137,7 +79,8 @@ class PictureEncoder {
         CodedMesh mesh = optimizer_->result();
         mesh.grid.width = picture_.width;
         mesh.grid.height = picture_.height;
-        trial_ = std::make_unique<MeshTrial>(mesh, samples_, color_weights(params_.tune, picture_.channels));
+        trial_ = std::make_unique<MeshTrial>(mesh, samples_,
+                                             coding::color_weights(params_.tune, picture_.channels));
     }
     int usual_step_index() const {
         const double error = std::sqrt(optimizer_->squared_error() / samples());
@@ -161,6 +104,12 @@ class PictureEncoder {
         optimize(params_.effort);
         take_mesh();
         trial_->code(usual_step_index());
+        // A picture of few colours may take too few bytes for its vertices.
+        for (std::size_t most; (most = coding::most_vertices(trial_->bytes().size())) < trial_->vertices();) {
+            optimizer_->set_vertex_count(most);
+            take_mesh();
+            trial_->code(usual_step_index());
+        }
         reached_ = !params_.vertices || trial_->vertices() == wanted;
     }
 
@@ -182,7 +131,7 @@ class PictureEncoder {
                 std::max(4.0, std::floor(static_cast<double>(trial_->vertices()) * ratio)));
             if (std::abs(ratio - 1) < 0.03 || next == trial_->vertices() || psnr() > 60) break;
             optimizer_->set_vertex_count(std::min(next, most_vertices(step_)));
-            optimize(std::max(1, params_.effort - 2));
+            optimizer_->optimize(touch_up_schedule());
         }
         // The steps of colours make up for the rest.
         int low = 0, high = coding::kStepIndices - 1;

@@ -8,7 +8,7 @@
 namespace imgmesh::coding {
 
 // Squared error that a bit of colour may cost, over the squared step, for each pixel of a vertex.
-constexpr double kBitPrice = 0.025;
+constexpr double kBitPrice = 0.03;
 
 MeshTrial::MeshTrial(const CodedMesh& mesh, std::span<const float> picture, const ColorWeights& weights)
     : content_(arranged(mesh)),
