@@ -88,6 +88,7 @@ class Refiner {
                   std::vector<Id>& fresh);
     void changed(const OneRing& ring);  // forgets what was remembered of its vertices
     void changed(Id f);
+    void touch_ring(Id v, std::vector<bool>& touched) const;  // marks its faces
     std::vector<Insertion> insertions() const;
     Removal best_removal(Id v) const;
     Insertion best_insertion(Id f) const;

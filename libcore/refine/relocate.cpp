@@ -203,6 +203,14 @@ std::vector<Refiner::Insertion> Refiner::insertions() const {
     return all;
 }
 
+void Refiner::touch_ring(Id v, std::vector<bool>& touched) const {
+    touched.resize(mesh_.faces().size(), true);
+    // New faces may have the ids of removed ones.
+    OneRing ring;
+    mesh_.ring(v, ring);
+    for (std::size_t k = 0; k < ring.faces; ++k) touched[ring.face[k]] = true;
+}
+
 // Remembered results for a face or a vertex hold only until something near it changes.
 std::int64_t Refiner::insert_best(std::int64_t most) {
     std::vector<bool> touched(mesh_.faces().size(), false);
@@ -213,8 +221,9 @@ std::int64_t Refiner::insert_best(std::int64_t most) {
         if (insertion.border || touched[insertion.face] || (g != kNone && touched[g])) continue;
         touched[insertion.face] = true;
         if (g != kNone) touched[g] = true;
-        move_vertex(insert(insertion));
-        touched.resize(mesh_.faces().size(), true);
+        const Id v = insert(insertion);
+        move_vertex(v);
+        touch_ring(v, touched);
         ++done;
     }
     return done;
@@ -309,7 +318,7 @@ void Refiner::relocate(std::size_t most, const std::vector<Removal>& removals,
             if (g != kNone) touched[g] = true;
             remove(removal);
             fresh.push_back(insert(insertion));
-            touched.resize(mesh_.faces().size(), true);
+            touch_ring(fresh.back(), touched);
         }
     }
 }
