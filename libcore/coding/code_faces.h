@@ -49,7 +49,7 @@ class FaceCoder {
     }
 
   private:
-    static constexpr int kMaxSteps = 24;
+    static constexpr int kMaxSteps = 256;
     static constexpr std::size_t kStopInputs = 5, kSideInputs = 4;
 
     GateStep reach(Id a, Id b, Id face, Id left, Id right, Id low_left, Id low_right) const;

@@ -133,6 +133,40 @@ TEST_CASE("faces that are far from Delaunay come back") {
         }
 }
 
+TEST_CASE("needles that cross two hundred Delaunay edges come back") {
+    // Two vertices in the middle of the left and right sides, joined by an edge below a row of vertices and
+    // above another one.
+    constexpr int kColumns = 100;
+    CodedMesh mesh;
+    mesh.grid = {kColumns, 5, 4};
+    for (const int row : {0, 4})
+        for (int column = 0; column < kColumns; ++column) mesh.point.push_back({column, row});
+    const Id left = 2 * kColumns, right = left + 1;
+    mesh.point.push_back({0, 2});
+    mesh.point.push_back({kColumns - 1, 2});
+    for (Id k = 0; k + 1 < kColumns; ++k) {
+        mesh.faces.push_back({left, k + 1, k});
+        mesh.faces.push_back({right, kColumns + k, kColumns + k + 1});
+    }
+    mesh.faces.push_back({left, right, kColumns - 1});
+    mesh.faces.push_back({left, kColumns, right});
+    // Vertices come back in another order: faces by their places.
+    const auto places = [](const CodedMesh& m) {
+        std::set<std::array<GridPoint, 3>> out;
+        for (const Face& face : face_set(m.faces)) {
+            std::array<GridPoint, 3> corner = {m.point[face[0]], m.point[face[1]], m.point[face[2]]};
+            std::rotate(corner.begin(), std::min_element(corner.begin(), corner.end()), corner.end());
+            out.insert(corner);
+        }
+        return out;
+    };
+    const StreamContent content = arranged(mesh);
+    CodedMesh again = mesh;
+    again.point = content.point;
+    again.faces = content.faces;
+    CHECK(places(again) == places(mesh));
+}
+
 TEST_CASE("a mesh whose faces do not fit together is replaced by one that does") {
     CodedMesh mesh = random_mesh(4, {40, 40, 4}, 60, 0);
     std::mt19937 random(4);
