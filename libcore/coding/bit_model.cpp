@@ -9,7 +9,9 @@ constexpr std::array<int, 33> kLogistic = {22,    36,    60,    98,    162,   26
                                            47911, 53581, 57724, 60565, 62428, 63615, 64357, 64816, 65097,
                                            65269, 65374, 65438, 65476, 65500, 65514};
 
-constexpr std::array<int, 2 * kMaxOdds + 1> kProbability = [] {
+}  // namespace
+
+constexpr std::array<int, 2 * kMaxOdds + 1> kProbabilities = [] {
     std::array<int, 2 * kMaxOdds + 1> out{};
     for (int odds = -kMaxOdds; odds <= kMaxOdds; ++odds) {
         const int x = odds + 2048, part = x & 127;
@@ -25,26 +27,17 @@ constexpr std::array<std::int16_t, 4096> kOdds = [] {
     std::array<std::int16_t, 4096> out{};
     int odds = -kMaxOdds;
     for (int p = 0; p < 4096; ++p) {
-        while (odds < kMaxOdds && kProbability[static_cast<std::size_t>(odds + kMaxOdds)] < 16 * p + 8)
+        while (odds < kMaxOdds && kProbabilities[static_cast<std::size_t>(odds + kMaxOdds)] < 16 * p + 8)
             ++odds;
         out[static_cast<std::size_t>(p)] = static_cast<std::int16_t>(odds);
     }
     return out;
 }();
 
-}  // namespace
-
 const std::array<int, 256> AdaptiveBit::kRate = [] {
     std::array<int, 256> out{};
     for (int seen = 0; seen < 256; ++seen) out[static_cast<std::size_t>(seen)] = 327680 / (10 * seen + 25);
     return out;
 }();
-
-int probability_of(int odds) {
-    return kProbability[static_cast<std::size_t>(odds + kMaxOdds)];
-}
-int odds_of(int probability) {
-    return kOdds[static_cast<std::size_t>(probability >> 4)];
-}
 
 }  // namespace imgmesh::coding

@@ -13,10 +13,17 @@ namespace imgmesh::coding {
 /// Log odds are in 1/256 of a natural unit, from -kMaxOdds to kMaxOdds.
 inline constexpr int kMaxOdds = 2047;
 
+extern const std::array<int, 2 * kMaxOdds + 1> kProbabilities;
+extern const std::array<std::int16_t, 4096> kOdds;
+
 /// Returns the probability of those log odds, in 1/2^16.
-int probability_of(int odds);
+inline int probability_of(int odds) {
+    return kProbabilities[static_cast<std::size_t>(odds + kMaxOdds)];
+}
 /// Returns the log odds of a probability in 1/2^16.
-int odds_of(int probability);
+inline int odds_of(int probability) {
+    return kOdds[static_cast<std::size_t>(probability >> 4)];
+}
 
 /// What a context knows: the probability of a 1, from few bits at first.
 struct AdaptiveBit {
