@@ -13,17 +13,23 @@ void RangeEncoder::shift_out() {
     low_ = (low_ & 0x00FFFFFF) << 8;
 }
 
-// Any number in [low_, low_ + range_) will do: the one with the most zero bits at its end.
+// Any number in [low_, low_ + range_) will do: the one that differs from the bytes after the end in the
+// fewest.
 std::vector<std::uint8_t> RangeEncoder::finish() {
     const std::uint64_t last = low_ + range_ - 1;
-    for (int zeros = 32; zeros >= 0; --zeros) {
-        const std::uint64_t value = last >> zeros << zeros;
-        if (value < low_) continue;
+    int kept = 4;
+    for (int bytes = 0; bytes < 4; ++bytes) {
+        const int rest = 32 - 8 * bytes;
+        const std::uint64_t tail = kAfterEnd & ((std::uint64_t{1} << rest) - 1);
+        std::uint64_t value = (last >> rest << rest) + tail;
+        if (value > last) value -= std::uint64_t{1} << rest;
+        if (value < low_ || value > last) continue;
         low_ = value;
+        kept = bytes;
         break;
     }
     for (int i = 0; i < 4; ++i) shift_out();
-    for (int i = 0; i < 4 && bytes_.back() == 0; ++i) bytes_.pop_back();
+    bytes_.resize(bytes_.size() - static_cast<std::size_t>(4 - kept));
     return std::move(bytes_);
 }
 

@@ -12,6 +12,9 @@ namespace imgmesh::coding {
 /// Probabilities of a bit that is 1 have this many bits: 1 .. 2^15 - 1.
 inline constexpr int kProbabilityBits = 15;
 inline constexpr std::uint32_t kRangeFloor = 1u << 24;
+/// What a decoder reads after the end. A stream that was cut off goes on as if with bytes of its own, and so
+/// wants more than it can have; zeros would be bits that every model soon expects.
+inline constexpr std::uint32_t kAfterEnd = 0x55555555;
 
 class RangeEncoder {
   public:
@@ -33,7 +36,7 @@ class RangeEncoder {
     }
     /// Returns how many bytes are out. Up to four more are to come of what has been coded.
     std::size_t size() const { return bytes_.size(); }
-    /// Returns the bytes, without up to four zeros at the end: the decoder reads zeros there.
+    /// Returns the bytes, without those of the last four that a decoder reads after the end anyway.
     std::vector<std::uint8_t> finish();
 
   private:
@@ -74,7 +77,7 @@ class RangeDecoder {
     std::uint32_t next() {
         if (at_ < bytes_.size()) return bytes_[at_++];
         ++missing_;
-        return 0;
+        return kAfterEnd & 0xFF;
     }
 
     std::span<const std::uint8_t> bytes_;
