@@ -21,8 +21,10 @@ using coding::MeshTrial;
 // with exact colours; sides of the mesh over the step of its grid. Both optima are broad.
 constexpr double kStepOverError = 1.2, kSideOverGrid = 9;
 // Bits of a vertex, before anything is known.
-constexpr double kVertexBits = 15;
+constexpr double kVertexBits = 16.5;
 constexpr int kHeaderBytes = 8;
+// Above this PSNR no error can be seen [dB].
+constexpr double kExact = 60;
 // Decibels that twice the vertices gain, before anything is known; how far a mesh may be below a PSNR and
 // above it, at first and at last, before the steps of its colours do the rest.
 constexpr double kDecibels = 1.8, kBelow = 0.04, kFirstAbove = 0.3, kAbove = 0.15;
@@ -122,14 +124,17 @@ class PictureEncoder {
         report(0.1, "optimise");
         optimize(params_.effort);
         // The number of vertices follows the bits that they have taken.
-        for (int round = 0; round < 4; ++round) {
-            report(0.8 + 0.04 * round, "rate");
+        constexpr int kRounds = 6;
+        for (int round = 0; round < kRounds; ++round) {
+            report(0.7 + 0.3 * round / kRounds, "rate");
             take_mesh();
             trial_->code(usual_step_index());
             const double ratio = double(wanted) / static_cast<double>(trial_->bytes().size());
             const auto next = static_cast<std::size_t>(
                 std::max(4.0, std::floor(static_cast<double>(trial_->vertices()) * ratio)));
-            if (std::abs(ratio - 1) < 0.03 || next == trial_->vertices() || psnr() > 60) break;
+            // What is drawn almost exactly needs no more vertices.
+            if (std::abs(ratio - 1) < 0.03 || next == trial_->vertices() || (ratio > 1 && psnr() > kExact))
+                break;
             optimizer_->set_vertex_count(std::min(next, most_vertices(step_)));
             optimizer_->optimize(touch_up_schedule());
         }
