@@ -22,5 +22,6 @@ void bind_draw(py::module_& module);
 void bind_segment(py::module_& module);
 void bind_warp(py::module_& module);
 void bind_compare(py::module_& module);
+void bind_coded(py::module_& module);
 
 }  // namespace imgmesh::python

@@ -14,4 +14,5 @@ PYBIND11_MODULE(_imgmesh, module) {
     bind_segment(module);
     bind_warp(module);
     bind_compare(module);
+    bind_coded(module);
 }

@@ -34,9 +34,6 @@ namespace {
 // docs/limits.md.
 constexpr double kEncodeBytes = 100, kDrawBytes = 50;
 
-// Without a wish: 1 vertex for 108 pixels, where a photograph takes about 0.16 bits a pixel.
-constexpr double kUsualQuality = 50;
-
 struct Options {
     std::string input;
     std::string output;
@@ -46,10 +43,6 @@ struct Options {
     ContainerLimits limits;
 };
 
-Choices<Tune> tune_choices() {
-    return {{"psnr", Tune::kPsnr}, {"luma", Tune::kLuma}, {"ssim", Tune::kSsim}};
-}
-
 void add_options(CLI::App& app, Options& o) {
     const std::string size = "Size", work = "Encoding";
     EncodeParams& p = o.params;
@@ -57,18 +50,18 @@ void add_options(CLI::App& app, Options& o) {
                        "Largest size of the file, which gets as good as that allows"),
              size);
     CLI::Option* const psnr = in_group(
-        add_number(app, "--psnr", p.psnr, {1, 100}, "Error to keep to, over all channels [dB]"), size);
+        add_number(app, "--psnr", p.psnr, {1, kMostPsnr}, "Error to keep to, over all channels [dB]"), size);
     CLI::Option* const vertices =
         in_group(add_count(app, "--vertices", p.vertices, {4}, "Number of vertices"), size);
     CLI::Option* const quality =
-        in_group(add_number(app, "--quality", p.quality, {0, 100},
+        in_group(add_number(app, "--quality", p.quality, {0, kMostQuality},
                             {"Vertices for each pixel: twice as many every 8, and 1 for 108 pixels at 50",
                              cat(kUsualQuality)}),
                  size);
     exclude(app, psnr, {"--bytes"});
     exclude(app, vertices, {"--bytes", "--psnr"});
     exclude(app, quality, {"--bytes", "--psnr", "--vertices"});
-    in_group(add_count(app, "--effort", p.effort, {1, 5},
+    in_group(add_count(app, "--effort", p.effort, {1, kMostEffort},
                        "Time for a better file; each takes about twice as long as the one before"),
              work);
     in_group(add_choice(app, "--tune", p.tune, tune_choices(),

@@ -7,6 +7,7 @@
 
 #include "libcore/base/error.h"
 #include "libcore/base/index.h"
+#include "libcore/coding/check_request.h"
 #include "libcore/coding/error_space.h"
 #include "libcore/coding/grid_optimizer.h"
 #include "libcore/coding/grid_schedule.h"
@@ -249,6 +250,7 @@ class PictureEncoder {
 }  // namespace
 
 EncodedPicture encode_picture(const Bitmap& picture, const EncodeParams& params, const Progress& progress) {
+    coding::check_request(picture, params);
     return PictureEncoder(picture, params, progress).encode();
 }
 

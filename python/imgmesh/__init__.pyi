@@ -1,3 +1,4 @@
+import builtins
 import os
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any, Final, Literal, TypeAlias, TypedDict, final
@@ -8,7 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 __all__ = [
     "NO_FACE", "ArgumentError", "BadFileError", "Comparison", "Error", "FileError", "Image", "InternalError", "Level",
     "Mesh", "OutOfMemoryError", "Segmentation", "UnsupportedError", "Warning", "__version__", "build",
-    "build_parameters", "compare", "read", "read_image", "write_image",
+    "build_parameters", "compare", "decode", "encode", "read", "read_image", "write_image",
 ]
 
 _Path: TypeAlias = str | bytes | os.PathLike[str] | os.PathLike[bytes]
@@ -332,6 +333,19 @@ def build(
 ) -> Mesh: ...
 def build_parameters() -> list[dict[str, Any]]: ...
 def compare(a: _ImageLike | Mesh, b: _ImageLike | Mesh, *, threads: int | None = None) -> Comparison: ...
+def decode(data: bytes, *, size: _Size | None = None, threads: int | None = None) -> Image: ...
+def encode(
+    image: _ImageLike,
+    *,
+    bytes: int | None = None,
+    psnr: float | None = None,
+    vertices: int | None = None,
+    quality: float | None = None,
+    effort: int = 3,
+    tune: Literal["psnr", "luma", "ssim"] = "psnr",
+    progress: _Progress | None = None,
+    threads: int | None = None,
+) -> builtins.bytes: ...
 def read(path: _Path, *, threads: int | None = None) -> Mesh: ...
 def read_image(
     path: _Path,

@@ -39,6 +39,25 @@ class Same(CliCase):
                 self.assertEqual(self.write(imgmesh.build(source, **parameters), "python.glb"), tool)
         return tool
 
+    def test_coded_pictures(self):
+        for picture, options, parameters in ((self.color, ["--bytes", "200"], {"bytes": 200}),
+                                             (self.soft, ["--vertices", "20", "--tune", "luma"], {"vertices": 20, "tune": "luma"}),
+                                             (self.alpha, ["--effort", "1"], {"effort": 1})):
+            path = self.png(picture)
+            self.run_ok("imgmesh-encode", path, "-o", "x.imgm", "-q", *options)
+            coded = (self.folder / "x.imgm").read_bytes()
+            for source in (str(path), picture):
+                self.assertEqual(imgmesh.encode(source, **parameters), coded)
+            self.run_ok("imgmesh-decode", "x.imgm", "-o", "drawn.png", "-q", "--size", "20x30")
+            np.testing.assert_array_equal(imgmesh.decode(coded, size=(20, 30)).array,
+                                          imgmesh.read_image(self.folder / "drawn.png").array)
+        for wrong in ({"bytes": 3}, {"bytes": 99, "psnr": 20}, {"effort": 9}, {"tune": "x"}, {"quality": float("nan")}):
+            with self.assertRaises(imgmesh.ArgumentError):
+                imgmesh.encode(self.color, **wrong)
+        for data in (b"", b"nothing", coded[:9]):
+            with self.assertRaises(imgmesh.BadFileError):
+                imgmesh.decode(data)
+
     def test_containers(self):
         grey = self.color[..., 1]
         wide = np.round(picture_files.ramp(48, 32) * 65535).astype(np.uint16)

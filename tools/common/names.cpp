@@ -62,4 +62,8 @@ Choices<TextureType> texture_type_choices() {
     return {{"png", TextureType::kPng}, {"jpeg", TextureType::kJpeg}};
 }
 
+Choices<Tune> tune_choices() {
+    return {{"psnr", Tune::kPsnr}, {"luma", Tune::kLuma}, {"ssim", Tune::kSsim}};
+}
+
 }  // namespace imgmesh

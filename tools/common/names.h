@@ -4,6 +4,7 @@
 #include "formats/container/container.h"
 #include "formats/picture/image_io.h"
 #include "formats/picture/texture_file.h"
+#include "libcore/coding/encode_picture.h"
 #include "libcore/image/image.h"
 #include "libcore/mesh/pixel_map.h"
 #include "libcore/pipeline/build_source.h"
@@ -24,5 +25,6 @@ Choices<SegmentQuality> segment_quality_choices();
 Choices<AlphaUse> alpha_choices();
 Choices<NonFinite> non_finite_choices();
 Choices<TextureType> texture_type_choices();
+Choices<Tune> tune_choices();
 
 }  // namespace imgmesh
