@@ -64,6 +64,14 @@ set(IMGMESH_PUBLIC_HEADERS
   libcore/metrics/quality_distributions.h
   libcore/metrics/triangle_shape.h
 
+  libcore/coding/bitmap.h
+  libcore/coding/coded_mesh.h
+  libcore/coding/coded_mesh_image.h
+  libcore/coding/coded_stream.h
+  libcore/coding/draw_coded.h
+  libcore/coding/encode_picture.h
+  libcore/coding/image_bitmap.h
+
   formats/container/container.h
   formats/container/edit_file.h
   formats/container/validate.h
