@@ -1,6 +1,9 @@
 // encode() and decode(): coded pictures.
 #include <pybind11/stl.h>
 
+#include <algorithm>
+#include <tuple>
+
 #include "libcore/base/error.h"
 #include "libcore/coding/coded_stream.h"
 #include "libcore/coding/encode_picture.h"
