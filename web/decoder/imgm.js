@@ -151,6 +151,7 @@ function rangeDecoder(bytes, at) {
 // ---- Points: counts of vertices in cells that halve until each is one point of the grid
 
 const pair = (a, b, most) => min(a, most) * (most + 1) + min(b, most);
+const lead = (a, b) => min(a, 7) - min(b, 7);
 const capped = (number) => min(number, 15);
 const cellsOf = (points, level) => (points + (1 << level) - 1) >> level;
 const roomOf = (cell, level, points) => clamp(points - (cell << level), 0, 1 << level);
@@ -182,14 +183,16 @@ function codePoints({ model_: model }, columns, rows, count) {
       if (here >= roomFirst + roomSecond) return roomFirst;
       const before = 2 * next[j - onHalf], after = now[i + onCell], beside = now[i + byCell];
       const first = next[j - byHalf], second = next[k - byHalf], half = here >> 1, few = min(here, 4) - 1;
-      if (here % 2 < 1 && tie(0, 0, capped(half) * 24 + level, min(before + after, 7) * 64 + pair(first + second, beside, 7), capped(half)))
+      if (here % 2 < 1 && tie([-38, -168, -247, -449][min(half, 4) - 1] + (level < 2 ? 255 : level < 3 ? 79 : 0), 0, capped(half) * 24 + level, min(before + after, 7) * 64 + pair(first + second, beside, 7), capped(half)))
         return half;
-      const corner = next[j - onHalf - byHalf], corners = down
-        ? pair(corner + next[j - onHalf + byHalf], (now[i + onCell - byCell] + now[i + onCell + byCell] + 1) >> 1, 7)
-        : pair(2 * corner + now[i - onCell + byCell], 2 * next[k + onHalf - byHalf] + now[i + onCell + byCell], 7);
-      const isFirst = side(clamp(((roughLog(roomFirst) - roughLog(roomSecond)) * 177) >> 7, -600, 600), 0,
-        few * 64 + pair(before, after, 7), few * 64 + pair(first, second, 7), few * 64 + corners,
-        (level * 4 + few) * 2 + down, pair(before + first, after + second, 24) * 2 + min(few, 1));
+      const corner = next[j - onHalf - byHalf];
+      const [corner1, corner2] = down
+        ? [corner + next[j - onHalf + byHalf], (now[i + onCell - byCell] + now[i + onCell + byCell] + 1) >> 1]
+        : [2 * corner + now[i - onCell + byCell], 2 * next[k + onHalf - byHalf] + now[i + onCell + byCell]];
+      const prior = clamp(((roughLog(roomFirst) - roughLog(roomSecond)) * 177) >> 7, -600, 600) + 14 * lead(before, after) +
+        21 * lead(first, second) + 13 * lead(corner1, corner2);
+      const isFirst = side(prior, 0, few * 64 + pair(before, after, 7), few * 64 + pair(first, second, 7),
+        few * 64 + pair(corner1, corner2, 7), (level * 4 + few) * 2 + down, pair(before + first, after + second, 24) * 2 + min(few, 1));
       let more = 0;
       while (half + 1 + more < here &&
         excess(0, 0, capped(bitWidth(here)) * 16 + capped(more), level * 16 + capped(more), pair(here, more, 7)))
@@ -406,20 +409,24 @@ function codeFaces({ model_: model }, x, y, order) {
       const atA = cotangent(b, apex, a), atB = cotangent(apex, a, b);
       if (mayStop) {
         const sides = (first(e) === a && isKnown(ahead(e))) + (last(e) === b && isKnown(after(e)));
-        const angleOf = (s) => (s ? s.angle_ : MAX_COTANGENT), next = min(angleOf(left), angleOf(right));
-        const gap = next < MAX_COTANGENT ? classOf(next - angle) : CLASSES;
-        const other = next < MAX_COTANGENT ? missOf((next === left.angle_ ? left : right).apex_) : 15;
-        const flat = behind < 0 ? CLASSES : classOf(angle + cotangent(b, a, behind)), own = classOf(angle), isReached = reached[apex];
-        if (stop(0, 0, ((k * 3 + sides) * 2 + isReached) * CLASSES + own, (k * 3 + sides) * (CLASSES + 1) + gap,
-          own * (CLASSES + 1) + flat, (classOf(max(atA, atB)) * 4 + k) * 2 + isReached, (missOf(apex) * 16 + other) * 2 + later))
+        const angleOf = (s) => (s ? s.angle_ : MAX_COTANGENT), next = min(angleOf(left), angleOf(right)), isLast = next === MAX_COTANGENT;
+        const gap = isLast ? CLASSES : classOf(next - angle), own = classOf(angle), thin = classOf(max(atA, atB));
+        const miss = missOf(apex), other = isLast ? 15 : missOf((next === left.angle_ ? left : right).apex_);
+        const flat = behind < 0 ? CLASSES : classOf(angle + cotangent(b, a, behind)), isReached = reached[apex];
+        const prior = -221 - [0, 110, 93, 69][k] + 236 * sides - 53 * isReached - 13 * (own - 6) + (isLast ? 424 : 8 * (gap - 6)) +
+          44 * (thin - 6) + (behind < 0 ? 156 : 24 * (flat - 6) + (isLast ? 0 : 16 * (other - miss)));
+        if (stop(prior, 0, ((k * 3 + sides) * 2 + isReached) * CLASSES + own, (k * 3 + sides) * (CLASSES + 1) + gap,
+          own * (CLASSES + 1) + flat, (thin * 4 + k) * 2 + isReached, (miss * 16 + other) * 2 + later))
           break;
       }
       let goesLeft = left;
       if (left && right) {
         const turned = left.angle_ > right.angle_, [one, two] = turned ? [right, left] : [left, right];
         const kind = (s) => (s.mayStop_ ? 3 + 3 * reached[s.apex_] : 0) + (s.goesLeft_ ? 1 + s.goesRight_ : 0);
-        goesLeft = turned !== !!turn(0, 0, k * CLASSES + classOf(two.angle_ - one.angle_), kind(one) * 9 + kind(two),
-          classOf(turned ? atB - atA : atA - atB) * 2 + later, missOf(one.apex_) * 16 + missOf(two.apex_));
+        const miss = missOf(one.apex_), other = missOf(two.apex_);
+        goesLeft = turned !== !!turn(28 - 84 * later - (one.mayStop_ ? 0 : 394) + (two.mayStop_ ? 0 : 555) + 22 * (other - miss), 0,
+          k * CLASSES + classOf(two.angle_ - one.angle_), kind(one) * 9 + kind(two),
+          classOf(turned ? atB - atA : atA - atB) * 2 + later, miss * 16 + other);
       }
       step = goesLeft ? left : right;
       strip.push(step.e_);
@@ -473,21 +480,15 @@ function halfPower(t) {
   return t < 14336 ? ((POWER[i] * (64 - part) + POWER[i + 1] * part) >> 6) >> (t >> 10) : 0;
 }
 
-/** step * 2^(log / 16), times 2^(1/16) */
-function halfDistance(step, log) {
-  const l = clamp(log, -80, 144) + 80;
-  return max(floor((step * halfPower((15 - (l & 15)) * 64) * (1 << (l >> 4))) / 2 ** 18), 1);
-}
-
 /**
- * By channel: how the distance over which a guess halves follows from nothing, the spread, the surprise, the number of
- * neighbours, the fineness and the levels of two channels before; how that around neighbours differs; the guess's
- * weight; the pull of neighbours.
+ * By channel: how the distance over which a guess halves follows from nothing, and in 1/256 from the spread, the
+ * surprise, the number of neighbours, the fineness, recent levels and the levels of two channels before; how that around
+ * a neighbour differs, and in 1/256 by its fineness; the guess's weight and the pull of neighbours, in 1/256.
  */
 const SHAPES = [
-  [20, 26, 41, -1072, 20, 0, 0, -4, 92, 223],
-  [4, 118, 36, -1104, -74, 944, 0, -24, 146, 184],
-  [-38, 38, 26, -496, -118, 816, 3776, 1, 303, 205],
+  [-3, -20, 17, -711, -58, 232, 0, 0, -4, 75, 68, 217],
+  [-8, 33, 17, -638, -153, 243, 671, 0, -8, 100, 141, 183],
+  [-35, 12, 14, -416, -165, 135, 838, 3379, 0, 46, 257, 183],
 ];
 
 const bucket = (value, first, width, count) => clamp(divide(value - first, width), 0, count - 1);
@@ -500,7 +501,7 @@ const inRange = (color) => clamp(color, -32768, 32767);
 function codeColors({ model_: model, number_: number }, x, y, { corner_: corner, area_: areaOf }, steps, mean) {
   const count = x.length, channels = steps.length, edges = corner.length;
   const around = Array.from(x, () => []), area = new Float64Array(edges), star = new Float64Array(count);
-  const color = ints(count * channels), calm = color.slice(), surprise = color.slice();
+  const color = ints(count * channels), calm = color.slice(), surprise = color.slice(), finenesses = ints(count), recents = ints(4).fill(4096);
   // Edges by their later vertex.
   corner.forEach((a, e) => {
     const b = corner[after(e)];
@@ -510,7 +511,7 @@ function codeColors({ model_: model, number_: number }, x, y, { corner_: corner,
   const zero = model([96, 256, 1024, 256, 28], 4), negative = model([96, 28, 36], 4), larger = model([384, 256, 256], 3);
 
   // Of a vertex: its neighbours that are known, their weights and the sum of those, and what goes on in one channel.
-  let neighbors, weights, all, fineness, channel, at, step, value, places, far, near, own;
+  let neighbors, weights, all, fineness, channel, at, step, value, parts, total;
   const stepOf = (channel) => max((steps[channel] * fineness + 2048) >> 12, 1);
   /** The mean of something of neighbours, by their places in the arrays. */
   const average = (round, of) => {
@@ -518,16 +519,21 @@ function codeColors({ model_: model, number_: number }, x, y, { corner_: corner,
     for (let k = 0; k < neighbors.length; ++k) sum += weights[k] * of(neighbors[k] * channels + channel);
     return round(sum, all);
   };
-  const part = (apart, half) => {
-    const out = halfPower(divide(1024 * abs(apart), half)) >> 1;
-    return apart < 0 ? out : EVEN - out;
+  /** Adds a value to the mixture of where a colour may lie, and the distance over which it halves. */
+  const add = (place, log, weight) => {
+    const l = clamp(log, -80, 144) + 80, half = floor((step * halfPower((15 - (l & 15)) * 64) * (1 << (l >> 4))) / 2 ** 18);
+    parts.push([place, divide(2 ** 24, max(half, 1)), weight]);
+    total += weight * EVEN;
   };
   /** The mixture's weight of what lies farther from 0 than a level does, on its side. */
   const beyond = (side, size) => {
     const place = value + side * (size * step + ((step + 1) >> 1));
-    let sum = own * part(place - value, far);
-    for (let k = 0; k < places.length; ++k) sum += weights[k] * part(place - places[k], near);
-    return side < 0 ? sum : (all + own) * EVEN - sum;
+    let sum = 0;
+    for (const [middle, rate, weight] of parts) {
+      const part = halfPower(divide(abs(place - middle) * rate, EVEN)) >> 1;
+      sum += weight * (place < middle ? part : EVEN - part);
+    }
+    return side < 0 ? sum : total - sum;
   };
   const logOf = (distance) => log16(1 + (step >> 4) + distance) - log16(step);
 
@@ -548,8 +554,9 @@ function codeColors({ model_: model, number_: number }, x, y, { corner_: corner,
       (18 * log2(squared(x[v] - x[u], y[v] - y[u]) + 16) + 51 * log2(faces[k] + 8) + 22 * log2(star[u] + 8)) >> 6);
     all = 0;
     const most = max(...weights), nearest = neighbors[weights.indexOf(most)], known = neighbors.length;
+    const flats = weights.map((w) => max(halfPower(most - w) >> 2, 1));
     weights.forEach((w, k) => (all += weights[k] = max(halfPower(4 * (most - w)) >> 2, 1)));
-    fineness = floor(Math.sqrt(4096 * clamp(divide(4096 * mean, max(star[v], 1)), 455, 36864)));
+    fineness = finenesses[v] = floor(Math.sqrt(4096 * clamp(divide(4096 * mean, max(star[v], 1)), 455, 36864)));
 
     for (channel = 0; channel < channels; ++channel) {
       at = v * channels + channel;
@@ -575,18 +582,24 @@ function codeColors({ model_: model, number_: number }, x, y, { corner_: corner,
 
       // The mixture: around which values, over which distances they halve, and what they weigh.
       const shape = SHAPES[min(channel, 2)], one = channel ? levels[0] : 0, two = channel > 1 ? levels[1] : 0;
-      const size1 = min(abs(one), 3), size2 = min(abs(two), 3), log = shape[0] + ((shape[1] * spread + shape[2] * surprised +
-        shape[3] * min(known, 5) + shape[4] * (log16(fineness) - 192) + shape[5] * size1 + shape[6] * size2) >> 8);
-      own = max((all * shape[8]) >> 8, 1);
-      far = halfDistance(step, log);
-      near = halfDistance(step, log + shape[7]);
-      places = neighbors.map((u) => value + (((color[u * channels + channel] - value) * shape[9]) >> 8));
+      const size1 = min(abs(one), 3), size2 = min(abs(two), 3), logFineness = (v) => log16(finenesses[v]) - 192;
+      const log = shape[0] + ((shape[1] * spread + shape[2] * surprised + shape[3] * min(known, 5) + shape[4] * logFineness(v) +
+        shape[5] * (log16(1024 + recents[channel]) - 192) + shape[6] * size1 + shape[7] * size2) >> 8);
+      let mass = 0;
+      parts = [];
+      total = 0;
+      neighbors.forEach((u, k) => {
+        const weight = (channel ? flats : weights)[k];
+        add(value + (((color[u * channels + channel] - value) * shape[11]) >> 8), log + shape[8] + ((shape[9] * logFineness(u)) >> 8), weight);
+        mass += weight;
+      });
+      add(value, log, max((mass * shape[10]) >> 8, 1));
 
       const less = beyond(-1, 0), more = beyond(1, 0), away = (abs(off) > 1) + (abs(off) > 5) + (abs(off) > 13);
       const nearBucket = channel * 7 + 3 + (off < 0 ? -away : away);
       spread = logBucket(spread);
       surprised = logBucket(surprised);
-      let bits = oddsBetween(less + more, (all + own) * EVEN - less - more), level = 0;
+      let bits = oddsBetween(less + more, total - less - more), level = 0;
       if (zero(bits, channel, channel * 24 + oddsBucket(bits), (channel * 16 + spread) * 4 + clamp(known, 1, 4) - 1,
         (channel * 16 + surprised) * 16 + spread, ((channel * 4 + size1) * 4 + size2) * 4 + (surprised >> 2), nearBucket)) {
         bits = oddsBetween(less, more);
@@ -605,6 +618,7 @@ function codeColors({ model_: model, number_: number }, x, y, { corner_: corner,
       const miss = known ? color[at] - value : 0;
       calm[at] = color[at] - ((miss * (channel ? 4 : 3) + 8) >> 4);
       surprise[at] = abs(miss);
+      recents[channel] += divide(min(abs(level), 30) * 4096 - recents[channel], min(v + 4, 64));
     }
   }
   // From lightness and colour to red, green and blue.
