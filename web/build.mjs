@@ -2,6 +2,8 @@
 //
 //     node web/build.mjs package          web/package/dist, so that web/package can be packed
 //     node web/build.mjs studio OUT       the page, as static files in OUT
+//     node web/build.mjs decoder OUT      imgm.min.js, the decoder of coded pictures
+//     node web/build.mjs placeholders OUT the page of placeholders; imgmesh-encode of build/release makes them
 //     node web/build.mjs check            only checks the types
 import { execFileSync } from "node:child_process";
 import { copyFileSync, cpSync, existsSync, mkdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
@@ -12,6 +14,7 @@ import * as esbuild from "esbuild";
 const web = dirname(fileURLToPath(import.meta.url));
 const root = dirname(web);
 const engine = process.env.IMGMESH_ENGINE ?? join(root, "build/web/bin");
+const tools = process.env.IMGMESH_BIN ?? join(root, "build/release/bin");
 
 function fail(text) {
   console.error(`build.mjs: error: ${text}`);
@@ -112,8 +115,31 @@ async function buildStudio(out) {
   cpSync(join(studio, "static"), out, { recursive: true });
 }
 
+// Names that end in _ are the decoder's own.
+async function buildDecoder(out) {
+  const options = { entryPoints: [join(web, "decoder/imgm.js")], minify: true, format: "esm", target: "es2020", mangleProps: /_$/ };
+  await esbuild.build({ ...options, outfile: join(out, "imgm.min.js"), logLevel: "warning" });
+}
+
+async function buildPlaceholders(out) {
+  const page = join(web, "placeholders");
+  mkdirSync(out, { recursive: true });
+  await buildDecoder(out);
+  for (const name of ["placeholders.css", "placeholders.js"]) copyFileSync(join(page, name), join(out, name));
+  const coded = (_, picture, bytes) => {
+    copyFileSync(join(root, "tests/data", `${picture}.png`), join(out, `${picture}.png`));
+    const file = join(out, `${picture}-${bytes}.imgm`);
+    execFileSync(join(tools, "imgmesh-encode"), [join(out, `${picture}.png`), "-o", file, "--bytes", bytes, "--quiet"]);
+    return `data-imgm="${readFileSync(file).toString("base64")}"`;
+  };
+  const text = readFileSync(join(page, "index.html"), "utf8").replace(/data-imgm="(\w+) (\d+)"/g, coded);
+  writeFileSync(join(out, "index.html"), text);
+}
+
 const [what, out] = process.argv.slice(2);
 if (what === "check") check();
 else if (what === "package") buildPackage();
 else if (what === "studio" && out) await buildStudio(resolve(out));
-else fail("expected one of: check, package, studio OUT");
+else if (what === "decoder" && out) await buildDecoder(resolve(out));
+else if (what === "placeholders" && out) await buildPlaceholders(resolve(out));
+else fail("expected one of: check, package, studio OUT, decoder OUT, placeholders OUT");
