@@ -614,9 +614,10 @@ function codeColors({ model_: model, number_: number }, x, y, { corner_: corner,
         level = side * (level < 16 ? level : level + min(number(0), 2 ** 16));
       }
       levels[channel] = level;
-      color[at] = inRange(value + step * level);
-      const miss = known ? color[at] - value : 0;
-      calm[at] = color[at] - ((miss * (channel ? 4 : 3) + 8) >> 4);
+      color[at] = calm[at] = inRange(value + step * level);
+      if (!known) continue;
+      const miss = color[at] - value;
+      calm[at] -= (miss * (channel ? 4 : 3) + 8) >> 4;
       surprise[at] = abs(miss);
       recents[channel] += divide(min(abs(level), 30) * 4096 - recents[channel], min(v + 4, 64));
     }
