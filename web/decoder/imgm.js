@@ -53,7 +53,7 @@ function readHeader(bytes) {
   if (bytes[3] >> 2 !== 4) fail("has an unknown version");
   const width = side(), height = side();
   checkSize(width, height);
-  return { width, height, channels: (bytes[3] & 3) + 1, at_: at };
+  return [width, height, (bytes[3] & 3) + 1, at];
 }
 
 // ---- Bit models
@@ -145,7 +145,7 @@ function rangeDecoder(bytes, at) {
       return out;
     };
   };
-  return { bits_: bits, number_: number, end_: end, model_: model };
+  return [model, bits, number, end];
 }
 
 // ---- Points: counts of vertices in cells that halve until each is one point of the grid
@@ -162,7 +162,7 @@ function roughLog(n) {
 }
 
 /** Decodes points of a grid. Returns row * columns + column of each, in raster order. */
-function codePoints({ model_: model }, columns, rows, count) {
+function codePoints(model, columns, rows, count) {
   const found = [], side = model([256, 256, 256, 192, 1250]), tie = model([384, 512, 16]), excess = model([256, 384, 64]);
   if (!count) return found;
   let levelX = bitWidth(max(columns, rows) - 1), levelY = levelX, width = 1, height = 1;
@@ -223,17 +223,17 @@ function codePoints({ model_: model }, columns, rows, count) {
 }
 
 /** Decodes all points of the whole grid. */
-function codeAllPoints(coder, columns, rows, most) {
-  const across = columns - 2, down = rows - 2, line = 2 * (across + down), inner = coder.number_(7), outer = coder.number_(4);
+function codeAllPoints(model, number, columns, rows, most) {
+  const across = columns - 2, down = rows - 2, line = 2 * (across + down), inner = number(7), outer = number(4);
   if (inner > across * down || outer > line || inner + outer > most) damaged();
   const corners = [0, columns - 1, (rows - 1) * columns, rows * columns - 1];
   // Top, right, bottom, left.
-  const border = codePoints(coder, line, 1, outer).map((k) =>
+  const border = codePoints(model, line, 1, outer).map((k) =>
     k < across ? k + 1
     : (k -= across) < down ? (k + 2) * columns - 1
     : (k -= down) < across ? corners[2] + k + 1
     : (k - across + 1) * columns);
-  const inside = codePoints(coder, across, down, inner).map((k) => (floor(k / across) + 1) * columns + (k % across) + 1);
+  const inside = codePoints(model, across, down, inner).map((k) => (floor(k / across) + 1) * columns + (k % across) + 1);
   return Int32Array.from([...corners, ...border, ...inside]).sort();
 }
 
@@ -253,7 +253,7 @@ function classOf(cotangent) {
 }
 
 /** Decodes the faces of vertices at (x, y). Returns three corners of each. */
-function codeFaces({ model_: model }, x, y, order) {
+function codeFaces(model, x, y, order) {
   const count = x.length, corner = ints(6 * count), twin = ints(9 * count).fill(NONE);
   let size = 2;
 
@@ -332,8 +332,8 @@ function codeFaces({ model_: model }, x, y, order) {
     }
     near = h;
     // Flips edges until none has a vertex inside its circle.
-    while (stack.length) {
-      const f = stack.pop(), t = twin[3 * f];
+    while ((f = stack.pop()) >= 0) {
+      const t = twin[3 * f];
       if (t < 0 || !inCircle(v, corner[3 * f + 1], corner[3 * f + 2], corner[t])) continue;
       stack.push(f, flip(f));
       near = f;
@@ -391,8 +391,8 @@ function codeFaces({ model_: model }, x, y, order) {
     behind < 0 ? 15 : bitWidth(min(32767, divide(
       64 * squared(x[a] + x[b] - x[behind] - x[c], y[a] + y[b] - y[behind] - y[c]), squared(x[a] - x[b], y[a] - y[b]))));
 
-  while (gates.length) {
-    const gate = gates.pop();
+  let gate;
+  while ((gate = gates.pop()) >= 0) {
     let start = twin[gate];
     if (isKnown(gate)) continue;
     a = first(start);
@@ -458,7 +458,7 @@ function codeFaces({ model_: model }, x, y, order) {
     // From a to the apex, and on to b.
     gates.push(ahead(start), after(start));
   }
-  return { corner_: corner.subarray(0, 3 * size), area_: area };
+  return [corner.subarray(0, 3 * size), area];
 }
 
 // ---- Colours, in 1/64 of a grey level
@@ -498,7 +498,7 @@ const oddsBetween = (yes, no) => clamp(((log2(yes + 1) - log2(no + 1)) * 177) >>
 const inRange = (color) => clamp(color, -32768, 32767);
 
 /** Decodes the colours of vertices. steps: of each channel; mean: of the areas of stars. */
-function codeColors({ model_: model, number_: number }, x, y, { corner_: corner, area_: areaOf }, steps, mean) {
+function codeColors(model, number, x, y, corner, areaOf, steps, mean) {
   const count = x.length, channels = steps.length, edges = corner.length;
   const around = Array.from(x, () => []), area = new Float64Array(edges), star = new Float64Array(count);
   const color = ints(count * channels), calm = color.slice(), surprise = color.slice(), finenesses = ints(count), recents = ints(4).fill(4096);
@@ -707,8 +707,8 @@ function draw(px, py, corner, color, channels, width, height) {
  * @throws {Error} if it is none
  */
 export function info(bytes) {
-  const { at_: _, ...info } = readHeader(new Uint8Array(bytes));
-  return info;
+  const [width, height, channels] = readHeader(new Uint8Array(bytes));
+  return { width, height, channels };
 }
 
 /**
@@ -720,37 +720,37 @@ export function info(bytes) {
  */
 export function decode(bytes, { width, height, scale = 1 } = {}) {
   bytes = new Uint8Array(bytes);
-  const header = readHeader(bytes), { channels } = header, right = 4 * max(header.width - 1, 1), bottom = 4 * max(header.height - 1, 1);
-  const coder = rangeDecoder(bytes, header.at_), step = min(coder.number_(2), 4 * MAX_SIDE) + 1, steps = [];
+  const [ownWidth, ownHeight, channels, start] = readHeader(bytes), right = 4 * max(ownWidth - 1, 1), bottom = 4 * max(ownHeight - 1, 1);
+  const [model, bits, number, end] = rangeDecoder(bytes, start), step = min(number(2), 4 * MAX_SIDE) + 1, steps = [];
   const columns = floor((right + step - 1) / step) + 1, rows = floor((bottom + step - 1) / step) + 1;
   if (columns * rows > MAX_PIXELS) damaged();
-  const first = coder.bits_(8);
+  const first = bits(8);
   for (let k = 0; k < channels; ++k) {
-    const index = k ? first - 8 + coder.bits_(5) : first;
+    const index = k ? first - 8 + bits(5) : first;
     if (index < 0 || index > 143) damaged();
     steps.push((16 + (index & 15)) << (index >> 4));
   }
-  const points = codeAllPoints(coder, columns, rows, 4096 + 16 * bytes.length);
-  coder.end_();
+  const points = codeAllPoints(model, number, columns, rows, 4096 + 16 * bytes.length);
+  end();
   const column = points.map((p) => p % columns), row = points.map((p) => floor(p / columns));
   const x = column.map((at) => min(at * step, right)), y = row.map((at) => min(at * step, bottom));
   // Along a curve that fills the plane: by the bits of rows and columns in turn.
   const order = points.map((_, v) => v).sort((v, w) =>
     clz32(column[v] ^ column[w]) < clz32(row[v] ^ row[w]) ? column[v] - column[w] : row[v] - row[w]);
-  const faces = codeFaces(coder, x, y, order);
-  coder.end_();
-  const color = codeColors(coder, x, y, faces, steps, divide(6 * right * bottom, points.length));
-  coder.end_(true);
+  const [corner, area] = codeFaces(model, x, y, order);
+  end();
+  const color = codeColors(model, number, x, y, corner, area, steps, divide(6 * right * bottom, points.length));
+  end(true);
 
   const whole = (x) => max(1, Math.round(x));
-  scale = width ? width / header.width : height ? height / header.height : scale;
-  width = whole(width ?? header.width * scale);
-  height = whole(height ?? header.height * scale);
+  scale = width ? width / ownWidth : height ? height / ownHeight : scale;
+  width = whole(width ?? ownWidth * scale);
+  height = whole(height ?? ownHeight * scale);
   checkSize(width, height);
   // One column of a picture that has only one is drawn, and repeated.
-  const across = header.width < 2 ? 1 : width, down = header.height < 2 ? 1 : height;
-  const px = x.map((at) => placeOf(at, right, header.width, across)), py = y.map((at) => placeOf(at, bottom, header.height, down));
-  let data = draw(px, py, faces.corner_, color, channels, across, down);
+  const across = ownWidth < 2 ? 1 : width, down = ownHeight < 2 ? 1 : height;
+  const px = x.map((at) => placeOf(at, right, ownWidth, across)), py = y.map((at) => placeOf(at, bottom, ownHeight, down));
+  let data = draw(px, py, corner, color, channels, across, down);
   if (across * down < width * height) {
     const pixels = new Uint32Array(data.buffer);
     const all = Uint32Array.from({ length: width * height }, (_, i) =>
