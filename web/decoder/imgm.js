@@ -244,7 +244,7 @@ const faceOf = (e) => floor(e / 3);
 const after = (e) => (e % 3 > 1 ? e - 2 : e + 1);
 const ahead = (e) => (e % 3 ? e - 1 : e + 2);
 
-const MAX_STEPS = 24, MAX_COTANGENT = 2 ** 20, CLASSES = 13;
+const MAX_STEPS = 256, MAX_COTANGENT = 2 ** 20, CLASSES = 13;
 
 /** Classes of a cotangent in 1/256: octaves of its magnitude, 0 to 12. */
 function classOf(cotangent) {
@@ -348,8 +348,8 @@ function codeFaces(model, x, y, order) {
       gates.push(t);
       link(e, t++);
     }
-  const stop = model([24 * CLASSES, 12 * (CLASSES + 1), CLASSES * (CLASSES + 1), 8 * CLASSES, 512]);
-  const turn = model([4 * CLASSES, 81, 2 * CLASSES, 256]);
+  const stop = model([312, 168, 182, 104, 512]);
+  const turn = model([52, 81, 26, 256]);
 
   /** Of the angle at c, in 1/256. */
   const cotangent = (a, b, c) => {
@@ -358,18 +358,20 @@ function codeFaces(model, x, y, order) {
   };
 
   /**
-   * Triangulates by Delaunay's rule what lies between an edge and a chain of vertices on its left, in the faces that are
-   * free. outer: the half-edges beyond the chain. Returns the half-edge from -> to.
+   * Triangulates what lies between an edge and a part of the chain on its left, in the faces that are free: by Delaunay's
+   * rule, unless the apex is given. outer: the half-edges beyond the chain. Returns the half-edge from -> to.
    */
-  let free;
-  const fill = (chain, outer, from, to) => {
-    if (!chain.length) return outer[0];
-    let best = 0;
-    for (let k = 1; k < chain.length; ++k) if (inCircle(from, to, chain[best], chain[k])) best = k;
+  let free, chain, outer;
+  const fill = (start, end, from, to, best = NONE) => {
+    if (start === end) return outer[start];
+    if (best < 0) {
+      best = start;
+      for (let k = start; ++k < end; ) if (inCircle(from, to, chain[best], chain[k])) best = k;
+    }
     const f = faceOf(free.pop()), v = chain[best];
     setFace(f, from, to, v);
-    link(3 * f + 1, fill(chain.slice(0, best), outer.slice(0, best + 1), from, v));
-    link(3 * f, fill(chain.slice(best + 1), outer.slice(best + 1), v, to));
+    link(3 * f + 1, fill(start, best, from, v));
+    link(3 * f, fill(best + 1, end, v, to));
     return 3 * f + 2;
   };
 
@@ -436,20 +438,20 @@ function codeFaces(model, x, y, order) {
     strip.length = length;
     const c = corner[strip[length - 1]];
     if (length > 1) {
-      const left = [], right = [], outerLeft = [], outerRight = [], faces = strip.map(faceOf);
-      const outer = (e) => (faces.includes(faceOf(twin[e])) ? NONE : twin[e]);
+      // The chain from a to b around the strip, on the left of the apex and on its right.
+      const faces = strip.map(faceOf), beyond = (e) => (faces.includes(faceOf(twin[e])) ? NONE : twin[e]);
+      let apex = 0;
+      chain = [];
+      outer = [];
       strip.forEach((e, i) => {
         const dropped = i + 1 < length ? corner[twin[strip[i + 1]]] : NONE;
-        if (dropped !== last(e)) outerLeft.push(outer(ahead(e)));
-        if (dropped !== first(e)) outerRight.unshift(outer(after(e)));
-        if (dropped >= 0) dropped === first(e) ? left.push(corner[e]) : right.unshift(corner[e]);
+        if (dropped !== first(e)) outer.splice(apex, 0, beyond(after(e)));
+        if (dropped !== last(e)) outer.splice(apex, 0, beyond(ahead(e)));
+        chain.splice(dropped === first(e) ? apex++ : apex, 0, corner[e]);
       });
       free = strip.reverse();
-      start = 3 * faceOf(free.pop()) + 2;
-      setFace(faceOf(start), a, b, c);
+      start = fill(0, length, a, b, apex);
       link(start, gate);
-      link(start - 1, fill(left, outerLeft, a, c));
-      link(start - 2, fill(right, outerRight, c, b));
       // A strip that curls around a vertex borders on itself.
       const edges = faces.flatMap((f) => [3 * f, 3 * f + 1, 3 * f + 2]);
       for (const e of edges) if (twin[e] < 0) link(e, edges.find((d) => first(d) === last(e) && last(d) === first(e)));
@@ -500,12 +502,12 @@ const inRange = (color) => clamp(color, -32768, 32767);
 /** Decodes the colours of vertices. steps: of each channel; mean: of the areas of stars. */
 function codeColors(model, number, x, y, corner, areaOf, steps, mean) {
   const count = x.length, channels = steps.length, edges = corner.length;
-  const around = Array.from(x, () => []), area = new Float64Array(edges), star = new Float64Array(count);
+  const around = Array.from(x, () => []), star = ints(count), areaAt = (e) => areaOf(corner[e], corner[after(e)], corner[ahead(e)]);
   const color = ints(count * channels), calm = color.slice(), surprise = color.slice(), finenesses = ints(count), recents = ints(4).fill(4096);
   // Edges by their later vertex.
   corner.forEach((a, e) => {
     const b = corner[after(e)];
-    star[a] += area[e] = areaOf(a, b, corner[ahead(e)]);
+    star[a] += areaAt(e);
     around[max(a, b)].push(min(a, b) * edges + e);
   });
   const zero = model([96, 256, 1024, 256, 28], 4), negative = model([96, 28, 36], 4), larger = model([384, 256, 256], 3);
@@ -547,7 +549,7 @@ function codeColors(model, number, x, y, corner, areaOf, steps, mean) {
         neighbors.push(u);
         faces.push(0);
       }
-      faces[faces.length - 1] += area[key % edges];
+      faces[faces.length - 1] += areaAt(key % edges);
     }
     neighbors.splice(12);
     weights = neighbors.map((u, k) =>
@@ -640,7 +642,7 @@ const SUB = 16, TO_PIXEL = 1024;
 /** A vertex on a side of the picture, on one of the drawing. The outermost half pixels belong to the border. */
 function placeOf(at, last, from, to) {
   const out = divide(8 * (at + 2) * to + from, 2 * from) - SUB / 2;
-  return at === 0 ? min(out, 0) : at === last ? max(out, SUB * (to - 1)) : out;
+  return !at ? min(out, 0) : at === last ? max(out, SUB * (to - 1)) : out;
 }
 
 /** Draws RGBA. Each face is linear in its colours; a later one overwrites. */
@@ -765,12 +767,8 @@ export function decode(bytes, { width, height, scale = 1 } = {}) {
  * @param {HTMLCanvasElement | OffscreenCanvas} canvas
  * @param {Uint8Array | ArrayBuffer} bytes
  * @param {Size} [size]
- * @returns {Picture}
  */
 export function drawTo(canvas, bytes, size) {
-  const picture = decode(bytes, size);
-  canvas.width = picture.width;
-  canvas.height = picture.height;
-  canvas.getContext("2d").putImageData(new ImageData(picture.data, picture.width, picture.height), 0, 0);
-  return picture;
+  const { width, height, data } = decode(bytes, size);
+  Object.assign(canvas, { width, height }).getContext("2d").putImageData(new ImageData(data, width, height), 0, 0);
 }
