@@ -32,7 +32,7 @@ function fail(text) {
 }
 const damaged = () => fail("is damaged");
 function checkSize(width, height) {
-  if (!(width <= MAX_SIDE && height <= MAX_SIDE && width * height <= MAX_PIXELS)) fail(`is too large: ${width} x ${height}`);
+  if (!(width <= MAX_SIDE && height <= MAX_SIDE && width * height <= MAX_PIXELS)) fail("is too large");
 }
 
 // ---- Header
@@ -273,18 +273,19 @@ function codeFaces(model, x, y, order) {
     twin[e] = t;
     if (t >= 0) twin[t] = e;
   };
-  const setFace = (f, a, b, c) => {
+  /** Sets the corners of a face, and what is beyond the edge from b to c. */
+  const setFace = (f, a, b, c, beyond) => {
     corner[3 * f] = a;
     corner[3 * f + 1] = b;
     corner[3 * f + 2] = c;
+    link(3 * f, beyond);
   };
 
   // The Delaunay triangulation, vertex by vertex. In raster order the first row and the last one end with corners.
-  let right = 0, left = count - 1, near = 0;
-  while (y[right + 1] === y[0]) ++right;
-  while (y[left - 1] === y[count - 1]) --left;
-  setFace(0, 0, left, count - 1);
-  setFace(1, 0, count - 1, right);
+  const right = y.lastIndexOf(y[0]), left = y.indexOf(y[count - 1]);
+  let near = 0;
+  setFace(0, 0, left, count - 1, NONE);
+  setFace(1, 0, count - 1, right, NONE);
   link(1, 5);
   for (const v of order) {
     if (!v || v === left || v === right || v === count - 1) continue;
@@ -305,27 +306,22 @@ function codeFaces(model, x, y, order) {
     const flip = (f) => {
       const e = 3 * f, t = twin[e], g = faceOf(t), a = corner[e + 1], b = corner[e + 2], q = corner[t], atAQ = twin[after(t)];
       const atQB = twin[ahead(t)], atBV = twin[e + 1];
-      setFace(f, v, a, q);
-      setFace(g, v, q, b);
-      link(e, atAQ);
-      link(3 * g, atQB);
+      setFace(f, v, a, q, atAQ);
+      setFace(g, v, q, b, atQB);
       link(3 * g + 1, atBV);
       link(e + 1, 3 * g + 2);
       return g;
     };
     ++size;
-    setFace(f, v, o, a);
-    setFace(h, v, b, o);
-    link(3 * f, atOA);
-    link(3 * h, atBO);
+    setFace(f, v, o, a, atOA);
+    setFace(h, v, b, o, atBO);
     link(3 * h + 1, 3 * f + 2);
     if (isOnEdge && t < 0) {
       twin[3 * f + 1] = NONE;
       stack.splice(1, 1);
     } else {
       ++size;
-      setFace(g, v, a, b);
-      link(3 * g, t);
+      setFace(g, v, a, b, t);
       link(3 * f + 1, 3 * g + 2);
       link(3 * g + 1, 3 * h + 2);
       if (isOnEdge) stack.splice(0, 2, flip(g), g, f);
@@ -369,25 +365,23 @@ function codeFaces(model, x, y, order) {
       for (let k = start; ++k < end; ) if (inCircle(from, to, chain[best], chain[k])) best = k;
     }
     const f = faceOf(free.pop()), v = chain[best];
-    setFace(f, from, to, v);
     link(3 * f + 1, fill(start, best, from, v));
-    link(3 * f, fill(best + 1, end, v, to));
+    setFace(f, from, to, v, fill(best + 1, end, v, to));
     return 3 * f + 2;
   };
 
   let a, b, behind;
+  const isKnown = (e) => known[faceOf(twin[e])];
   /** A step into a face through a half-edge. Apexes must be lower than those passed, seen from a and from b. */
   const reach = (e, lowLeft, lowRight) => {
     const apex = corner[e], inFront = area(a, b, apex) > 0;
     const goesLeft = lowLeft < 0 ? inFront : area(a, apex, lowLeft) > 0;
     const goesRight = lowRight < 0 ? inFront : area(apex, b, lowRight) > 0, mayStop = inFront && goesLeft && goesRight;
-    const angle = mayStop ? cotangent(a, b, apex) : MAX_COTANGENT;
-    const lows = [goesLeft ? apex : lowLeft, goesRight ? apex : lowRight, lowLeft, lowRight];
-    return { e_: e, apex_: apex, goesLeft_: goesLeft, goesRight_: goesRight, mayStop_: mayStop, angle_: angle, lows_: lows };
+    return !known[faceOf(e)] && {
+      e_: e, apex_: apex, lowLeft_: lowLeft, lowRight_: lowRight, goesLeft_: goesLeft, goesRight_: goesRight, mayStop_: mayStop,
+      angle_: mayStop ? cotangent(a, b, apex) : MAX_COTANGENT,
+    };
   };
-  const isKnown = (e) => known[faceOf(twin[e])];
-  const onLeft = (s) => s.goesLeft_ && !isKnown(ahead(s.e_)) && reach(twin[ahead(s.e_)], s.lows_[2], s.lows_[1]);
-  const onRight = (s) => s.goesRight_ && !isKnown(after(s.e_)) && reach(twin[after(s.e_)], s.lows_[0], s.lows_[3]);
   /** How far c is from completing a parallelogram, in octaves of its square over that of the edge. */
   const missOf = (c) =>
     behind < 0 ? 15 : bitWidth(min(32767, divide(
@@ -404,14 +398,15 @@ function codeFaces(model, x, y, order) {
     let step = reach(start, NONE, NONE), length = 1;
     const strip = [start];
     for (let depth = 0; depth < MAX_STEPS; ++depth) {
-      const { e_: e, apex_: apex, mayStop_: mayStop, angle_: angle } = step, k = min(depth, 3), later = min(k, 1);
+      const { e_: e, apex_: apex, lowLeft_: lowLeft, lowRight_: lowRight, goesLeft_: onLeft, goesRight_: onRight, mayStop_: mayStop, angle_: angle } = step, k = min(depth, 3), later = min(k, 1);
       if (mayStop) length = strip.length;
-      const left = onLeft(step), right = onRight(step);
+      const left = onLeft && reach(twin[ahead(e)], lowLeft, onRight ? apex : lowRight);
+      const right = onRight && reach(twin[after(e)], onLeft ? apex : lowLeft, lowRight);
       if (!left && !right) break;
       const atA = cotangent(b, apex, a), atB = cotangent(apex, a, b);
       if (mayStop) {
         const sides = (first(e) === a && isKnown(ahead(e))) + (last(e) === b && isKnown(after(e)));
-        const angleOf = (s) => (s ? s.angle_ : MAX_COTANGENT), next = min(angleOf(left), angleOf(right)), isLast = next === MAX_COTANGENT;
+        const next = min(left ? left.angle_ : MAX_COTANGENT, right ? right.angle_ : MAX_COTANGENT), isLast = next === MAX_COTANGENT;
         const gap = isLast ? CLASSES : classOf(next - angle), own = classOf(angle), thin = classOf(max(atA, atB));
         const miss = missOf(apex), other = isLast ? 15 : missOf((next === left.angle_ ? left : right).apex_);
         const flat = behind < 0 ? CLASSES : classOf(angle + cotangent(b, a, behind)), isReached = reached[apex];
@@ -516,11 +511,7 @@ function codeColors(model, number, x, y, corner, areaOf, steps, mean) {
   let neighbors, weights, all, fineness, channel, at, step, value, parts, total;
   const stepOf = (channel) => max((steps[channel] * fineness + 2048) >> 12, 1);
   /** The mean of something of neighbours, by their places in the arrays. */
-  const average = (round, of) => {
-    let sum = 0;
-    for (let k = 0; k < neighbors.length; ++k) sum += weights[k] * of(neighbors[k] * channels + channel);
-    return round(sum, all);
-  };
+  const average = (round, of) => round(neighbors.reduce((sum, u, k) => sum + weights[k] * of(u * channels + channel), 0), all);
   /** Adds a value to the mixture of where a colour may lie, and the distance over which it halves. */
   const add = (place, log, weight) => {
     const l = clamp(log, -80, 144) + 80, half = floor((step * halfPower((15 - (l & 15)) * 64) * (1 << (l >> 4))) / 2 ** 18);
@@ -583,7 +574,7 @@ function codeColors(model, number, x, y, corner, areaOf, steps, mean) {
       surprised = logOf(surprised);
 
       // The mixture: around which values, over which distances they halve, and what they weigh.
-      const shape = SHAPES[min(channel, 2)], one = channel ? levels[0] : 0, two = channel > 1 ? levels[1] : 0;
+      const shape = SHAPES[min(channel, 2)], [one, two] = levels;
       const size1 = min(abs(one), 3), size2 = min(abs(two), 3), logFineness = (v) => log16(finenesses[v]) - 192;
       const log = shape[0] + ((shape[1] * spread + shape[2] * surprised + shape[3] * min(known, 5) + shape[4] * logFineness(v) +
         shape[5] * (log16(1024 + recents[channel]) - 192) + shape[6] * size1 + shape[7] * size2) >> 8);
