@@ -16,7 +16,7 @@
 
 const MAX_PIXELS = 2 ** 26, MAX_SIDE = 65535, NONE = -1;
 
-const { abs, clz32, floor, max, min, sign } = Math;
+const { abs, ceil, clz32, floor, max, min, sign } = Math;
 const clamp = (x, low, high) => max(low, min(x, high));
 // Exact for |a| < 2^52.
 const divide = (a, b) => floor(a / b);
@@ -84,11 +84,9 @@ const odds = ints(6);
  * anything was seen, the set of weights, and a context of each input.
  */
 function rangeDecoder(bytes, at) {
-  let range = 2 ** 32 - 1, value = 0, missing = 0;
-  const shift = () => {
-    value = ((value << 8) | (at < bytes.length ? bytes[at] : (++missing, 0))) >>> 0;
-    ++at;
-  };
+  let range = 2 ** 32 - 1, value = 0;
+  // Bytes beyond the end are undefined, which counts as 0.
+  const shift = () => (value = ((value << 8) | bytes[at++]) >>> 0);
   for (let i = 0; i < 4; ++i) shift();
 
   /** A bit that is 1 with a probability in 1/2^15. */
@@ -114,7 +112,7 @@ function rangeDecoder(bytes, at) {
     return (2 ** count + bits(count) - 1) * 2 ** order + bits(order);
   };
   const end = (last) => {
-    if (missing > 4 || (last && at < bytes.length)) damaged();
+    if (at > bytes.length + 4 || (last && at < bytes.length)) damaged();
   };
 
   const model = (sizes, sets = 1) => {
@@ -220,21 +218,6 @@ function codePoints(model, columns, rows, count) {
   for (let y = 0; y < rows; ++y)
     for (let x = 0; x < columns; ++x) if (now[(y + 2) * (columns + 4) + x + 2]) found.push(y * columns + x);
   return found;
-}
-
-/** Decodes all points of the whole grid. */
-function codeAllPoints(model, number, columns, rows, most) {
-  const across = columns - 2, down = rows - 2, line = 2 * (across + down), inner = number(7), outer = number(4);
-  if (inner > across * down || outer > line || inner + outer > most) damaged();
-  const corners = [0, columns - 1, (rows - 1) * columns, rows * columns - 1];
-  // Top, right, bottom, left.
-  const border = codePoints(model, line, 1, outer).map((k) =>
-    k < across ? k + 1
-    : (k -= across) < down ? (k + 2) * columns - 1
-    : (k -= down) < across ? corners[2] + k + 1
-    : (k - across + 1) * columns);
-  const inside = codePoints(model, across, down, inner).map((k) => (floor(k / across) + 1) * columns + (k % across) + 1);
-  return Int32Array.from([...corners, ...border, ...inside]).sort();
 }
 
 // ---- Faces. Half-edge e = 3 f + i is the edge of face f opposite its corner i, from corner[after(e)] to
@@ -547,8 +530,8 @@ function codeColors(model, number, x, y, corner, areaOf, steps, mean) {
       (18 * log2(squared(x[v] - x[u], y[v] - y[u]) + 16) + 51 * log2(faces[k] + 8) + 22 * log2(star[u] + 8)) >> 6);
     all = 0;
     const most = max(...weights), nearest = neighbors[weights.indexOf(most)], known = neighbors.length;
-    const flats = weights.map((w) => max(halfPower(most - w) >> 2, 1));
-    weights.forEach((w, k) => (all += weights[k] = max(halfPower(4 * (most - w)) >> 2, 1)));
+    const shareOf = (t) => max(halfPower(t) >> 2, 1), flats = weights.map((w) => shareOf(most - w));
+    weights.forEach((w, k) => (all += weights[k] = shareOf(4 * (most - w))));
     fineness = finenesses[v] = floor(Math.sqrt(4096 * clamp(divide(4096 * mean, max(star[v], 1)), 455, 36864)));
 
     for (channel = 0; channel < channels; ++channel) {
@@ -578,15 +561,12 @@ function codeColors(model, number, x, y, corner, areaOf, steps, mean) {
       const size1 = min(abs(one), 3), size2 = min(abs(two), 3), logFineness = (v) => log16(finenesses[v]) - 192;
       const log = shape[0] + ((shape[1] * spread + shape[2] * surprised + shape[3] * min(known, 5) + shape[4] * logFineness(v) +
         shape[5] * (log16(1024 + recents[channel]) - 192) + shape[6] * size1 + shape[7] * size2) >> 8);
-      let mass = 0;
       parts = [];
       total = 0;
       neighbors.forEach((u, k) => {
-        const weight = (channel ? flats : weights)[k];
-        add(value + (((color[u * channels + channel] - value) * shape[11]) >> 8), log + shape[8] + ((shape[9] * logFineness(u)) >> 8), weight);
-        mass += weight;
+        add(value + (((color[u * channels + channel] - value) * shape[11]) >> 8), log + shape[8] + ((shape[9] * logFineness(u)) >> 8), (channel ? flats : weights)[k]);
       });
-      add(value, log, max((mass * shape[10]) >> 8, 1));
+      add(value, log, max(divide(total * shape[10], 2 ** 22), 1));
 
       const less = beyond(-1, 0), more = beyond(1, 0), away = (abs(off) > 1) + (abs(off) > 5) + (abs(off) > 13);
       const nearBucket = channel * 7 + 3 + (off < 0 ? -away : away);
@@ -637,7 +617,7 @@ function placeOf(at, last, from, to) {
 }
 
 /** Draws RGBA. Each face is linear in its colours; a later one overwrites. */
-function draw(px, py, corner, color, channels, width, height) {
+function draw(px, py, corner, color, channels, width, height, columns, rows) {
   const data = new Uint8ClampedArray(4 * width * height);
   // Of each channel of a pixel: the colour at one place, and what it gains to the right and down. Opaque without alpha.
   const here = ints(4), right = ints(4), down = ints(4);
@@ -653,11 +633,11 @@ function draw(px, py, corner, color, channels, width, height) {
     const a = corner[f], ax = px[a], ay = py[a];
     let b = corner[f + 1], c = corner[f + 2], placedX = NONE, placedY = 0;
     if (cross(px[b] - ax, py[b] - ay, px[c] - ax, py[c] - ay) < 0) [b, c] = [c, b];
-    const ux = px[b] - ax, uy = py[b] - ay, vx = px[c] - ax, vy = py[c] - ay, bottom = min(max(ay, py[b], py[c]) >> 4, height - 1);
+    const ux = px[b] - ax, uy = py[b] - ay, vx = px[c] - ax, vy = py[c] - ay, bottom = min(max(ay, py[b], py[c]) >> 4, rows - 1);
     area = cross(ux, uy, vx, vy);
     for (row = max((min(ay, py[b], py[c]) + SUB - 1) >> 4, 0); area && row <= bottom; ++row) {
       from = 0;
-      to = width - 1;
+      to = columns - 1;
       narrow(a, b);
       narrow(b, c);
       narrow(c, a);
@@ -715,7 +695,7 @@ export function decode(bytes, { width, height, scale = 1 } = {}) {
   bytes = new Uint8Array(bytes);
   const [ownWidth, ownHeight, channels, start] = readHeader(bytes), right = 4 * max(ownWidth - 1, 1), bottom = 4 * max(ownHeight - 1, 1);
   const [model, bits, number, end] = rangeDecoder(bytes, start), step = min(number(2), 4 * MAX_SIDE) + 1, steps = [];
-  const columns = floor((right + step - 1) / step) + 1, rows = floor((bottom + step - 1) / step) + 1;
+  const columns = ceil(right / step) + 1, rows = ceil(bottom / step) + 1;
   if (columns * rows > MAX_PIXELS) damaged();
   const first = bits(8);
   for (let k = 0; k < channels; ++k) {
@@ -723,7 +703,17 @@ export function decode(bytes, { width, height, scale = 1 } = {}) {
     if (index < 0 || index > 143) damaged();
     steps.push((16 + (index & 15)) << (index >> 4));
   }
-  const points = codeAllPoints(model, number, columns, rows, 4096 + 16 * bytes.length);
+  const wide = columns - 2, high = rows - 2, line = 2 * (wide + high), inner = number(7), outer = number(4);
+  if (inner > wide * high || outer > line || inner + outer > 4096 + 16 * bytes.length) damaged();
+  const corners = [0, columns - 1, (rows - 1) * columns, rows * columns - 1];
+  // Top, right, bottom, left.
+  const border = codePoints(model, line, 1, outer).map((k) =>
+    k < wide ? k + 1
+    : (k -= wide) < high ? (k + 2) * columns - 1
+    : (k -= high) < wide ? corners[2] + k + 1
+    : (k - wide + 1) * columns);
+  const inside = codePoints(model, wide, high, inner).map((k) => (floor(k / wide) + 1) * columns + (k % wide) + 1);
+  const points = Int32Array.from([...corners, ...border, ...inside]).sort();
   end();
   const column = points.map((p) => p % columns), row = points.map((p) => floor(p / columns));
   const x = column.map((at) => min(at * step, right)), y = row.map((at) => min(at * step, bottom));
@@ -743,13 +733,10 @@ export function decode(bytes, { width, height, scale = 1 } = {}) {
   // One column of a picture that has only one is drawn, and repeated.
   const across = ownWidth < 2 ? 1 : width, down = ownHeight < 2 ? 1 : height;
   const px = x.map((at) => placeOf(at, right, ownWidth, across)), py = y.map((at) => placeOf(at, bottom, ownHeight, down));
-  let data = draw(px, py, corner, color, channels, across, down);
-  if (across * down < width * height) {
-    const pixels = new Uint32Array(data.buffer);
-    const all = Uint32Array.from({ length: width * height }, (_, i) =>
-      pixels[min(floor(i / width), down - 1) * across + min(i % width, across - 1)]);
-    data = new Uint8ClampedArray(all.buffer);
-  }
+  const data = draw(px, py, corner, color, channels, width, height, across, down);
+  if (across * down < width * height)
+    for (let i = 0; i < data.length; ++i)
+      data[i] = data[4 * (min(floor(i / 4 / width), down - 1) * width + min(floor(i / 4) % width, across - 1)) + (i % 4)];
   return { width, height, channels, data };
 }
 
