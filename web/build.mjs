@@ -122,7 +122,7 @@ async function buildDecoder(out) {
     stdin: { contents },
     outfile: join(out, "imgm.min.js"),
     format: "esm",
-    target: "es2020",
+    target: "es2021",
     minify: true,
     mangleProps: /_$/,
     logLevel: "warning",

@@ -18,6 +18,7 @@ const MAX_PIXELS = 2 ** 26, MAX_SIDE = 65535, NONE = -1;
 
 const { abs, ceil, clz32, floor, max, min, sign } = Math;
 const clamp = (x, low, high) => max(low, min(x, high));
+const within = (x, most) => clamp(x, -most, most);
 // Exact for |a| < 2^52.
 const divide = (a, b) => floor(a / b);
 const rounded = (a, b) => divide(2 * a + b, 2 * b);
@@ -27,23 +28,22 @@ const squared = (x, y) => x * x + y * y;
 /** How many bits a number below 2^32 takes. */
 const bitWidth = (x) => 32 - clz32(x);
 
-function fail(text) {
+const fail = (text) => {
   throw new Error(`The coded picture ${text}.`);
-}
+};
 const damaged = () => fail("is damaged");
-function checkSize(width, height) {
+const checkSize = (width, height) => {
   if (!(width <= MAX_SIDE && height <= MAX_SIDE && width * height <= MAX_PIXELS)) fail("is too large");
-}
+};
 
 // ---- Header
 
-function readHeader(bytes) {
+const readHeader = (bytes) => {
   let at = 4;
   const side = () => {
     let number = 0;
     for (let shift = 0; shift < 21; shift += 7) {
-      if (at >= bytes.length) break;
-      const byte = bytes[at++];
+      const byte = bytes[at++]; // undefined beyond the end: neither below 128
       number |= (byte & 127) << shift;
       if (byte < 128) return number + 1;
     }
@@ -54,7 +54,7 @@ function readHeader(bytes) {
   const width = side(), height = side();
   checkSize(width, height);
   return [width, height, (bytes[3] & 3) + 1, at];
-}
+};
 
 // ---- Bit models
 
@@ -83,7 +83,7 @@ const odds = ints(6);
  * so many contexts of each input; it returns a function that decodes a bit, given the log odds that are expected before
  * anything was seen, the set of weights, and a context of each input.
  */
-function rangeDecoder(bytes, at) {
+const rangeDecoder = (bytes, at) => {
   let range = 2 ** 32 - 1, value = 0;
   // Bytes beyond the end are undefined, which counts as 0.
   const shift = () => (value = ((value << 8) | bytes[at++]) >>> 0);
@@ -129,12 +129,12 @@ function rangeDecoder(bytes, at) {
         if (i < inputs) odds[i] = ODDS[probability[(context[i] += first[i])] >> 4];
         sum += weight[from + i] * odds[i];
       }
-      const mixed = PROBABILITY[clamp(sum >> 14, -MAX_ODDS, MAX_ODDS) + MAX_ODDS];
+      const mixed = PROBABILITY[within(sum >> 14, MAX_ODDS) + MAX_ODDS];
       const out = bit(clamp(mixed >> 1, 16, 32752)), target = out * 65535, slower = settled[set] < 500 ? 16 : 17;
-      if (slower < 17) ++settled[set];
+      settled[set] += 17 - slower;
       for (let i = 0; i <= inputs; ++i) {
         const w = from + i, k = context[i];
-        weight[w] = clamp(weight[w] + ((odds[i] * (target - mixed) + (1 << (slower - 1))) >> slower), -65536, 65536);
+        weight[w] = within(weight[w] + ((odds[i] * (target - mixed) + (1 << (slower - 1))) >> slower), 65536);
         if (i < inputs) {
           probability[k] += ((target - probability[k]) * RATE[seen[k]]) >> 15;
           if (seen[k] < 250) ++seen[k];
@@ -144,23 +144,22 @@ function rangeDecoder(bytes, at) {
     };
   };
   return [model, bits, number, end];
-}
+};
 
 // ---- Points: counts of vertices in cells that halve until each is one point of the grid
 
 const pair = (a, b, most) => min(a, most) * (most + 1) + min(b, most);
 const lead = (a, b) => min(a, 7) - min(b, 7);
 const capped = (number) => min(number, 15);
-const cellsOf = (points, level) => (points + (1 << level) - 1) >> level;
 const roomOf = (cell, level, points) => clamp(points - (cell << level), 0, 1 << level);
 /** 128 log2, by its first bits. */
-function roughLog(n) {
+const roughLog = (n) => {
   const whole = bitWidth(n) - 1;
   return whole * 128 + (whole < 7 ? n << (7 - whole) : n >> (whole - 7)) - 128;
-}
+};
 
 /** Decodes points of a grid. Returns row * columns + column of each, in raster order. */
-function codePoints(model, columns, rows, count) {
+const codePoints = (model, columns, rows, count) => {
   const found = [], side = model([256, 256, 256, 192, 1250]), tie = model([384, 512, 16]), excess = model([256, 384, 64]);
   if (!count) return found;
   let levelX = bitWidth(max(columns, rows) - 1), levelY = levelX, width = 1, height = 1;
@@ -169,16 +168,14 @@ function codePoints(model, columns, rows, count) {
   now[12] = count;
   while (levelX + levelY > 0) {
     const down = +(levelX === levelY), level = min(levelX, 23), nextX = levelX - 1 + down, nextY = levelY - down;
-    const nextWidth = cellsOf(columns, nextX), nextHeight = cellsOf(rows, nextY), s = width + 4, t = nextWidth + 4;
+    const nextWidth = ceil(columns / (1 << nextX)), nextHeight = ceil(rows / (1 << nextY)), s = width + 4, t = nextWidth + 4;
     const next = ints(t * (nextHeight + 4));
     // Steps from half to half and aside from them, among the cells and among the halves.
     const [onCell, onHalf, byCell, byHalf] = down ? [s, t, 1, 1] : [1, 1, s, t];
 
     /** How many of `here` vertices are in the first half j of cell i; the second half is k. */
     const firstOf = (here, i, j, k, roomFirst, roomSecond) => {
-      if (!roomFirst) return 0;
-      if (!roomSecond) return here;
-      if (here >= roomFirst + roomSecond) return roomFirst;
+      if (!roomFirst || !roomSecond || here >= roomFirst + roomSecond) return min(here, roomFirst);
       const before = 2 * next[j - onHalf], after = now[i + onCell], beside = now[i + byCell];
       const first = next[j - byHalf], second = next[k - byHalf], half = here >> 1, few = min(here, 4) - 1;
       if (here % 2 < 1 && tie([-38, -168, -247, -449][min(half, 4) - 1] + (level < 2 ? 255 : level < 3 ? 79 : 0), 0, capped(half) * 24 + level, min(before + after, 7) * 64 + pair(first + second, beside, 7), capped(half)))
@@ -187,7 +184,7 @@ function codePoints(model, columns, rows, count) {
       const [corner1, corner2] = down
         ? [corner + next[j - onHalf + byHalf], (now[i + onCell - byCell] + now[i + onCell + byCell] + 1) >> 1]
         : [2 * corner + now[i - onCell + byCell], 2 * next[k + onHalf - byHalf] + now[i + onCell + byCell]];
-      const prior = clamp(((roughLog(roomFirst) - roughLog(roomSecond)) * 177) >> 7, -600, 600) + 14 * lead(before, after) +
+      const prior = within(((roughLog(roomFirst) - roughLog(roomSecond)) * 177) >> 7, 600) + 14 * lead(before, after) +
         21 * lead(first, second) + 13 * lead(corner1, corner2);
       const isFirst = side(prior, 0, few * 64 + pair(before, after, 7), few * 64 + pair(first, second, 7),
         few * 64 + pair(corner1, corner2, 7), (level * 4 + few) * 2 + down, pair(before + first, after + second, 24) * 2 + min(few, 1));
@@ -218,7 +215,7 @@ function codePoints(model, columns, rows, count) {
   for (let y = 0; y < rows; ++y)
     for (let x = 0; x < columns; ++x) if (now[(y + 2) * (columns + 4) + x + 2]) found.push(y * columns + x);
   return found;
-}
+};
 
 // ---- Faces. Half-edge e = 3 f + i is the edge of face f opposite its corner i, from corner[after(e)] to
 // corner[ahead(e)], counter-clockwise on screen; twin[e] is the same edge of the face beyond it.
@@ -227,16 +224,16 @@ const faceOf = (e) => floor(e / 3);
 const after = (e) => (e % 3 > 1 ? e - 2 : e + 1);
 const ahead = (e) => (e % 3 ? e - 1 : e + 2);
 
-const MAX_STEPS = 256, MAX_COTANGENT = 2 ** 20, CLASSES = 13;
+const MAX_COTANGENT = 2 ** 20, CLASSES = 13;
 
 /** Classes of a cotangent in 1/256: octaves of its magnitude, 0 to 12. */
-function classOf(cotangent) {
+const classOf = (cotangent) => {
   const level = clamp(bitWidth(abs(cotangent)) - 5, 0, 6);
   return cotangent < 0 ? 6 - level : 6 + level;
-}
+};
 
 /** Decodes the faces of vertices at (x, y). Returns three corners of each. */
-function codeFaces(model, x, y, order) {
+const codeFaces = (model, x, y, order) => {
   const count = x.length, corner = ints(6 * count), twin = ints(9 * count).fill(NONE);
   let size = 2;
 
@@ -333,7 +330,7 @@ function codeFaces(model, x, y, order) {
   /** Of the angle at c, in 1/256. */
   const cotangent = (a, b, c) => {
     const dot = (x[a] - x[c]) * (x[b] - x[c]) + (y[a] - y[c]) * (y[b] - y[c]), size = area(a, b, c);
-    return size > 0 ? clamp(Math.trunc((dot * 256) / size), -MAX_COTANGENT, MAX_COTANGENT) : MAX_COTANGENT;
+    return size > 0 ? within(Math.trunc((dot * 256) / size), MAX_COTANGENT) : MAX_COTANGENT;
   };
 
   /**
@@ -380,7 +377,7 @@ function codeFaces(model, x, y, order) {
 
     let step = reach(start, NONE, NONE), length = 1;
     const strip = [start];
-    for (let depth = 0; depth < MAX_STEPS; ++depth) {
+    for (let depth = 0; depth < 256; ++depth) {
       const { e_: e, apex_: apex, lowLeft_: lowLeft, lowRight_: lowRight, goesLeft_: onLeft, goesRight_: onRight, mayStop_: mayStop, angle_: angle } = step, k = min(depth, 3), later = min(k, 1);
       if (mayStop) length = strip.length;
       const left = onLeft && reach(twin[ahead(e)], lowLeft, onRight ? apex : lowRight);
@@ -404,7 +401,7 @@ function codeFaces(model, x, y, order) {
         const turned = left.angle_ > right.angle_, [one, two] = turned ? [right, left] : [left, right];
         const kind = (s) => (s.mayStop_ ? 3 + 3 * reached[s.apex_] : 0) + (s.goesLeft_ ? 1 + s.goesRight_ : 0);
         const miss = missOf(one.apex_), other = missOf(two.apex_);
-        goesLeft = turned !== !!turn(28 - 84 * later - (one.mayStop_ ? 0 : 394) + (two.mayStop_ ? 0 : 555) + 22 * (other - miss), 0,
+        goesLeft = turned != turn(189 - 84 * later + 394 * one.mayStop_ - 555 * two.mayStop_ + 22 * (other - miss), 0,
           k * CLASSES + classOf(two.angle_ - one.angle_), kind(one) * 9 + kind(two),
           classOf(turned ? atB - atA : atA - atB) * 2 + later, miss * 16 + other);
       }
@@ -422,7 +419,7 @@ function codeFaces(model, x, y, order) {
       chain = [];
       outer = [];
       strip.forEach((e, i) => {
-        const dropped = i + 1 < length ? corner[twin[strip[i + 1]]] : NONE;
+        const dropped = corner[twin[strip[i + 1]]]; // undefined at the last one
         if (dropped !== first(e)) outer.splice(apex, 0, beyond(after(e)));
         if (dropped !== last(e)) outer.splice(apex, 0, beyond(ahead(e)));
         chain.splice(dropped === first(e) ? apex++ : apex, 0, corner[e]);
@@ -439,26 +436,26 @@ function codeFaces(model, x, y, order) {
     gates.push(ahead(start), after(start));
   }
   return [corner.subarray(0, 3 * size), area];
-}
+};
 
 // ---- Colours, in 1/64 of a grey level
 
 const LOG = table(17, (i) => 256 * Math.log2(1 + i / 16)), POWER = table(17, (i) => 2 ** (14 - i / 16));
 
 /** 256 log2 of a number from 1 to 2^46: of its first 13 bits. */
-function log2(number) {
+const log2 = (number) => {
   if (number >= 2 ** 30) return 4096 + log2(floor(number / 65536));
   const whole = bitWidth(number) - 1, first = whole < 12 ? number << (12 - whole) : number >> (whole - 12);
   const i = (first >> 8) & 15, part = first & 255;
   return 256 * whole + ((LOG[i] * (256 - part) + LOG[i + 1] * part + 128) >> 8);
-}
+};
 const log16 = (number) => log2(number) >> 4;
 
 /** 2^14 2^(-t / 1024). */
-function halfPower(t) {
+const halfPower = (t) => {
   const i = (t >> 6) & 15, part = t & 63;
   return t < 14336 ? ((POWER[i] * (64 - part) + POWER[i + 1] * part) >> 6) >> (t >> 10) : 0;
-}
+};
 
 /**
  * By channel: how the distance over which a guess halves follows from nothing, and in 1/256 from the spread, the
@@ -474,11 +471,11 @@ const SHAPES = [
 const bucket = (value, first, width, count) => clamp(divide(value - first, width), 0, count - 1);
 const oddsBucket = (odds) => bucket(odds, -768, 64, 24);
 const logBucket = (log) => bucket(log, -64, 10, 16);
-const oddsBetween = (yes, no) => clamp(((log2(yes + 1) - log2(no + 1)) * 177) >> 8, -1800, 1800);
+const oddsBetween = (yes, no) => within(((log2(yes + 1) - log2(no + 1)) * 177) >> 8, 1800);
 const inRange = (color) => clamp(color, -32768, 32767);
 
 /** Decodes the colours of vertices. steps: of each channel; mean: of the areas of stars. */
-function codeColors(model, number, x, y, corner, areaOf, steps, mean) {
+const codeColors = (model, number, x, y, corner, areaOf, steps, mean) => {
   const count = x.length, channels = steps.length, edges = corner.length;
   const around = Array.from(x, () => []), star = ints(count), areaAt = (e) => areaOf(corner[e], corner[after(e)], corner[ahead(e)]);
   const color = ints(count * channels), calm = color.slice(), surprise = color.slice(), finenesses = ints(count), recents = ints(4).fill(4096);
@@ -514,7 +511,8 @@ function codeColors(model, number, x, y, corner, areaOf, steps, mean) {
   const logOf = (distance) => log16(1 + (step >> 4) + distance) - log16(step);
 
   for (let v = 0; v < count; ++v) {
-    const guessed = [], levels = [0, 0, 0, 0], faces = [];
+    const levels = ints(4), faces = [];
+    let lightness; // that was guessed
     neighbors = [];
     // The latest neighbour first.
     for (const key of around[v].sort((a, b) => b - a)) {
@@ -543,16 +541,16 @@ function codeColors(model, number, x, y, corner, areaOf, steps, mean) {
         value = average(rounded, (n) => calm[n]);
         if (channels > 2 && (channel === 1 || channel === 2)) {
           // Colour changes with lightness as it does among the neighbours, damped.
-          const light = (n) => calm[n - channel] - guessed[0], both = average(divide, (n) => light(n) * (calm[n] - value));
+          const light = (n) => calm[n - channel] - lightness, both = average(divide, (n) => light(n) * (calm[n] - value));
           const variance = average(divide, (n) => light(n) ** 2) + floor((3 * stepOf(0) ** 2) / 2) + 1;
           value = inRange(value +
-            ((clamp(rounded(256 * both, variance), -1024, 1024) * (color[at - channel] - guessed[0]) + 256) >> 9));
+            ((within(rounded(256 * both, variance), 1024) * (color[at - channel] - lightness) + 256) >> 9));
         }
         spread = average(divide, (n) => abs(color[n] - value));
         surprised = average(rounded, (n) => surprise[n]);
         off = divide(8 * (color[nearest * channels + channel] - value), step);
       }
-      guessed[channel] = value;
+      lightness ??= value;
       spread = logOf(spread);
       surprised = logOf(surprised);
 
@@ -568,7 +566,7 @@ function codeColors(model, number, x, y, corner, areaOf, steps, mean) {
       });
       add(value, log, max(divide(total * shape[10], 2 ** 22), 1));
 
-      const less = beyond(-1, 0), more = beyond(1, 0), away = (abs(off) > 1) + (abs(off) > 5) + (abs(off) > 13);
+      const less = beyond(-1, 0), more = beyond(1, 0), size = abs(off), away = (size > 1) + (size > 5) + (size > 13);
       const nearBucket = channel * 7 + 3 + (off < 0 ? -away : away);
       spread = logBucket(spread);
       surprised = logBucket(surprised);
@@ -577,7 +575,7 @@ function codeColors(model, number, x, y, corner, areaOf, steps, mean) {
         (channel * 16 + surprised) * 16 + spread, ((channel * 4 + size1) * 4 + size2) * 4 + (surprised >> 2), nearBucket)) {
         bits = oddsBetween(less, more);
         const side = negative(bits, channel, channel * 24 + oddsBucket(bits), nearBucket, (channel * 3 + sign(one) + 1) * 3 + sign(two) + 1) ? -1 : 1;
-        let atLeast = side < 0 ? less : more;
+        let atLeast = beyond(side, 0);
         for (level = 1; level < 16; ++level) {
           const rest = beyond(side, level), few = min(level, 3);
           bits = oddsBetween(rest, atLeast - rest);
@@ -604,20 +602,20 @@ function codeColors(model, number, x, y, corner, areaOf, steps, mean) {
       color[i + 2] = (light - across + along) >> 14;
     }
   return color;
-}
+};
 
 // ---- Drawing: vertices lie on 1/16 of a pixel, colours of pixels are in 1/2^16 of a grey level
 
 const SUB = 16, TO_PIXEL = 1024;
 
 /** A vertex on a side of the picture, on one of the drawing. The outermost half pixels belong to the border. */
-function placeOf(at, last, from, to) {
+const placeOf = (at, last, from, to) => {
   const out = divide(8 * (at + 2) * to + from, 2 * from) - SUB / 2;
   return !at ? min(out, 0) : at === last ? max(out, SUB * (to - 1)) : out;
-}
+};
 
 /** Draws RGBA. Each face is linear in its colours; a later one overwrites. */
-function draw(px, py, corner, color, channels, width, height, columns, rows) {
+const draw = (px, py, corner, color, channels, width, height, columns, rows) => {
   const data = new Uint8ClampedArray(4 * width * height);
   // Of each channel of a pixel: the colour at one place, and what it gains to the right and down. Opaque without alpha.
   const here = ints(4), right = ints(4), down = ints(4);
@@ -669,7 +667,7 @@ function draw(px, py, corner, color, channels, width, height, columns, rows) {
     }
   }
   return data;
-}
+};
 
 // ---- What others call
 
@@ -700,7 +698,7 @@ export function decode(bytes, { width, height, scale = 1 } = {}) {
   const first = bits(8);
   for (let k = 0; k < channels; ++k) {
     const index = k ? first - 8 + bits(5) : first;
-    if (index < 0 || index > 143) damaged();
+    if (index >>> 0 > 143) damaged();
     steps.push((16 + (index & 15)) << (index >> 4));
   }
   const wide = columns - 2, high = rows - 2, line = 2 * (wide + high), inner = number(7), outer = number(4);
@@ -713,7 +711,7 @@ export function decode(bytes, { width, height, scale = 1 } = {}) {
     : (k -= high) < wide ? corners[2] + k + 1
     : (k - wide + 1) * columns);
   const inside = codePoints(model, wide, high, inner).map((k) => (floor(k / wide) + 1) * columns + (k % wide) + 1);
-  const points = Int32Array.from([...corners, ...border, ...inside]).sort();
+  const points = ints([...corners, ...border, ...inside]).sort();
   end();
   const column = points.map((p) => p % columns), row = points.map((p) => floor(p / columns));
   const x = column.map((at) => min(at * step, right)), y = row.map((at) => min(at * step, bottom));
