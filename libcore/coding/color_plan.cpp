@@ -7,15 +7,12 @@
 
 #include "libcore/base/index.h"
 #include "libcore/coding/integer_math.h"
+#include "libcore/coding/place.h"
 
 namespace imgmesh::coding {
 namespace {
 
-// In quarter pixels; areas are doubled.
-struct Place {
-    std::int64_t x, y;
-};
-// To an earlier vertex, with the area of its face.
+// To an earlier vertex, with twice the area of its face.
 struct Edge {
     Id earlier;
     std::int64_t area;
@@ -35,7 +32,7 @@ Areas areas_of(const CodedShape& shape, const std::vector<Place>& at) {
     out.edges.resize(3 * shape.faces.size());
     for (const Face& f : shape.faces) {
         const Place &a = at[f[0]], &b = at[f[1]], &c = at[f[2]];
-        const std::int64_t area = std::abs((b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x));
+        const std::int64_t area = std::abs(area2(a, b, c));
         for (std::size_t i = 0; i < 3; ++i) {
             const Id from = f[i], to = f[(i + 1) % 3];
             out.star[from] += area;

@@ -160,12 +160,14 @@ class PictureEncoder {
         }
     }
 
-    // Optimises so many vertices on a grid that suits them, and codes them. Returns the PSNR.
-    double try_vertices(std::size_t vertices, int effort) {
+    // Optimises so many vertices on a grid that suits them, and codes them; again: after a change of a mesh
+    // that was optimised already. Returns the PSNR.
+    double try_vertices(std::size_t vertices, int effort, bool again) {
         const int step = grid_step(vertices);
-        if (!optimizer_ || step * 4 < step_ * 3 || step * 3 > step_ * 4) start(vertices);
+        const bool fresh = !optimizer_ || step * 4 < step_ * 3 || step * 3 > step_ * 4;
+        if (fresh) start(vertices);
         optimizer_->set_vertex_count(std::min(vertices, most_vertices(step_)));
-        optimize(effort);
+        optimizer_->optimize(again && !fresh ? touch_up_schedule() : grid_schedule(effort));
         take_mesh();
         trial_->code(usual_step_index());
         return psnr();
@@ -182,8 +184,7 @@ class PictureEncoder {
         for (int round = 0; round < kRounds && many - few >= 2; ++round) {
             report(0.1 + 0.8 * round / kRounds, "rate");
             vertices = std::clamp(std::round(vertices), few + 1, many - 1);
-            const double reached = try_vertices(static_cast<std::size_t>(vertices),
-                                                round == 0 ? effort : std::max(1, effort - 2));
+            const double reached = try_vertices(static_cast<std::size_t>(vertices), effort, round > 0);
             const auto taken = static_cast<double>(trial_->vertices());
             if (reached < wanted - kBelow) {
                 few = std::min(std::max(few, taken), many - 1);

@@ -18,11 +18,6 @@ struct Spot {
     Double4 color = {};
 };
 
-/// Returns twice the area of the triangle [quarter pixels^2], positive if counter-clockwise on screen.
-IMGMESH_INLINE std::int64_t area2(const Place& a, const Place& b, const Place& c) {
-    return std::int64_t{b.y - a.y} * (c.x - a.x) - std::int64_t{b.x - a.x} * (c.y - a.y);
-}
-
 /// The squared error of a face is energy - 2 rhs.c + weight c.c in the colour c of its first corner.
 struct CornerFit {
     Double4 energy = {};  ///< its lanes add up

@@ -6,20 +6,11 @@
 
 #include "libcore/base/grid.h"
 #include "libcore/base/simd.h"
+#include "libcore/coding/place.h"
 
 namespace imgmesh {
 
 using Double4 = double __attribute__((vector_size(32)));
-
-/// Quarter pixels are the unit of positions.
-inline constexpr int kQuarters = 4;
-
-/// A position in quarter pixels.
-struct Place {
-    std::int32_t x = 0, y = 0;
-
-    bool operator==(const Place&) const = default;
-};
 
 /// Sums over pixels (x, y) with the values I of up to four channels, one a lane.
 struct Moments {

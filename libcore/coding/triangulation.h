@@ -8,18 +8,9 @@
 #include <vector>
 
 #include "libcore/base/index.h"
+#include "libcore/coding/place.h"
 
 namespace imgmesh::coding {
-
-/// x to the right, y down [quarter pixels], each from 0 to 2^18.
-struct Place {
-    std::int32_t x = 0, y = 0;
-};
-
-/// Returns twice the area of (a, b, c): positive if it runs counter-clockwise on screen.
-inline std::int64_t area2(const Place& a, const Place& b, const Place& c) {
-    return std::int64_t{b.y - a.y} * (c.x - a.x) - std::int64_t{b.x - a.x} * (c.y - a.y);
-}
 
 /// Returns whether d lies inside the circle through a, b, c, which run counter-clockwise on screen.
 bool inside_circle(const Place& a, const Place& b, const Place& c, const Place& d);
