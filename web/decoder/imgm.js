@@ -85,8 +85,8 @@ const odds = ints(6);
  */
 const rangeDecoder = (bytes, at) => {
   let range = 2 ** 32 - 1, value = 0;
-  // Bytes beyond the end are undefined, which counts as 0.
-  const shift = () => (value = ((value << 8) | bytes[at++]) >>> 0);
+  // Bytes beyond the end count as 0x55.
+  const shift = () => (value = ((value << 8) | (bytes[at++] ?? 85)) >>> 0);
   for (let i = 0; i < 4; ++i) shift();
 
   /** A bit that is 1 with a probability in 1/2^15. */
@@ -710,16 +710,15 @@ export function decode(bytes, { width, height, scale = 1 } = {}) {
     : (k -= wide) < high ? (k + 2) * columns - 1
     : (k -= high) < wide ? corners[2] + k + 1
     : (k - wide + 1) * columns);
-  const inside = codePoints(model, wide, high, inner).map((k) => (floor(k / wide) + 1) * columns + (k % wide) + 1);
+  const inside = codePoints(model, wide, high, inner).map((k) => (divide(k, wide) + 1) * columns + (k % wide) + 1);
   const points = ints([...corners, ...border, ...inside]).sort();
   end();
-  const column = points.map((p) => p % columns), row = points.map((p) => floor(p / columns));
+  const column = points.map((p) => p % columns), row = points.map((p) => divide(p, columns));
   const x = column.map((at) => min(at * step, right)), y = row.map((at) => min(at * step, bottom));
   // Along a curve that fills the plane: by the bits of rows and columns in turn.
   const order = points.map((_, v) => v).sort((v, w) =>
     clz32(column[v] ^ column[w]) < clz32(row[v] ^ row[w]) ? column[v] - column[w] : row[v] - row[w]);
   const [corner, area] = codeFaces(model, x, y, order);
-  end();
   const color = codeColors(model, number, x, y, corner, area, steps, divide(6 * right * bottom, points.length));
   end(true);
 

@@ -78,6 +78,7 @@ test("bytes that are no coded picture throw an error that says so", () => {
     assert.throws(() => call(bytes.subarray(0, 5)), /damaged/);
     assert.throws(() => call(Uint8Array.of(...bytes.subarray(0, 4), 0xff, 0xff, 3, 0xff, 0xff, 3)), /too large/);
   }
+  for (const cut of [10, 40, 200]) assert.throws(() => decode(bytes.subarray(0, bytes.length - cut)), /damaged/);
   assert.throws(() => decode(Uint8Array.of(...bytes, ...bytes)), /damaged/);
 });
 
