@@ -178,7 +178,8 @@ const codePoints = (model, columns, rows, count) => {
       if (!roomFirst || !roomSecond || here >= roomFirst + roomSecond) return min(here, roomFirst);
       const before = 2 * next[j - onHalf], after = now[i + onCell], beside = now[i + byCell];
       const first = next[j - byHalf], second = next[k - byHalf], half = here >> 1, few = min(here, 4) - 1;
-      if (here % 2 < 1 && tie([-38, -168, -247, -449][min(half, 4) - 1] + (level < 2 ? 255 : level < 3 ? 79 : 0), 0, capped(half) * 24 + level, min(before + after, 7) * 64 + pair(first + second, beside, 7), capped(half)))
+      if (here % 2 < 1 && tie([-38, -168, -247, -449][min(half, 4) - 1] + (level < 2 ? 255 : level < 3 ? 79 : 0), 0,
+        capped(half) * 24 + level, min(before + after, 7) * 64 + pair(first + second, beside, 7), capped(half)))
         return half;
       const corner = next[j - onHalf - byHalf];
       const [corner1, corner2] = down
@@ -187,7 +188,8 @@ const codePoints = (model, columns, rows, count) => {
       const prior = within(((roughLog(roomFirst) - roughLog(roomSecond)) * 177) >> 7, 600) + 14 * lead(before, after) +
         21 * lead(first, second) + 13 * lead(corner1, corner2);
       const isFirst = side(prior, 0, few * 64 + pair(before, after, 7), few * 64 + pair(first, second, 7),
-        few * 64 + pair(corner1, corner2, 7), (level * 4 + few) * 2 + down, pair(before + first, after + second, 24) * 2 + min(few, 1));
+        few * 64 + pair(corner1, corner2, 7), (level * 4 + few) * 2 + down, pair(before + first, after + second,
+          24) * 2 + min(few, 1));
       let more = 0;
       while (half + 1 + more < here &&
         excess(0, 0, capped(bitWidth(here)) * 16 + capped(more), level * 16 + capped(more), pair(here, more, 7)))
@@ -243,7 +245,8 @@ const codeFaces = (model, x, y, order) => {
   const inCircle = (a, b, c, d) => {
     const ax = x[a] - x[d], ay = y[a] - y[d], bx = x[b] - x[d], by = y[b] - y[d], cx = x[c] - x[d], cy = y[c] - y[d];
     const aa = squared(ax, ay), bb = squared(bx, by), cc = squared(cx, cy);
-    const bc = cross(bx, by, cx, cy), ca = cross(cx, cy, ax, ay), ab = cross(ax, ay, bx, by), sum = aa * bc + bb * ca + cc * ab;
+    const bc = cross(bx, by, cx, cy), ca = cross(cx, cy, ax, ay), ab = cross(ax, ay, bx, by), sum = aa * bc +
+      bb * ca + cc * ab;
     // Sums of parts below 2^53 are exact.
     const size = aa * abs(bc) + bb * abs(ca) + cc * abs(ab), big = BigInt;
     return (size < 2 ** 53 ? sum : big(aa) * big(bc) + big(bb) * big(ca) + big(cc) * big(ab)) < 0;
@@ -284,7 +287,8 @@ const codeFaces = (model, x, y, order) => {
     const g = size + isOnEdge, h = size + !isOnEdge, stack = [f, g, h], atOA = twin[ahead(e)], atBO = twin[after(e)];
     /** Flips the edge opposite v in face f. */
     const flip = (f) => {
-      const e = 3 * f, t = twin[e], g = faceOf(t), a = corner[e + 1], b = corner[e + 2], q = corner[t], atAQ = twin[after(t)];
+      const e = 3 * f, t = twin[e], g = faceOf(t), a = corner[e + 1], b = corner[e + 2], q = corner[t],
+        atAQ = twin[after(t)];
       const atQB = twin[ahead(t)], atBV = twin[e + 1];
       setFace(f, v, a, q, atAQ);
       setFace(g, v, q, b, atQB);
@@ -358,7 +362,8 @@ const codeFaces = (model, x, y, order) => {
     const goesLeft = lowLeft < 0 ? inFront : area(a, apex, lowLeft) > 0;
     const goesRight = lowRight < 0 ? inFront : area(apex, b, lowRight) > 0, mayStop = inFront && goesLeft && goesRight;
     return !known[faceOf(e)] && {
-      e_: e, apex_: apex, lowLeft_: lowLeft, lowRight_: lowRight, goesLeft_: goesLeft, goesRight_: goesRight, mayStop_: mayStop,
+      e_: e, apex_: apex, lowLeft_: lowLeft, lowRight_: lowRight, goesLeft_: goesLeft, goesRight_: goesRight,
+        mayStop_: mayStop,
       angle_: mayStop ? cotangent(a, b, apex) : MAX_COTANGENT,
     };
   };
@@ -378,7 +383,8 @@ const codeFaces = (model, x, y, order) => {
     let step = reach(start, NONE, NONE), length = 1;
     const strip = [start];
     for (let depth = 0; depth < 256; ++depth) {
-      const { e_: e, apex_: apex, lowLeft_: lowLeft, lowRight_: lowRight, goesLeft_: onLeft, goesRight_: onRight, mayStop_: mayStop, angle_: angle } = step, k = min(depth, 3), later = min(k, 1);
+      const { e_: e, apex_: apex, lowLeft_: lowLeft, lowRight_: lowRight, goesLeft_: onLeft, goesRight_: onRight,
+        mayStop_: mayStop, angle_: angle } = step, k = min(depth, 3), later = min(k, 1);
       if (mayStop) length = strip.length;
       const left = onLeft && reach(twin[ahead(e)], lowLeft, onRight ? apex : lowRight);
       const right = onRight && reach(twin[after(e)], onLeft ? apex : lowLeft, lowRight);
@@ -386,11 +392,13 @@ const codeFaces = (model, x, y, order) => {
       const atA = cotangent(b, apex, a), atB = cotangent(apex, a, b);
       if (mayStop) {
         const sides = (first(e) === a && isKnown(ahead(e))) + (last(e) === b && isKnown(after(e)));
-        const next = min(left ? left.angle_ : MAX_COTANGENT, right ? right.angle_ : MAX_COTANGENT), isLast = next === MAX_COTANGENT;
+        const next = min(left ? left.angle_ : MAX_COTANGENT, right ? right.angle_ : MAX_COTANGENT),
+          isLast = next === MAX_COTANGENT;
         const gap = isLast ? CLASSES : classOf(next - angle), own = classOf(angle), thin = classOf(max(atA, atB));
         const miss = missOf(apex), other = isLast ? 15 : missOf((next === left.angle_ ? left : right).apex_);
         const flat = behind < 0 ? CLASSES : classOf(angle + cotangent(b, a, behind)), isReached = reached[apex];
-        const prior = -221 - [0, 110, 93, 69][k] + 236 * sides - 53 * isReached - 13 * (own - 6) + (isLast ? 424 : 8 * (gap - 6)) +
+        const prior = -221 - [0, 110, 93, 69][k] + 236 * sides - 53 * isReached - 13 * (own - 6) +
+          (isLast ? 424 : 8 * (gap - 6)) +
           44 * (thin - 6) + (behind < 0 ? 156 : 24 * (flat - 6) + (isLast ? 0 : 16 * (other - miss)));
         if (stop(prior, 0, ((k * 3 + sides) * 2 + isReached) * CLASSES + own, (k * 3 + sides) * (CLASSES + 1) + gap,
           own * (CLASSES + 1) + flat, (thin * 4 + k) * 2 + isReached, (miss * 16 + other) * 2 + later))
@@ -477,8 +485,10 @@ const inRange = (color) => clamp(color, -32768, 32767);
 /** Decodes the colours of vertices. steps: of each channel; mean: of the areas of stars. */
 const codeColors = (model, number, x, y, corner, areaOf, steps, mean) => {
   const count = x.length, channels = steps.length, edges = corner.length;
-  const around = Array.from(x, () => []), star = ints(count), areaAt = (e) => areaOf(corner[e], corner[after(e)], corner[ahead(e)]);
-  const color = ints(count * channels), calm = color.slice(), surprise = color.slice(), finenesses = ints(count), recents = ints(4).fill(4096);
+  const around = Array.from(x, () => []), star = ints(count), areaAt = (e) => areaOf(corner[e], corner[after(e)],
+    corner[ahead(e)]);
+  const color = ints(count * channels), calm = color.slice(), surprise = color.slice(), finenesses = ints(count),
+    recents = ints(4).fill(4096);
   // Edges by their later vertex.
   corner.forEach((a, e) => {
     const b = corner[after(e)];
@@ -491,7 +501,8 @@ const codeColors = (model, number, x, y, corner, areaOf, steps, mean) => {
   let neighbors, weights, all, fineness, channel, at, step, value, parts, total;
   const stepOf = (channel) => max((steps[channel] * fineness + 2048) >> 12, 1);
   /** The mean of something of neighbours, by their places in the arrays. */
-  const average = (round, of) => round(neighbors.reduce((sum, u, k) => sum + weights[k] * of(u * channels + channel), 0), all);
+  const average = (round, of) => round(neighbors.reduce((sum, u, k) => sum + weights[k] * of(u * channels + channel),
+    0), all);
   /** Adds a value to the mixture of where a colour may lie, and the distance over which it halves. */
   const add = (place, log, weight) => {
     const l = clamp(log, -80, 144) + 80, half = floor((step * halfPower((15 - (l & 15)) * 64) * (1 << (l >> 4))) / 2 ** 18);
@@ -557,12 +568,14 @@ const codeColors = (model, number, x, y, corner, areaOf, steps, mean) => {
       // The mixture: around which values, over which distances they halve, and what they weigh.
       const shape = SHAPES[min(channel, 2)], [one, two] = levels;
       const size1 = min(abs(one), 3), size2 = min(abs(two), 3), logFineness = (v) => log16(finenesses[v]) - 192;
-      const log = shape[0] + ((shape[1] * spread + shape[2] * surprised + shape[3] * min(known, 5) + shape[4] * logFineness(v) +
+      const log = shape[0] + ((shape[1] * spread + shape[2] * surprised + shape[3] * min(known, 5) +
+        shape[4] * logFineness(v) +
         shape[5] * (log16(1024 + recents[channel]) - 192) + shape[6] * size1 + shape[7] * size2) >> 8);
       parts = [];
       total = 0;
       neighbors.forEach((u, k) => {
-        add(value + (((color[u * channels + channel] - value) * shape[11]) >> 8), log + shape[8] + ((shape[9] * logFineness(u)) >> 8), (channel ? flats : weights)[k]);
+        add(value + (((color[u * channels + channel] - value) * shape[11]) >> 8), log + shape[8] +
+          ((shape[9] * logFineness(u)) >> 8), (channel ? flats : weights)[k]);
       });
       add(value, log, max(divide(total * shape[10], 2 ** 22), 1));
 
@@ -574,12 +587,14 @@ const codeColors = (model, number, x, y, corner, areaOf, steps, mean) => {
       if (zero(bits, channel, channel * 24 + oddsBucket(bits), (channel * 16 + spread) * 4 + clamp(known, 1, 4) - 1,
         (channel * 16 + surprised) * 16 + spread, ((channel * 4 + size1) * 4 + size2) * 4 + (surprised >> 2), nearBucket)) {
         bits = oddsBetween(less, more);
-        const side = negative(bits, channel, channel * 24 + oddsBucket(bits), nearBucket, (channel * 3 + sign(one) + 1) * 3 + sign(two) + 1) ? -1 : 1;
+        const side = negative(bits, channel, channel * 24 + oddsBucket(bits), nearBucket, (channel * 3 + sign(one) +
+          1) * 3 + sign(two) + 1) ? -1 : 1;
         let atLeast = beyond(side, 0);
         for (level = 1; level < 16; ++level) {
           const rest = beyond(side, level), few = min(level, 3);
           bits = oddsBetween(rest, atLeast - rest);
-          if (!larger(bits, few - 1, (few * 4 + channel) * 24 + oddsBucket(bits), level * 16 + spread, level * 16 + surprised)) break;
+          if (!larger(bits, few - 1, (few * 4 + channel) * 24 + oddsBucket(bits), level * 16 + spread, level * 16 +
+            surprised)) break;
           atLeast = rest;
         }
         level = side * (level < 16 ? level : level + min(number(0), 2 ** 16));
@@ -631,7 +646,8 @@ const draw = (px, py, corner, color, channels, width, height, columns, rows) => 
     const a = corner[f], ax = px[a], ay = py[a];
     let b = corner[f + 1], c = corner[f + 2], placedX = NONE, placedY = 0;
     if (cross(px[b] - ax, py[b] - ay, px[c] - ax, py[c] - ay) < 0) [b, c] = [c, b];
-    const ux = px[b] - ax, uy = py[b] - ay, vx = px[c] - ax, vy = py[c] - ay, bottom = min(max(ay, py[b], py[c]) >> 4, rows - 1);
+    const ux = px[b] - ax, uy = py[b] - ay, vx = px[c] - ax, vy = py[c] - ay, bottom = min(max(ay, py[b], py[c]) >> 4,
+      rows - 1);
     area = cross(ux, uy, vx, vy);
     for (row = max((min(ay, py[b], py[c]) + SUB - 1) >> 4, 0); area && row <= bottom; ++row) {
       from = 0;
@@ -653,7 +669,8 @@ const draw = (px, py, corner, color, channels, width, height, columns, rows) => 
           down[k] = slope(d2 * ux - d1 * vx);
         }
       }
-      const start = (k) => (here[k] + right[k] * (from - placedX) + down[k] * (row - placedY)) | 0, end = 4 * (row * width + to);
+      const start = (k) => (here[k] + right[k] * (from - placedX) + down[k] * (row - placedY)) | 0,
+        end = 4 * (row * width + to);
       for (let k = 0; k < 3; ++k) {
         let value = start(k), alpha = start(3);
         for (let i = 4 * (row * width + from); i <= end; i += 4) {
@@ -691,7 +708,8 @@ export function info(bytes) {
  */
 export function decode(bytes, { width, height, scale = 1 } = {}) {
   bytes = new Uint8Array(bytes);
-  const [ownWidth, ownHeight, channels, start] = readHeader(bytes), right = 4 * max(ownWidth - 1, 1), bottom = 4 * max(ownHeight - 1, 1);
+  const [ownWidth, ownHeight, channels, start] = readHeader(bytes), right = 4 * max(ownWidth - 1, 1),
+    bottom = 4 * max(ownHeight - 1, 1);
   const [model, bits, number, end] = rangeDecoder(bytes, start), step = min(number(2), 4 * MAX_SIDE) + 1, steps = [];
   const columns = ceil(right / step) + 1, rows = ceil(bottom / step) + 1;
   if (columns * rows > MAX_PIXELS) damaged();
