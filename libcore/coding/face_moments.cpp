@@ -47,7 +47,8 @@ void visit_pixels(const CodedShape& shape, const std::array<Point, 3>& p, Visit&
 
 }  // namespace
 
-std::vector<FaceMoments> face_moments(const CodedShape& shape, std::span<const float> picture, int channels) {
+std::vector<FaceMoments> face_moments(const CodedShape& shape, std::span<const float> picture, int channels,
+                                      std::span<const float> weights) {
     const std::size_t depth = as_index(channels);
     std::vector<Id> owner(as_index(shape.grid.width) * as_index(shape.grid.height), kNone);
     for (std::size_t f = 0; f < shape.faces.size(); ++f)
@@ -59,13 +60,14 @@ std::vector<FaceMoments> face_moments(const CodedShape& shape, std::span<const f
                      [&](std::size_t pixel, const std::array<double, 3>& w) {
                          if (owner[pixel] != f) return;
                          FaceMoments& m = out[f];
+                         const double weight = weights.empty() ? 1 : double{weights[pixel]};
                          ++m.pixels;
                          for (std::size_t i = 0; i < 3; ++i)
-                             for (std::size_t j = 0; j < 3; ++j) m.ww[i][j] += w[i] * w[j];
+                             for (std::size_t j = 0; j < 3; ++j) m.ww[i][j] += weight * (w[i] * w[j]);
                          for (std::size_t c = 0; c < depth; ++c) {
-                             const double value = picture[pixel * depth + c];
-                             for (std::size_t i = 0; i < 3; ++i) m.wi[i][c] += w[i] * value;
-                             m.ii += value * value;
+                             const double value = picture[pixel * depth + c], weighed = weight * value;
+                             for (std::size_t i = 0; i < 3; ++i) m.wi[i][c] += w[i] * weighed;
+                             m.ii += weighed * value;
                          }
                      });
     return out;

@@ -1,5 +1,6 @@
 #include "libcore/coding/row_sums.h"
 
+#include <cassert>
 #include <cmath>
 #include <cstring>
 
@@ -11,6 +12,11 @@ namespace {
 using Double2 = double __attribute__((vector_size(16)));
 
 constexpr double kSampleUnit = 1.0 / 64;
+constexpr std::size_t kEnergy = 11;  // where |I|^2 is, in twelve sums
+
+double rounded(double value, double unit) {
+    return std::round(value / unit) * unit;
+}
 
 IMGMESH_INLINE Double4 load4(const double* p) {
     Double4 v;
@@ -48,6 +54,8 @@ class FirstPixel {
 // row by how many follow, itself included: `later` and `later2`.
 template <bool kFour>
 struct EdgeSums {
+    static constexpr std::size_t kStride = kFour ? 12 : 8;
+
     Double2 n = {}, n_later = {};  // n, n^2
     double n3 = 0, n_later2 = 0;   // n^3; n
     Double4 first = {}, first_later = {}, second = {};
@@ -63,7 +71,7 @@ struct EdgeSums {
         first += load4(sums);
         first_later += first;
         second += load4(sums + 4);
-        if (kFour) energy += sums[8];
+        if (kFour) energy += sums[kEnergy];
     }
     // `end` is the row after the last one.
     IMGMESH_INLINE void finish(double sign, double end, Moments& out) {
@@ -84,14 +92,40 @@ struct EdgeSums {
     }
 };
 
+// The same for pixels with weights: nothing is known without the image.
+struct WeightedEdgeSums {
+    static constexpr std::size_t kStride = 12;
+
+    Double4 first = {}, first_later = {}, second = {}, shape = {}, shape_later = {};
+    double later2 = 0;
+
+    IMGMESH_INLINE void add(const double* sums, std::int64_t) {
+        first += load4(sums);
+        first_later += first;
+        second += load4(sums + 4);
+        shape += load4(sums + 8);
+        shape_later += shape;
+        later2 += shape_later[0];
+    }
+    IMGMESH_INLINE void finish(double sign, double end, Moments& out) {
+        const Double4 y_shape = end * shape - shape_later;
+        const double yy = end * y_shape[0] + (2 * later2 - (end + 1) * shape_later[0]);
+        out.shape = sign * shape;
+        out.rows = sign * Double4{y_shape[0], y_shape[1], yy, 0};
+        out.i = sign * first;
+        out.xi = sign * second;
+        out.yi = sign * (end * first - first_later);
+    }
+};
+
 // What an edge needs of the image.
 struct Rows {
     const double* sums;
     int width, height;
-    std::size_t stride;
+    SumLayout layout;
 };
 
-template <bool kFour>
+template <class Sums>
 IMGMESH_INLINE void edge_of(const Rows& image, const Place& a, const Place& b, Moments& out) {
     const bool up = a.y > b.y;
     const Place &top = up ? b : a, &bottom = up ? a : b;
@@ -105,10 +139,10 @@ IMGMESH_INLINE void edge_of(const Rows& image, const Place& a, const Place& b, M
         out = {};
         return;
     }
-    constexpr std::size_t kStride = kFour ? 12 : 8;
+    constexpr std::size_t kStride = Sums::kStride;
     const std::size_t row = as_index(image.width + 1) * kStride;
     const double* sums = image.sums + as_index(begin) * row;
-    EdgeSums<kFour> total;
+    Sums total;
     if (top.x == rightmost && bottom.x == rightmost) {
         sums += row - kStride;
         for (int n = end - begin; n > 0; --n, sums += row) total.add(sums, image.width);
@@ -123,10 +157,12 @@ IMGMESH_INLINE void edge_of(const Rows& image, const Place& a, const Place& b, M
 }
 
 IMGMESH_INLINE void edge_of(const Rows& image, const Place& a, const Place& b, Moments& out) {
-    if (image.stride == 12)
-        edge_of<true>(image, a, b, out);
+    if (image.layout == SumLayout::kThree)
+        edge_of<EdgeSums<false>>(image, a, b, out);
+    else if (image.layout == SumLayout::kFour)
+        edge_of<EdgeSums<true>>(image, a, b, out);
     else
-        edge_of<false>(image, a, b, out);
+        edge_of<WeightedEdgeSums>(image, a, b, out);
 }
 
 #if defined(__x86_64__)
@@ -139,33 +175,45 @@ const bool kAvx2 = has_avx2();
 
 }  // namespace
 
-RowSums::RowSums(const ChannelGrid& image)
+RowSums::RowSums(const ChannelGrid& image, std::span<const float> weights)
     : width_(image.width),
       height_(image.height),
       channels_(image.channels),
-      stride_(image.channels == 4 ? 12 : 8) {
+      layout_(!weights.empty()      ? SumLayout::kWeighted
+              : image.channels == 4 ? SumLayout::kFour
+                                    : SumLayout::kThree) {
+    assert(weights.empty() || weights.size() == image.pixel_count());
     if (channels_ < 1 || channels_ > 4 || width_ < 2 || height_ < 2)
         throw Error(ErrorKind::kBadArgument, cat("a picture to code has 1 to 4 channels and at least 2 x 2 "
                                                  "pixels, not ",
                                                  channels_, " and ", width_, " x ", height_));
-    sums_.resize((as_index(height_) * as_index(width_ + 1) * stride_ + 7) / 8);
-    const std::size_t energy = channels_ == 4 ? 8 : 3;
+    const std::size_t stride = layout_ == SumLayout::kThree ? 8 : 12;
+    sums_.resize((as_index(height_) * as_index(width_ + 1) * stride + 7) / 8);
+    const std::size_t energy = layout_ == SumLayout::kThree ? 3 : kEnergy;
     double* out = sums_.data()->value;
-    for (int y = 0; y < height_; ++y, out += stride_)
-        for (int x = 0; x < width_; ++x, out += stride_) {
-            std::memcpy(out + stride_, out, stride_ * sizeof(double));
+    for (int y = 0; y < height_; ++y, out += stride)
+        for (int x = 0; x < width_; ++x, out += stride) {
+            std::memcpy(out + stride, out, stride * sizeof(double));
             const float* pixel = image.pixel(x, y);
+            const double weight = weights.empty() ? 1 : rounded(weights[image.index(x, y)], kSampleUnit);
+            if (!weights.empty()) {
+                out[stride + 8] += weight;
+                out[stride + 9] += x * weight;
+                out[stride + 10] += x * (x * weight);
+            }
             for (std::size_t c = 0; c < as_index(channels_); ++c) {
-                const double value = std::round(pixel[c] / kSampleUnit) * kSampleUnit;
-                out[stride_ + c] += value;
-                out[stride_ + 4 + c] += x * value;
-                out[stride_ + energy] += value * value;
+                const double value = rounded(pixel[c], kSampleUnit);
+                // As exact as without weights; a constant error of the energy changes no choice.
+                const double weighed = rounded(weight * value, kSampleUnit);
+                out[stride + c] += weighed;
+                out[stride + 4 + c] += x * weighed;
+                out[stride + energy] += rounded(weight * value * value, kSampleUnit * kSampleUnit);
             }
         }
 }
 
 void RowSums::edge(const Place& a, const Place& b, Moments& out) const {
-    const Rows rows{sums_.data()->value, width_, height_, stride_};
+    const Rows rows{sums_.data()->value, width_, height_, layout_};
 #if defined(__x86_64__)
     if (kAvx2) return edge_avx2(rows, a, b, out);
 #endif

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "libcore/base/grid.h"
@@ -12,7 +13,8 @@ namespace imgmesh {
 
 using Double4 = double __attribute__((vector_size(32)));
 
-/// Sums over pixels (x, y) with the values I of up to four channels, one a lane.
+/// Sums over pixels (x, y) with the values I of up to four channels, one a lane. Each term counts as much as
+/// its pixel weighs.
 struct Moments {
     Double4 shape = {};  ///< 1, x, x^2, |I|^2
     Double4 rows = {};   ///< y, x y, y^2, 0
@@ -36,15 +38,23 @@ IMGMESH_INLINE void subtract(Moments& from, const Moments& m) {
     from.yi -= m.yi;
 }
 
+/// What RowSums has of each pixel.
+enum class SumLayout {
+    kThree,    ///< I of three channels and |I|^2, x I
+    kFour,     ///< I, x I, three unused, |I|^2
+    kWeighted  ///< times the weight w: I, x I, 1, x, x^2, |I|^2
+};
+
 /// Of every row the sums over its first pixels: of I, x I and |I|^2. An edge's moments are the sums over all
 /// pixels left of it, in its rows; those of a polygon are the sum over its edges (Green's theorem).
 ///
 /// Samples are rounded to 1/64, so that sums are exact and do not depend on their order: below 10 megapixels
-/// of values up to 255. Takes 64 bytes a pixel, 96 for four channels.
+/// of values up to 255. Takes 64 bytes a pixel, 96 for four channels or with weights.
 class RowSums {
   public:
     /// Throws Error(kBadArgument) unless the image has 1 to 4 channels and at least 2 x 2 pixels.
-    explicit RowSums(const ChannelGrid& image);
+    /// weights  of the pixels, with a mean of 1, rounded to 1/64; none: all are 1, and edges take less time
+    explicit RowSums(const ChannelGrid& image, std::span<const float> weights = {});
 
     int width() const { return width_; }
     int height() const { return height_; }
@@ -62,8 +72,8 @@ class RowSums {
         double value[8] = {};
     };
     int width_, height_, channels_;
-    std::size_t stride_;      // doubles a pixel: I of three channels and |I|^2, x I; or I, x I, |I|^2
-    std::vector<Line> sums_;  // (width + 1) * stride for each row
+    SumLayout layout_;
+    std::vector<Line> sums_;  // (width + 1) pixels for each row
 };
 
 }  // namespace imgmesh

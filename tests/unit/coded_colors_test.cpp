@@ -119,6 +119,32 @@ TEST_CASE("colours of random bytes are within bounds") {
     }
 }
 
+TEST_CASE("moments count every pixel as much as it weighs") {
+    std::mt19937 random(8);
+    const CrossedLines lines({33, 21, 2}, 7, random);
+    const std::vector<float> image = picture(lines.grid, 3);
+    std::vector<float> weights;
+    for (int i = 0; i < 33 * 21; ++i) weights.push_back(static_cast<float>(i % 5));
+    double ones = 0, sum = 0, squares = 0, all = 0, all_sum = 0, all_squares = 0;
+    for (const FaceMoments& m : face_moments(lines.shape(), image, 3, weights)) {
+        for (std::size_t i = 0; i < 3; ++i) {
+            for (std::size_t j = 0; j < 3; ++j) ones += m.ww[i][j];
+            for (const double wi : m.wi[i]) sum += wi;
+        }
+        squares += m.ii;
+    }
+    for (std::size_t i = 0; i < weights.size(); ++i) {
+        all += weights[i];
+        for (std::size_t c = 0; c < 3; ++c) {
+            all_sum += double{weights[i]} * image[3 * i + c];
+            all_squares += double{weights[i]} * image[3 * i + c] * image[3 * i + c];
+        }
+    }
+    CHECK(ones == doctest::Approx(all));
+    CHECK(sum == doctest::Approx(all_sum));
+    CHECK(squares == doctest::Approx(all_squares));
+}
+
 TEST_CASE("moments count every pixel once, and their fit has the error of the drawing") {
     std::mt19937 random(6);
     for (int channels = 1; channels <= 4; ++channels) {

@@ -106,10 +106,14 @@ const GridSchedule kShort{.rounds = 2, .sweeps = 10, .last_rounds = 1};
 
 }  // namespace
 
-TEST_CASE("moments of a triangle are those of the pixels inside it") {
-    for (const int channels : {1, 3, 4}) {
+TEST_CASE("moments of a triangle are those of the pixels inside it, as much as each weighs") {
+    for (const auto& [channels, weighted] :
+         {std::pair(1, false), {3, false}, {4, false}, {1, true}, {3, true}, {4, true}}) {
         const ChannelGrid image = test_picture(40, 30, channels);
-        const RowSums sums(image);
+        std::vector<float> weights;
+        for (std::size_t i = 0; weighted && i < image.pixel_count(); ++i)
+            weights.push_back(static_cast<float>(1 + i % 200) / 64);
+        const RowSums sums(image, weights);
         std::mt19937 random(7);
         for (int trial = 0; trial < 300; ++trial) {
             const auto any = [&] {
@@ -127,11 +131,12 @@ TEST_CASE("moments of a triangle are those of the pixels inside it") {
                     on_edge |= area2(t.a, t.b, p) == 0 || area2(t.b, t.c, p) == 0 || area2(t.c, t.a, p) == 0;
                     Double4 value = {};
                     for (int c = 0; c < channels; ++c) value[c] = image.pixel(x, y)[c];
-                    slow.shape += Double4{1, double(x), double(x * x), sum_lanes(value * value)};
-                    slow.rows += Double4{double(y), double(x * y), double(y * y), 0};
-                    slow.i += value;
-                    slow.xi += x * value;
-                    slow.yi += y * value;
+                    const double w = weighted ? double{weights[image.index(x, y)]} : 1;
+                    slow.shape += w * Double4{1, double(x), double(x * x), sum_lanes(value * value)};
+                    slow.rows += w * Double4{double(y), double(x * y), double(y * y), 0};
+                    slow.i += w * value;
+                    slow.xi += w * x * value;
+                    slow.yi += w * y * value;
                 }
             // Those belong to one of two faces: see below.
             if (on_edge) continue;
