@@ -30,9 +30,9 @@ using namespace imgmesh;
 
 namespace {
 
-// What encoding takes beside the image [bytes a pixel], and drawing a container; measured as in
-// docs/limits.md.
-constexpr double kEncodeBytes = 100, kDrawBytes = 50;
+// What encoding takes beside the image [bytes a pixel], the weights of pixels for SSIM, and drawing a
+// container; measured as in docs/limits.md.
+constexpr double kEncodeBytes = 100, kWeightBytes = 40, kDrawBytes = 50;
 
 struct Options {
     std::string input;
@@ -89,23 +89,27 @@ void tell_rounding(const Options& o, const Image& image, std::vector<std::string
                            bright ? " are clipped and rounded" : " are rounded", " to 8 bits"));
 }
 
+double encode_bytes(const EncodeParams& params) {
+    return kEncodeBytes + (params.tune == Tune::kSsim ? kWeightBytes : 0);
+}
+
 // Returns the picture itself, or what imgmesh-reconstruct draws of a container.
 Bitmap read_picture(const Options& o, Context& context) {
     Image image;
     if (is_container(o.input)) {
         const MeshImage m =
             read_container(o.input, container_limits(o.limits, context.max_memory)).mesh_image;
-        context.memory.take_for(o.input, m, kEncodeBytes + kDrawBytes);
+        context.memory.take_for(o.input, m, encode_bytes(o.params) + kDrawBytes);
         if (split_names(m.source.channel_names).color.empty())
             throw Error(ErrorKind::kUnsupported, cat(o.input, ": the container has no colour to encode"));
         image = draw(m, 0, {});
     } else {
         ReadImageOptions read = image_options(o.read, o.limits, context.max_memory);
-        read.limits.work_bytes = kEncodeBytes;
+        read.limits.work_bytes = encode_bytes(o.params);
         image = read_with_warnings(o.input, read, context.warnings).image;
         context.memory.take(cat(o.input, ": encoding ", image.width, "x", image.height, " pixels"),
                             kProgramMemory + static_cast<double>(image.pixel_count()) *
-                                                 (kEncodeBytes + 8.0 * image.channels));
+                                                 (encode_bytes(o.params) + 8.0 * image.channels));
     }
     if (static_cast<std::int64_t>(image.pixel_count()) > coding::kMaxPixels)
         throw Error(ErrorKind::kUnsupported, cat(o.input, ": has ", image.width, "x", image.height,

@@ -12,6 +12,7 @@
 #include "libcore/coding/grid_optimizer.h"
 #include "libcore/coding/grid_schedule.h"
 #include "libcore/coding/mesh_trial.h"
+#include "libcore/coding/pixel_weights.h"
 
 namespace imgmesh {
 namespace {
@@ -19,8 +20,9 @@ namespace {
 using coding::MeshTrial;
 
 // The step of colours at which most error is saved for a bit, over the root mean squared error of the mesh
-// with exact colours; sides of the mesh over the step of its grid. Both optima are broad.
-constexpr double kStepOverError = 1.2, kSideOverGrid = 9;
+// with exact colours, all pixels alike or with weights; sides of the mesh over the step of its grid. All
+// optima are broad.
+constexpr double kStepOverError = 1.2, kStepOverWeighedError = 1.9, kSideOverGrid = 9;
 // Bits of a vertex, before anything is known.
 constexpr double kVertexBits = 16.5;
 constexpr int kHeaderBytes = 8;
@@ -37,7 +39,8 @@ class PictureEncoder {
           params_(params),
           progress_(progress),
           samples_(coding::premultiplied(picture)),
-          sums_(coding::objective(picture, samples_, params.tune)) {}
+          weights_(coding::pixel_weights(picture, samples_, params.tune)),
+          sums_(coding::objective(picture, samples_, params.tune), weights_) {}
 
     EncodedPicture encode() {
         if (params_.bytes)
@@ -82,14 +85,15 @@ class PictureEncoder {
         CodedMesh mesh = optimizer_->result();
         mesh.grid.width = picture_.width;
         mesh.grid.height = picture_.height;
-        trial_ = std::make_unique<MeshTrial>(mesh, samples_,
-                                             coding::color_weights(params_.tune, picture_.channels));
+        trial_ = std::make_unique<MeshTrial>(
+            mesh, samples_, coding::color_weights(params_.tune, picture_.channels), weights_);
     }
     int usual_step_index() const {
         const double error = std::sqrt(optimizer_->squared_error() / samples());
+        const double step_over_error = weights_.empty() ? kStepOverError : kStepOverWeighedError;
         int index = 0;
         while (index + 1 < coding::kStepIndices &&
-               coding::color_step(index) < kStepOverError * error * coding::kColorUnit)
+               coding::color_step(index) < step_over_error * error * coding::kColorUnit)
             ++index;
         return index;
     }
@@ -240,7 +244,7 @@ class PictureEncoder {
     const Bitmap& picture_;
     const EncodeParams& params_;
     const Progress& progress_;
-    std::vector<float> samples_;
+    std::vector<float> samples_, weights_;  // of pixels, which all weigh the same if there are no weights
     RowSums sums_;
     int step_ = 4;
     bool reached_ = true;

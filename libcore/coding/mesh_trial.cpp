@@ -10,11 +10,12 @@ namespace imgmesh::coding {
 // Squared error that a bit of colour may cost, over the squared step, for each pixel of a vertex.
 constexpr double kBitPrice = 0.03;
 
-MeshTrial::MeshTrial(const CodedMesh& mesh, std::span<const float> picture, const ColorWeights& weights)
+MeshTrial::MeshTrial(const CodedMesh& mesh, std::span<const float> picture, const ColorWeights& weights,
+                     std::span<const float> pixel_weights)
     : content_(arranged(mesh)),
       weights_(weights),
       plan_(plan_colors(content_.shape())),
-      moments_(face_moments(content_.shape(), picture, mesh.channels)) {}
+      moments_(face_moments(content_.shape(), picture, mesh.channels, pixel_weights)) {}
 
 void MeshTrial::code(int step_index) {
     ColorChoice choice;

@@ -22,7 +22,9 @@ struct ColorWeights {
 class MeshTrial {
   public:
     /// picture  what to draw: samples of `channels`, premultiplied, 0 to 255; as long as the trial lives
-    MeshTrial(const CodedMesh& mesh, std::span<const float> picture, const ColorWeights& weights);
+    /// pixel_weights  how much each pixel's error counts; none: all alike
+    MeshTrial(const CodedMesh& mesh, std::span<const float> picture, const ColorWeights& weights,
+              std::span<const float> pixel_weights = {});
 
     std::size_t vertices() const { return content_.point.size(); }
     /// Chooses colours with steps of this index and writes them.
