@@ -68,7 +68,7 @@ Encodes an image as a mesh of a few kilobytes, as imgmesh-encode does: the bytes
 
 image     a path, an Image or an array
 bytes     at most so many; or psnr in dB, or a number of vertices, or a quality from 0 to 100 (50 without any)
-effort    1 to 5, each takes about twice as long as the one before
+effort    1 to 5, each takes up to four times as long as the one before
 tune      the error to keep low: 'psnr', 'luma' or 'ssim'
 progress  called with the fraction done and the name of the stage
 

@@ -55,9 +55,10 @@ bool is_mesh(const std::string& output) {
 
 void add_options(CLI::App& app, Options& o) {
     const std::string drawing = "Drawing";
-    in_group(add_number(app, "--scale", o.scale, {kLeastScale},
-                        {"Size of the image relative to the one that was encoded", "1"}),
-             drawing);
+    in_group(
+        add_number(app, "--scale", o.scale, {kLeastScale},
+                   {"Size of an image relative to the one that was encoded; a mesh keeps its size", "1"}),
+        drawing);
     CLI::Option* const size =
         in_group(add_value(
                      app, "--size", "WxH",

@@ -55,18 +55,19 @@ void add_options(CLI::App& app, Options& o) {
         in_group(add_count(app, "--vertices", p.vertices, {4}, "Number of vertices"), size);
     CLI::Option* const quality =
         in_group(add_number(app, "--quality", p.quality, {0, kMostQuality},
-                            {"Vertices for each pixel: twice as many every 8, and 1 for 108 pixels at 50",
+                            {"Vertices for each pixel: 50 is one for 108 pixels, and 8 more doubles them",
                              cat(kUsualQuality)}),
                  size);
     exclude(app, psnr, {"--bytes"});
     exclude(app, vertices, {"--bytes", "--psnr"});
     exclude(app, quality, {"--bytes", "--psnr", "--vertices"});
-    in_group(add_count(app, "--effort", p.effort, {1, kMostEffort},
-                       "Time for a better file; each takes about twice as long as the one before"),
-             work);
+    in_group(
+        add_count(app, "--effort", p.effort, {1, kMostEffort},
+                  "Time for a better file, 1 to 5; each takes up to four times as long as the one before"),
+        work);
     in_group(add_choice(app, "--tune", p.tune, tune_choices(),
-                        "Error to keep low: psnr of all channels alike, luma mostly that of brightness, ssim "
-                        "also more of it where the image is smooth"),
+                        "Error to keep low (psnr: all channels alike; luma: brightness first; ssim: as luma, "
+                        "and more in smooth areas)"),
              work);
     add_strict_option(app, o.strict);
     o.read.channels.emplace();  // the colour and alpha

@@ -30,7 +30,7 @@ struct EncodeParams {
     std::optional<std::size_t> vertices;  ///< so many vertices, at least 4
     std::optional<double> quality;        ///< 0 to 100: vertices per pixel, from 1/8192 doubling every 8
 
-    int effort = 3;  ///< 1 to 5; each takes about twice as long as the one before
+    int effort = 3;  ///< 1 to 5; each takes up to four times as long as the one before
     Tune tune = Tune::kPsnr;
 };
 

@@ -14,7 +14,7 @@ struct GridSchedule;
 class GridState;
 
 struct OptimizeParams {
-    int effort = 3;  ///< 1 to 5; each takes about two to three times as long as the one before
+    int effort = 3;  ///< 1 to 5; each takes up to four times as long as the one before
 };
 
 /// Keeps the mesh, so that the number of vertices can change between one optimisation and the next. Works on

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "formats/files/byte_reader.h"
+#include "formats/files/image_signature.h"
 #include "libcore/base/error.h"
 
 namespace imgmesh {
@@ -18,7 +19,6 @@ constexpr const char* kDevelop = "develop it to TIFF, EXR or PNG";
 constexpr const char* kDraw = "draw it as PNG first";
 constexpr const char* kUnpack = "unpack it first";
 constexpr const char* kFrames = "take its frames out as PNG first";
-constexpr const char* kDecode = "imgmesh-decode draws it as PNG";
 constexpr const char* kData = "write its values as TIFF or EXR";
 
 struct Signature {
@@ -32,7 +32,6 @@ constexpr Signature kSignatures[] = {
     {0, "\xFF\x0A"sv, "JPEG XL", kSave},
     {0, "\0\0\0\x0CJXL "sv, "JPEG XL", kSave},
     {0, "II\xBC"sv, "JPEG XR", kSave},
-    {0, "\x9AIM"sv, "a coded picture (.imgm)", kDecode},
     {0, "gimp xcf"sv, "a GIMP file (XCF)", kSave},
     {0, "DDS "sv, "a DirectDraw surface (DDS)", kSave},
     {0, "\xABKTX "sv, "a Khronos texture (KTX)", kSave},
@@ -123,6 +122,7 @@ std::string name_other_format(std::span<const std::uint8_t> bytes, const std::st
     const ByteReader in(bytes, ByteOrder::kLittle);
     if (in.has_at(0, "glTF"))
         return "a glTF file, not an image; imgmesh-reconstruct draws a container, imgmesh-info describes it";
+    if (has_coded_signature(bytes)) return "a coded picture (.imgm), not an image; imgmesh-decode draws it";
     for (const Signature& s : kSignatures)
         if (in.has_at(s.offset, s.bytes)) return not_read(s.name, s.advice);
     const bool is_icon = in.has_at(0, {"\0\0\1\0", 4}) && in.number_at(4, 2) > 0 && in.number_at(4, 2) < 100;
