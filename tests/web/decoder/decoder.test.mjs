@@ -57,6 +57,14 @@ test("pictures of long sides are drawn as the native decoder draws them", () => 
   checkSame(encode(pixelsOf(3000, 50, (x, y) => wave(x / 16, y)), 2000), 3);
 });
 
+// The example of docs/codec-format.md.
+test("the example of the format's description is drawn as the native decoder draws it", () => {
+  const page = fs.readFileSync(new URL("../../../docs/codec-format.md", import.meta.url), "utf8"), coded = path.join(folder, "example.imgm");
+  fs.writeFileSync(coded, Buffer.from(/^ +(9a49[0-9a-f ]+)$/m.exec(page)[1].replaceAll(" ", ""), "hex"));
+  checkSame(coded, 3);
+  assert.deepEqual([...decode(fs.readFileSync(coded)).data.subarray(0, 8)], [23, 62, 167, 255, 26, 62, 162, 255]);
+});
+
 test("sizes follow from one side or a scale", () => {
   const bytes = fs.readFileSync(encode(pixelsOf(60, 40, wave), 300));
   const size = (options) => [decode(bytes, options).width, decode(bytes, options).height];
