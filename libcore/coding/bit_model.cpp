@@ -16,7 +16,7 @@ constexpr std::array<int, 2 * kMaxOdds + 1> kProbabilities = [] {
     for (int odds = -kMaxOdds; odds <= kMaxOdds; ++odds) {
         const int x = odds + 2048, part = x & 127;
         const auto i = static_cast<std::size_t>(x >> 7);
-        out[static_cast<std::size_t>(odds + kMaxOdds)] =
+        out[static_cast<unsigned>(odds + kMaxOdds)] =
             (kLogistic[i] * (128 - part) + kLogistic[i + 1] * part + 64) >> 7;
     }
     return out;
@@ -27,8 +27,7 @@ constexpr std::array<std::int16_t, 4096> kOdds = [] {
     std::array<std::int16_t, 4096> out{};
     int odds = -kMaxOdds;
     for (int p = 0; p < 4096; ++p) {
-        while (odds < kMaxOdds && kProbabilities[static_cast<std::size_t>(odds + kMaxOdds)] < 16 * p + 8)
-            ++odds;
+        while (odds < kMaxOdds && kProbabilities[static_cast<unsigned>(odds + kMaxOdds)] < 16 * p + 8) ++odds;
         out[static_cast<std::size_t>(p)] = static_cast<std::int16_t>(odds);
     }
     return out;
@@ -36,7 +35,7 @@ constexpr std::array<std::int16_t, 4096> kOdds = [] {
 
 const std::array<int, 256> AdaptiveBit::kRate = [] {
     std::array<int, 256> out{};
-    for (int seen = 0; seen < 256; ++seen) out[static_cast<std::size_t>(seen)] = 327680 / (10 * seen + 25);
+    for (int bits = 0; bits < 256; ++bits) out[static_cast<unsigned>(bits)] = 327680 / (10 * bits + 25);
     return out;
 }();
 

@@ -18,11 +18,11 @@ extern const std::array<std::int16_t, 4096> kOdds;
 
 /// Returns the probability of those log odds, in 1/2^16.
 inline int probability_of(int odds) {
-    return kProbabilities[static_cast<std::size_t>(odds + kMaxOdds)];
+    return kProbabilities[static_cast<unsigned>(odds + kMaxOdds)];
 }
 /// Returns the log odds of a probability in 1/2^16.
 inline int odds_of(int probability) {
-    return kOdds[static_cast<std::size_t>(probability >> 4)];
+    return kOdds[static_cast<unsigned>(probability >> 4)];
 }
 
 /// What a context knows: the probability of a 1, from few bits at first.
