@@ -164,6 +164,12 @@ class Encode(CliCase):
         self.assert_error("imgmesh-encode", ["in.png", "-o", "y.png"], 2, "y.png", ".imgm")
         self.assert_error("imgmesh-encode", ["in.png", "-o", "y.imgm", "--bytes", "9", "--psnr", "30"], 2, "--psnr")
 
+    def test_options_from_a_file(self):
+        (self.folder / "c.toml").write_text("[encode]\nvertices = 30\n[decode]\nscale = 0.5\n")
+        self.assertEqual(self.encode("in.png", "--config", "c.toml")["vertices"], 30)
+        report, _ = self.decode("x.imgm", "--config", "c.toml")
+        self.assertEqual((report["drawn_width"], report["drawn_height"]), (WIDTH // 2, HEIGHT // 2))
+
     def test_other_tools_know_the_signature(self):
         self.encode("in.png")
         self.assert_error("imgmesh-info", ["x.imgm"], 4, "x.imgm: is a coded picture", "imgmesh-decode")

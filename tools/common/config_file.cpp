@@ -25,8 +25,8 @@ namespace {
 constexpr std::size_t kMostBytes = std::size_t{1} << 20;
 
 // A table for each tool, by its name after "imgmesh-".
-constexpr std::array<const char*, 7> kTables = {"build",   "reconstruct", "info",   "compare",
-                                                "convert", "warp",        "segment"};
+constexpr std::array<const char*, 9> kTables = {"build", "reconstruct", "info",   "compare", "convert",
+                                                "warp",  "segment",     "encode", "decode"};
 
 // CLI11's own reader skips short lines, cuts strings at '#' and takes the first of two equal keys, all
 // without a word.
