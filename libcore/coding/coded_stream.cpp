@@ -209,7 +209,7 @@ struct Opening {
 Opening open_stream(std::span<const std::uint8_t> bytes) {
     if (bytes.size() < kSignature.size() + 1 ||
         !std::equal(kSignature.begin(), kSignature.end(), bytes.begin()))
-        throw Error(ErrorKind::kBadFile, "is no coded mesh: it does not begin with its signature");
+        throw Error(ErrorKind::kBadFile, "is no coded picture: it does not begin with its signature");
     const std::uint8_t kind = bytes[kSignature.size()];
     if (kind >> 4 != kVersion)
         throw Error(ErrorKind::kUnsupported, cat("has version ", kind >> 4, ", not ", kVersion));
@@ -292,7 +292,7 @@ StreamContent read_stream(std::span<const std::uint8_t> bytes, std::size_t limit
     check_end();
     code_all_colors(coder, content);
     check_end();
-    if (coder.left() > 0) throw Error(ErrorKind::kBadFile, cat("has ", coder.left(), " bytes after its end"));
+    if (coder.left() > 0) throw Error(ErrorKind::kBadFile, cat("has bytes after its end: ", coder.left()));
     return std::move(content);
 }
 
