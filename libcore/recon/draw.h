@@ -46,7 +46,8 @@ double checked_scale(const SourceInfo& source, const DrawParams& params);
 std::string draw_svg(const MeshImage& mesh_image, int level_index, DrawMode mode);
 
 /// As draw_svg(), but each face has a linear gradient. SVG cannot interpolate three corner colours; this
-/// gradient is the nearest to that, and exact if the three colours lie on a line. Throws as draw_svg() does.
+/// gradient is the nearest to that, and exact if the three colours lie on a line. A channel A is drawn as
+/// opacity. Throws as draw_svg() does.
 std::string draw_svg_gradient(const MeshImage& mesh_image, int level_index);
 
 }  // namespace imgmesh

@@ -330,3 +330,26 @@ TEST_CASE("draw_svg_gradient: black on the left, white on the right") {
     CHECK(svg.find(" x1=\"-.5\" y1=\"2.83\" x2=\"8.5\" y2=\"2.83\"><stop stop-color=\"#000000\"/>"
                    "<stop offset=\"1\" stop-color=\"#ffffff\"/>") != std::string::npos);
 }
+
+// A face fades along its gradient, without a stroke; one that is not seen at all is left out.
+TEST_CASE("draw_svg_gradient: alpha is opacity") {
+    MeshImage m;
+    m.source.width = 9;
+    m.source.height = 5;
+    m.source.channel_names = {"R", "G", "B", "A"};
+    m.levels.resize(1);
+    BaseMesh& mesh = m.levels[0].mesh;
+    mesh.channels = 4;
+    mesh.position = {{0, 0}, {0, 4}, {8, 4}, {8, 0}};
+    mesh.faces = {{0, 1, 2}, {0, 2, 3}};
+    mesh.feature = {100, 0, 0, 0, 100, 0, 0, 0, 100, 0, 0, 1, 100, 0, 0, 1};
+    const std::string svg = draw_svg_gradient(m, 0);
+    INFO(svg);
+    CHECK(
+        svg.find(
+            "x1=\"-.5\" y1=\"2.83\" x2=\"8.5\" y2=\"2.83\"><stop stop-color=\"#ffffff\" stop-opacity=\"0\"/>"
+            "<stop offset=\"1\" stop-color=\"#ffffff\"/>") != std::string::npos);
+    CHECK(svg.find("stroke=\"") == std::string::npos);
+    for (Id v = 0; v < 3; ++v) mesh.feature_of(v)[3] = 0;
+    CHECK(draw_svg_gradient(m, 0).find("g0") == std::string::npos);
+}
