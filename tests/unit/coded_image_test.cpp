@@ -79,6 +79,32 @@ TEST_CASE("colours of a mesh are divided by alpha") {
           1e-3f);
 }
 
+TEST_CASE("vertices that are not seen have the colours of those beside them, however far") {
+    coding::StreamContent content = two_faces(4, {0, 0, 0, 0});
+    content.grid = {9, 3, 8};
+    content.point = {{0, 0}, {1, 0}, {2, 0}, {4, 0}, {0, 1}, {1, 1}, {2, 1}, {4, 1}};
+    content.faces = {{0, 4, 1}, {1, 4, 5}, {1, 5, 2}, {2, 5, 6}, {2, 6, 3}, {3, 6, 7}};
+    content.color.assign(8 * 4, 0);
+    const auto paint = [&](std::size_t v, int red, int alpha) {
+        content.color[4 * v] = red * coding::kColorUnit;
+        content.color[4 * v + 3] = alpha * coding::kColorUnit;
+    };
+    const auto red_of = [&](Id v) {
+        const MeshImage m = coding::mesh_image_from_coded(content);
+        const float* f = m.levels[0].mesh.feature_of(v);
+        return encoded_from_linear(ColorSpace::kSrgb, linear_from_luv(Vec3f(f[0], f[1], f[2]))).x();
+    };
+    CHECK(red_of(0) == doctest::Approx(0).epsilon(1e-3));  // nothing is seen at all
+    paint(0, 200, 200);
+    paint(4, 9, 2);  // clipped
+    for (Id v = 0; v < 8; ++v) CHECK(red_of(v) == doctest::Approx(1).epsilon(1e-3));
+    paint(4, 0, 100);  // a third of what is seen
+    CHECK(red_of(1) == doctest::Approx(2.0 / 3).epsilon(1e-3));
+    CHECK(red_of(5) == doctest::Approx(0).epsilon(1e-3));  // has the other neighbour only
+    const MeshImage m = coding::mesh_image_from_coded(content);
+    CHECK(m.levels[0].mesh.feature_of(7)[3] == 0);
+}
+
 TEST_CASE("a side of one pixel is a strip around it") {
     coding::StreamContent content = two_faces(1, {9});
     content.grid = {5, 1, 8};
