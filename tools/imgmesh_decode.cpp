@@ -15,6 +15,7 @@
 #include "libcore/coding/image_bitmap.h"
 #include "libcore/mesh/outer_edge.h"
 #include "libcore/recon/draw.h"
+#include "libcore/recon/level_colors.h"
 #include "tools/common/container_input.h"
 #include "tools/common/help.h"
 #include "tools/common/in_file.h"
@@ -144,9 +145,12 @@ coding::StreamContent read_content(const Options& o, Context& context, std::uint
     });
 }
 
-void write_mesh(const Options& o, const coding::StreamContent& content, bool overwrite) {
+void write_mesh(const Options& o, const coding::StreamContent& content, Context& context) {
+    const bool overwrite = context.overwrite;
     MeshImage m = coding::mesh_image_from_coded(content);
     const std::string extension = lower_extension(o.output);
+    if (alpha_feature(m.source) >= 0 && (extension == ".ply" || extension == ".obj"))
+        context.warnings.push_back(cat(o.input, ": its alpha is lost, ", extension, " has none"));
     if (extension == ".svg") {
         write_text(o.output, draw_svg_gradient(m, 0), overwrite);
         return;
@@ -179,7 +183,7 @@ Report decode_one(const Options& o, Context& context) {
     report["output"] = o.output;
     context.progress(0.4, "draw");
     if (is_mesh(o.output)) {
-        write_mesh(o, content, context.overwrite);
+        write_mesh(o, content, context);
     } else {
         const GridSize drawn = drawn_size(o, grid);
         Bitmap picture{drawn.width, drawn.height, content.channels, {}};

@@ -83,7 +83,7 @@ class Encode(CliCase):
                         self.assertEqual([decoded["drawn_width"], decoded["drawn_height"]], size)
                         self.assertEqual(drawn.shape[:2], (size[1], size[0]))
                     for kind in ("glb", "obj", "ply", "svg"):
-                        self.run_ok("imgmesh-decode", "x.imgm", "-o", f"x.{kind}", "-q")
+                        self.assertEqual(self.run_tool("imgmesh-decode", "x.imgm", "-o", f"x.{kind}", "-q").returncode, 0)
 
     def test_kinds_of_pictures(self):
         """As few channels as the picture takes. What is wholly opaque or grey gets no channels for it."""
@@ -149,6 +149,22 @@ class Encode(CliCase):
         lines = (self.folder / "x.obj").read_text().splitlines()
         self.assertEqual((sum(l.startswith("v ") for l in lines), sum(l.startswith("f ") for l in lines)),
                          (report["vertices"], report["faces"]))
+
+    def test_alpha_of_meshes(self):
+        """A white disc is white wherever it is seen or fades; .svg fades too, and what cannot says so."""
+        picture = soft(WIDTH, HEIGHT)
+        picture[..., :3] = 1
+        picture_files.png(self.folder / "disc.png", picture)
+        self.encode("disc.png", "--quality", "80")
+        for kind in ("obj", "ply"):
+            result = self.run_tool("imgmesh-decode", "x.imgm", "-o", f"x.{kind}", "-q")
+            self.assertEqual(result.stderr, f"imgmesh-decode: warning: x.imgm: its alpha is lost, .{kind} has none\n")
+        vertices = [line.split()[1:] for line in (self.folder / "x.obj").read_text().splitlines() if line.startswith("v ")]
+        self.assertGreater(min(float(sample) for vertex in vertices for sample in vertex[3:]), 0.9)
+        self.run_ok("imgmesh-decode", "x.imgm", "-o", "x.svg", "-q")
+        text = (self.folder / "x.svg").read_text()
+        self.assertIn('stop-color="#ffffff" stop-opacity="', text)
+        self.assertNotIn("#000000", text)
 
     def test_info(self):
         encoded = self.encode("in.png")
