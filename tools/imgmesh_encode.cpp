@@ -49,15 +49,16 @@ void add_options(CLI::App& app, Options& o) {
     in_group(add_count(app, "--bytes", p.bytes, {1},
                        "Largest size of the file, which gets as good as that allows"),
              size);
-    CLI::Option* const psnr = in_group(
-        add_number(app, "--psnr", p.psnr, {1, kMostPsnr}, "Error to keep to, over all channels [dB]"), size);
+    CLI::Option* const psnr = in_group(add_number(app, "--psnr", p.psnr, {1, kMostPsnr},
+                                                  "Error to keep to, over all channels, 1 to 100 [dB]"),
+                                       size);
     CLI::Option* const vertices =
-        in_group(add_count(app, "--vertices", p.vertices, {4}, "Number of vertices"), size);
-    CLI::Option* const quality =
-        in_group(add_number(app, "--quality", p.quality, {0, kMostQuality},
-                            {"Vertices for each pixel: 50 is one for 108 pixels, and 8 more doubles them",
-                             cat(kUsualQuality)}),
-                 size);
+        in_group(add_count(app, "--vertices", p.vertices, {4}, "Number of vertices, at least 4"), size);
+    CLI::Option* const quality = in_group(
+        add_number(app, "--quality", p.quality, {0, kMostQuality},
+                   {"Vertices for each pixel, 0 to 100: 50 is one for 108 pixels, and 8 more doubles them",
+                    cat(kUsualQuality)}),
+        size);
     exclude(app, psnr, {"--bytes"});
     exclude(app, vertices, {"--bytes", "--psnr"});
     exclude(app, quality, {"--bytes", "--psnr", "--vertices"});
