@@ -160,10 +160,8 @@ Container read(const std::string& path, const ContainerLimits& limits, Findings&
         refuse_other(path, what, findings);
     }
     if (has_coded_signature(main))
-        refuse_other(
-            path,
-            "is a coded picture, not a container; imgmesh-decode draws it, and describes it with --info",
-            findings);
+        refuse_other(path, "is a coded picture, not a container; imgmesh-decode draws and describes it",
+                     findings);
     GlbView glb{{reinterpret_cast<const char*>(main.data()), main.size()}, {}};
     if (is_glb(main)) glb = unpack_glb(main, findings);
     Asset asset = asset_from_json(glb.json, limits, findings);
