@@ -73,7 +73,7 @@ class PictureEncoder {
     int grid_step(std::size_t vertices) const {
         const double side = std::sqrt(pixels() / static_cast<double>(vertices));
         if (side < kDenseSide) return 4;
-        return std::clamp(static_cast<int>(std::lround(4 * side / kSideOverGrid)), 3, 4 * coding::kMaxSide);
+        return std::clamp(static_cast<int>(std::lround(4 * side / kSideOverGrid)), 2, 4 * coding::kMaxSide);
     }
     std::size_t most_vertices(int step) const {
         const CodedGrid grid{picture_.width, picture_.height, step};

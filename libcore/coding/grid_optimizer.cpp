@@ -19,9 +19,9 @@ constexpr double kGrowth = 0.5;
 // Of a surplus of vertices this share goes at once: each removal changes the costs of others.
 constexpr double kRemoved = 0.35;
 
-// A schedule's sweeps are for so many vertices: fewer get more of them, up to this factor, and more get
-// fewer.
-constexpr double kUsualVertices = 2000, kMostSweeps = 8;
+// A schedule's sweeps are for so many vertices: fewer get more of them, and more get fewer, within these
+// factors.
+constexpr double kUsualVertices = 2000, kMostSweeps = 8, kLeastSweeps = 0.5;
 
 // The part of a geometric fall from 1 to `last` after each of `steps`, as a factor. By square roots, which
 // are the same everywhere.
@@ -101,7 +101,7 @@ void GridOptimizer::anneal(const GridSchedule& schedule) {
     GridRandom random(1);
     const int sweeps = static_cast<int>(
         std::clamp(schedule.sweeps * kUsualVertices / static_cast<double>(state_->vertices()),
-                   schedule.sweeps / kMostSweeps, schedule.sweeps * kMostSweeps));
+                   schedule.sweeps * kLeastSweeps, schedule.sweeps * kMostSweeps));
     const double start =
         schedule.temperature * squared_error() / (2 * static_cast<double>(state_->vertices()));
     const Fall temperature(schedule.last_temperature, sweeps),
