@@ -142,11 +142,11 @@ TEST_CASE("moments of a triangle are those of the pixels inside it, as much as e
             if (on_edge) continue;
             const Moments fast = moments_of(sums, t);
             for (int k = 0; k < 4; ++k) {
-                CHECK(fast.shape[k] == slow.shape[k]);
-                CHECK(fast.rows[k] == slow.rows[k]);
-                CHECK(fast.i[k] == slow.i[k]);
-                CHECK(fast.xi[k] == slow.xi[k]);
-                CHECK(fast.yi[k] == slow.yi[k]);
+                CHECK(double{fast.shape[k]} == double{slow.shape[k]});
+                CHECK(double{fast.rows[k]} == double{slow.rows[k]});
+                CHECK(double{fast.i[k]} == double{slow.i[k]});
+                CHECK(double{fast.xi[k]} == double{slow.xi[k]});
+                CHECK(double{fast.yi[k]} == double{slow.yi[k]});
             }
         }
     }
@@ -175,9 +175,9 @@ TEST_CASE("every pixel is in one face, also on edges") {
     const CodedMesh mesh = optimized(image, 8, 60, kShort);
     Moments total;
     for (const Face& face : mesh.faces) add(total, moments_of(sums, corners_of(mesh, face)));
-    CHECK(total.shape[0] == 50 * 33);
-    CHECK(total.shape[1] == 33 * 49 * 50 / 2);
-    CHECK(total.rows[0] == 50 * 32 * 33 / 2);
+    CHECK(double{total.shape[0]} == 50 * 33);
+    CHECK(double{total.shape[1]} == 33 * 49 * 50 / 2);
+    CHECK(double{total.rows[0]} == 50 * 32 * 33 / 2);
 }
 
 TEST_CASE("the number of vertices is met, up and down") {
