@@ -22,12 +22,6 @@ constexpr int kVersion = 1;
 constexpr int kStepOrder = 2, kInnerOrder = 7, kBorderOrder = 4, kStepIndexBits = 8, kStepShiftBits = 5;
 constexpr int kLeastShift = -8;
 
-// Counts no bits: for the encoder's trials.
-struct NoCoder {
-    static constexpr bool kDecodes = false;
-    bool code(bool bit, std::uint32_t) { return bit; }
-};
-
 bool raster_less(const GridPoint& a, const GridPoint& b) {
     return a[1] != b[1] ? a[1] < b[1] : a[0] < b[0];
 }

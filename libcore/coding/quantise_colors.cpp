@@ -8,6 +8,7 @@
 #include "libcore/coding/color_model.h"
 #include "libcore/coding/later_bits.h"
 #include "libcore/coding/normal_equations.h"
+#include "libcore/coding/range_coder.h"
 
 namespace imgmesh::coding {
 namespace {
@@ -15,11 +16,6 @@ namespace {
 constexpr double kMostLevel = 32767;
 // Sweeps of the fit before the first vertex is set.
 constexpr int kSweeps = 100;
-
-// Counts nothing: the model learns as the encoder's will.
-struct NoCoder {
-    bool code(bool bit, std::uint32_t) { return bit; }
-};
 
 // What a vertex's channel should be, as an offset from its guess [grey levels].
 struct Target {

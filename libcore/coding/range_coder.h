@@ -47,6 +47,12 @@ class RangeEncoder {
     std::vector<std::uint8_t> bytes_;
 };
 
+/// Writes nothing: for trials, in which models learn as the encoder's will.
+struct NoCoder {
+    static constexpr bool kDecodes = false;
+    bool code(bool bit, std::uint32_t) { return bit; }
+};
+
 class RangeDecoder {
   public:
     static constexpr bool kDecodes = true;
