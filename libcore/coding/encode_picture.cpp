@@ -115,8 +115,8 @@ class PictureEncoder {
             ++index;
         return index;
     }
-    double psnr() const {
-        const double error = trial_->squared_error(picture_);
+    double psnr() const { return psnr_of(trial_->squared_error(picture_)); }
+    double psnr_of(double error) const {
         return error == 0 ? std::numeric_limits<double>::infinity()
                           : 10 * std::log10(255.0 * 255 * samples() / error);
     }
@@ -128,7 +128,7 @@ class PictureEncoder {
         const bool better = best_.bytes.empty() || error < best_error_ ||
                             (error == best_error_ && trial_->bytes().size() < best_.bytes.size());
         if (better) {
-            best_ = result();
+            best_ = result(error);
             best_error_ = error;
         }
         return better;
@@ -297,17 +297,18 @@ class PictureEncoder {
                 high = middle - 1;
         }
         trial_->code(low);
-        best_ = result();
+        best_ = result(trial_->squared_error(picture_));
         reached_ = best_.report.psnr >= wanted - 0.1;
     }
 
-    EncodedPicture result() const {
+    // What is coded, whose squared error is known.
+    EncodedPicture result(double error) const {
         EncodedPicture out;
         out.bytes = trial_->bytes();
         out.report.vertices = trial_->vertices();
         out.report.faces = trial_->content().faces.size();
         out.report.grid_step = trial_->content().grid.step / 4.0;
-        out.report.psnr = psnr();
+        out.report.psnr = psnr_of(error);
         const coding::StreamSizes& sizes = trial_->sizes();
         out.report.header_bytes = sizes.header;
         out.report.point_bytes = sizes.points;
