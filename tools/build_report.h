@@ -16,8 +16,8 @@ struct FileSeconds {
     double read = 0, write = 0, all = 0;
 };
 
-/// Returns an image's part of the report. written: the container as a reader gets it, or, without a pixel
-/// map, what was written; alpha: "none", "kept", "cut" or "ignored"; values: those of --values.
+/// Returns an image's part of the report. written: what was written; alpha: "none", "kept", "cut" or
+/// "ignored"; values: those of --values.
 Report image_report(const Image& image, const std::string& alpha, bool values, const BuildReport& built,
                     const Container& written, const FileSeconds& seconds);
 

@@ -129,16 +129,14 @@ Report build_one(const BuildOptions& given, Context& context) {
     const WrittenContainer files = write_container(o.output, result.mesh_image, container);
     const double write_seconds = stage.lap();
 
-    // The figures are those that a reader of the container gets.
+    // What a reader gets is what was written (write_container()), so nothing is read again.
     Container written;
-    if (o.no_map) {
-        written.facts.total_bytes = size_of_files(files.files);
-        written.facts.mesh_bytes = files.mesh_bytes;
-        written.facts.texture_bytes = container.texture.picture.size();
-        written.mesh_image = std::move(result.mesh_image);
-    } else {
-        written = read_container(o.output);
-    }
+    written.facts.total_bytes = size_of_files(files.files);
+    written.facts.mesh_bytes = files.mesh_bytes;
+    written.facts.layer_bytes = files.layer_bytes;
+    written.facts.texture_bytes = container.texture.picture.size();
+    written.mesh_image = std::move(result.mesh_image);
+    std::ranges::sort(written.mesh_image.parameters, {}, &BuildParameter::first);  // as in the file
     Report report = {{"input", o.input}, {"output", o.output}};
     for (const auto& [name, value] : written.mesh_image.parameters)
         std::visit([&member = report["parameters"][name]](const auto& v) { member = v; }, value);

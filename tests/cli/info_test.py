@@ -46,6 +46,28 @@ class Info(CliCase):
         for count in ("unmapped", "outside_simplex", "flipped_triangles"):
             self.assertEqual(pixel_map[count], 0)
 
+    def test_a_build_reports_what_a_reader_gets(self):
+        """A build does not read its container again, but its figures must be those of the file."""
+        soft = [[(*color, float(x > 9)) for x, color in enumerate(row)] for row in picture_files.ramp(40, 30)]
+        picture_files.png(self.folder / "soft.png", soft)
+        cases = {"plain.glb": ["in.png", "--draco", "none"], "edges.gltf": ["in.png", "--levels", "2"],
+                 "small.glb": ["in.png", "--preset", "small"], "cut.glb": ["soft.png", "--alpha", "cut"],
+                 "kept.glb": ["soft.png", "--alpha", "keep"], "values.glb": ["in.png", "--values"],
+                 "tracked.glb": ["in.png", "--map", "tracked"], "drawn.glb": ["in.png", "--texture"]}
+        for output, (picture, *options) in cases.items():
+            with self.subTest(output):
+                built = self.build(picture, *options, "--faces", "100", output=output)
+                facts = self.report("imgmesh-info", output)
+                parts = {"bytes": "total", "mesh_bytes": "meshes", "layer_bytes": "layers", "texture_bytes": "texture"}
+                self.assertEqual([built[part] for part in parts], [facts["bytes"][part] for part in parts.values()])
+                self.assertEqual({name: built["parameters"][name] for name in facts["build"]}, facts["build"])
+                self.assertEqual(built["has_light"], facts["has_light"])
+                for written, read in zip(built["levels"], facts["levels"], strict=True):
+                    for figure in ("vertices", "faces", "error"):
+                        self.assertEqual(written[figure], read[figure])
+                    self.assertAlmostEqual(written["mean_edge_ratio"], read["mesh"]["mean_edge_ratio"], 9)
+                    self.assertEqual(written["flipped_pixel_triangles"], read["map"]["flipped_triangles"])
+
     def test_both_file_variants_say_the_same(self):
         facts = [self.report("imgmesh-info", name) for name in ("c.glb", "g.gltf")]
         for member in ("levels", "build", "channels", "version"):
