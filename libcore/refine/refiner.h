@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "libcore/mesh/touched_faces.h"
 #include "libcore/refine/pixel_sums.h"
 #include "libcore/refine/refine.h"
 #include "libcore/refine/refine_vertices.h"
@@ -84,11 +85,10 @@ class Refiner {
     };
     Id across(const Insertion& insertion) const;  // the other face that it divides, or kNone
     void relocate(std::size_t most, const std::vector<Removal>& removals,
-                  const std::vector<Insertion>& insertions, bool border, std::vector<bool>& touched,
+                  const std::vector<Insertion>& insertions, bool border, TouchedFaces& touched,
                   std::vector<Id>& fresh);
     void changed(const OneRing& ring);  // forgets what was remembered of its vertices
     void changed(Id f);
-    void touch_ring(Id v, std::vector<bool>& touched) const;  // marks its faces
     std::vector<Insertion> insertions() const;
     Removal best_removal(Id v) const;
     Insertion best_insertion(Id f) const;

@@ -203,44 +203,34 @@ std::vector<Refiner::Insertion> Refiner::insertions() const {
     return all;
 }
 
-void Refiner::touch_ring(Id v, std::vector<bool>& touched) const {
-    touched.resize(mesh_.faces().size(), true);
-    // New faces may have the ids of removed ones.
-    OneRing ring;
-    mesh_.ring(v, ring);
-    for (std::size_t k = 0; k < ring.faces; ++k) touched[ring.face[k]] = true;
-}
-
 // Remembered results for a face or a vertex hold only until something near it changes.
 std::int64_t Refiner::insert_best(std::int64_t most) {
-    std::vector<bool> touched(mesh_.faces().size(), false);
+    TouchedFaces touched(mesh_.faces().size());
     std::int64_t done = 0;
+    OneRing ring;
     for (const Insertion& insertion : insertions()) {
         if (done == most) break;
         const Id g = across(insertion);
-        if (insertion.border || touched[insertion.face] || (g != kNone && touched[g])) continue;
-        touched[insertion.face] = true;
-        if (g != kNone) touched[g] = true;
+        if (insertion.border || touched.has(insertion.face) || touched.has(g)) continue;
         const Id v = insert(insertion);
         move_vertex(v);
-        touch_ring(v, touched);
+        mesh_.ring(v, ring);
+        touched.add(ring);
         ++done;
     }
     return done;
 }
 
 std::int64_t Refiner::remove_cheapest(std::int64_t most) {
-    std::vector<bool> touched(mesh_.faces().size(), false);
+    TouchedFaces touched(mesh_.faces().size());
     std::int64_t done = 0;
     OneRing ring;
     for (const Removal& removal : removals()) {
         if (done == most) break;
         if (removal.border) continue;
         mesh_.ring(removal.v, ring);
-        bool free = mesh_.may_collapse(ring, removal.into);
-        for (std::size_t k = 0; k < ring.faces; ++k) free = free && !touched[ring.face[k]];
-        if (!free) continue;
-        for (std::size_t k = 0; k < ring.faces; ++k) touched[ring.face[k]] = true;
+        if (touched.has_any(ring) || !mesh_.may_collapse(ring, removal.into)) continue;
+        touched.add(ring);
         remove(removal);
         ++done;
     }
@@ -284,7 +274,7 @@ std::int64_t Refiner::relocate() {
     const std::vector<Removal> removals = this->removals();
     const std::vector<Insertion> insertions = this->insertions();
     // Remembered results for a face or a vertex hold only until something near it changes.
-    std::vector<bool> touched(mesh_.faces().size(), false);
+    TouchedFaces touched(mesh_.faces().size());
     std::vector<Id> fresh;
     // Inner vertices are exchanged for inner ones, so the number of faces stays.
     for (const bool border : {false, true}) relocate(most, removals, insertions, border, touched, fresh);
@@ -293,14 +283,14 @@ std::int64_t Refiner::relocate() {
 }
 
 void Refiner::relocate(std::size_t most, const std::vector<Removal>& removals,
-                       const std::vector<Insertion>& insertions, bool border, std::vector<bool>& touched,
+                       const std::vector<Insertion>& insertions, bool border, TouchedFaces& touched,
                        std::vector<Id>& fresh) {
     OneRing ring;
     std::size_t next_removal = 0;
     for (const Insertion& insertion : insertions) {
         if (fresh.size() >= most) return;
         const Id g = across(insertion);
-        if (insertion.border != border || touched[insertion.face] || (g != kNone && touched[g])) continue;
+        if (insertion.border != border || touched.has(insertion.face) || touched.has(g)) continue;
         // The cheapest removal whose ring neither was touched nor holds the insertion.
         bool found = false;
         while (next_removal < removals.size() && !found) {
@@ -308,17 +298,15 @@ void Refiner::relocate(std::size_t most, const std::vector<Removal>& removals,
             if (!(insertion.gain > removal.cost)) return;
             if (removal.border != border) continue;
             mesh_.ring(removal.v, ring);
-            found = mesh_.may_collapse(ring, removal.into);
+            found = !touched.has_any(ring) && mesh_.may_collapse(ring, removal.into);
             for (std::size_t k = 0; k < ring.faces; ++k)
-                found =
-                    found && !touched[ring.face[k]] && ring.face[k] != insertion.face && ring.face[k] != g;
+                found = found && ring.face[k] != insertion.face && ring.face[k] != g;
             if (!found) continue;
-            for (std::size_t k = 0; k < ring.faces; ++k) touched[ring.face[k]] = true;
-            touched[insertion.face] = true;
-            if (g != kNone) touched[g] = true;
+            touched.add(ring);
             remove(removal);
             fresh.push_back(insert(insertion));
-            touch_ring(fresh.back(), touched);
+            mesh_.ring(fresh.back(), ring);
+            touched.add(ring);
         }
     }
 }

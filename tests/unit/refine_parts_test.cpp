@@ -5,6 +5,7 @@
 #include <random>
 
 #include "libcore/mesh/face_field.h"
+#include "libcore/mesh/touched_faces.h"
 #include "libcore/mesh/vertex_coloring.h"
 #include "libcore/metrics/metrics.h"
 #include "libcore/refine/face_spans.h"
@@ -58,6 +59,27 @@ TEST_CASE("vertex classes: every vertex that has a face is in one, and no face h
     // One face, and nothing at all.
     CHECK(vertex_coloring(std::vector<Face>{{0, 1, 2}}, 3).size() == 3);
     CHECK(vertex_coloring({}, 0).empty());
+}
+
+// What was found before holds for no face that has changed or is new.
+TEST_CASE("touched faces: those of a ring, and those that did not exist") {
+    TouchedFaces touched(4);
+    OneRing ring;
+    ring.faces = 2;
+    ring.face[0] = 1;
+    ring.face[1] = 3;
+    CHECK(!touched.has_any(ring));
+    touched.add(Id{3});
+    CHECK(touched.has_any(ring));
+    CHECK(!touched.has(1));
+    touched.add(ring);
+    CHECK(touched.has(1));
+    CHECK(!touched.has(0));
+    CHECK(touched.has(4));
+    CHECK(!touched.has(kNone));
+    touched.add(4);
+    touched.add(kNone);
+    CHECK(!touched.has(2));
 }
 
 // Grids whose vertices lie on pixel centres, lines through centres, slivers: each pixel counts exactly once.
