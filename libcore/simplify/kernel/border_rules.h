@@ -13,7 +13,8 @@ struct BorderConstraint {
 };
 
 /// Corners stay, vertices of a side stay on their side.
-inline BorderConstraint border_constraint(const Ring& a, const Ring& b) {
+template <class Vertex>
+inline BorderConstraint border_constraint(const Vertex& a, const Vertex& b) {
     constexpr std::uint8_t kCorner = kFixedX | kFixedY;
     if ((a.fixed & b.fixed & kFixedX) && a.x != b.x) return {};
     if ((a.fixed & b.fixed & kFixedY) && a.y != b.y) return {};

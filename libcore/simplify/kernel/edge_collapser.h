@@ -1,42 +1,22 @@
 // The inner loop of simplify: edges collapse in the order of their costs until there is nothing left to do.
-// It works on a whole mesh, or on one tile of it beside others that work on theirs.
+// It works on a whole mesh; tile_collapser.h does while the goal is far.
 #pragma once
 
 #include <algorithm>
 #include <array>
-#include <limits>
 #include <span>
 #include <vector>
 
 #include "libcore/image/channel_count.h"
 #include "libcore/mesh/ring_mesh.h"
 #include "libcore/simplify/kernel/bucket_queue.h"
+#include "libcore/simplify/kernel/collapse_stats.h"
 #include "libcore/simplify/kernel/edge_costs.h"
 #include "libcore/simplify/kernel/quadric_mesh.h"
 
 namespace imgmesh {
 
-/// What has been collapsed, or may be.
-struct CollapseStats {
-    std::int64_t vertices = 0, faces = 0;  ///< taken away
-    double error = 0;                      ///< largest total quadric error of a merged vertex
-    float postponed = kNever;              ///< least cost of the edges that are beyond the threshold
-
-    void add(const CollapseStats& other) {
-        vertices += other.vertices;
-        faces += other.faces;
-        error = std::max(error, other.error);
-        postponed = std::min(postponed, other.postponed);
-    }
-};
-
-inline constexpr CollapseStats kAllMayGo{.vertices = std::numeric_limits<std::int64_t>::max(),
-                                         .faces = std::numeric_limits<std::int64_t>::max()};
-
 /// Sources and steps: simplify.cpp. `Q` is the quadric that vertices carry (edge_costs.h).
-///
-/// Edges with a locked end (Ring::locked) are left alone. So several collapsers may work on one mesh at the
-/// same time where each has its own vertices, and those with a neighbour of another collapser are locked.
 template <class Q>
 class EdgeCollapser {
   public:
@@ -53,8 +33,7 @@ class EdgeCollapser {
         may_go_ = may_go;
         stats_ = {};
         for (std::size_t n = 0; n < count; ++n)
-            if (const Id i = vertex(n); rings_[i].live() && !rings_[i].locked)
-                file_edges_of(i, from_either_end ? 0 : i);
+            if (const Id i = vertex(n); rings_[i].live()) file_edges_of(i, from_either_end ? 0 : i);
         drain();
         queue_.clear();
         return stats_;
@@ -104,7 +83,7 @@ class EdgeCollapser {
         return rings_[edge.i].version == edge.version_i && rings_[edge.j].version == edge.version_j;
     }
 
-    bool done() const { return stats_.vertices >= may_go_.vertices || stats_.faces >= may_go_.faces; }
+    bool done() const { return stats_.reached(may_go_); }
 
     void try_collapse(const QueuedEdge& edge, int bucket) {
         if (!current(edge)) return;
@@ -154,7 +133,7 @@ class EdgeCollapser {
         int count = 0;
         for (int k = 0; k < ring.valence; ++k) {
             const Id j = others[count] = ring.neighbor[k];
-            count += j >= from && !rings_[j].locked;
+            count += j >= from;
         }
         costs_.increments(i, others, count, increments);
         for (int k = 0; k < count; ++k) {

@@ -2,18 +2,17 @@
 #pragma once
 
 #include <algorithm>
-#include <limits>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
 #include "libcore/mesh/base_mesh.h"
 #include "libcore/simplify/kernel/border_rules.h"
+#include "libcore/simplify/kernel/collapse_stats.h"
 #include "libcore/simplify/kernel/merge_increments.h"
 #include "libcore/simplify/kernel/quadric_mesh.h"
 
 namespace imgmesh {
-
-inline constexpr float kNever = std::numeric_limits<float>::infinity();
 
 /// A place for a merged vertex.
 struct Placement {
@@ -24,18 +23,21 @@ struct Placement {
 /// The costs of the edges of a mesh, as it stands at each call. `Q` is the quadric that vertices carry:
 /// merged(a, b), at(x, y), features(x, y, out), error, the minimiser (px, py) and best_x(y), best_y(x) on a
 /// line where has_minimum(fixed). initial_quadrics and rebuilt_quadrics make vectors of it.
-template <class Q>
+template <class Q, class Rings = RingMesh>
 class EdgeCosts {
   public:
     EdgeCosts(const QuadricMesh<Q>& mesh, const SimplifyRules& rules)
-        : rings_(mesh.rings), quadrics_(mesh.quadrics), rules_(rules) {}
+        : EdgeCosts(mesh.rings, mesh.quadrics, rules) {}
+    EdgeCosts(const Rings& rings, const std::vector<Q>& quadrics, const SimplifyRules& rules)
+        : rings_(rings), quadrics_(quadrics), rules_(rules) {}
 
     /// What filing an edge of two vertices would cost; kNever where it may not merge.
     float cost(Id i, Id j) const { return best_place(i, j, merged(quadrics_[i], quadrics_[j])).cost; }
     /// For all edges of a vertex at once: what the least error grows by. Both arrays have kNeighborRoom
     /// places, of which those behind `count` are overwritten. Does nothing for quadrics that may have no
     /// minimum.
-    void increments(Id i, Id* others, int count, float* out) const {
+    template <class Number>
+    void increments(Number i, Number* others, int count, float* out) const {
         if constexpr (kCanonical<Q>) merge_increments(quadrics_.data(), i, others, count, out);
     }
     /// cost(i, j) from its increment. That is all it takes away from the border.
@@ -68,15 +70,19 @@ class EdgeCosts {
 
     /// Whether the merged vertex, with the ring `ring`, may stand at a place: no triangle around it is of a
     /// forbidden shape, and the boundary of a masked image allows it.
-    bool allowed(Id i, Id j, const MergedRing& ring, const Placement& place) const {
+    template <class Merged>
+    bool allowed(Id i, Id j, const Merged& ring, const Placement& place) const {
         const bool border = rings_[i].border() || rings_[j].border();
-        return rules_.limits.allow(rings_, ring, border, place.x, place.y) &&
-               (!along_boundary(i, j) || rules_.boundary->allows(rings_, i, j, place.x, place.y));
+        if (!rules_.limits.allow(rings_, ring, border, place.x, place.y)) return false;
+        if constexpr (kWhole)
+            return !along_boundary(i, j) || rules_.boundary->allows(rings_, i, j, place.x, place.y);
+        return true;
     }
 
     /// Where it goes when the best place is not allowed: the cheapest allowed one of midpoint and ends, or of
     /// the boundary's places.
-    Placement fallback(Id i, Id j, const MergedRing& ring, const Q& sum) const {
+    template <class Merged>
+    Placement fallback(Id i, Id j, const Merged& ring, const Q& sum) const {
         const auto legal = [&](const Placement& p) { return allowed(i, j, ring, p); };
         if (along_boundary(i, j)) return boundary_place(i, j, sum, legal);
         const BorderConstraint border = border_constraint(rings_[i], rings_[j]);
@@ -86,20 +92,22 @@ class EdgeCosts {
   private:
     // Whether both ends are on a boundary of a masked image. The edge may lie on it or cross the inside.
     bool along_boundary(Id i, Id j) const {
-        return rules_.boundary && rings_[i].border() && rings_[j].border();
+        return kWhole && rules_.boundary && rings_[i].border() && rings_[j].border();
     }
 
     // The cheapest of the places that the boundary has for the merged vertex, of those allowed.
     template <class Allowed>
     Placement boundary_place(Id i, Id j, const Q& sum, const Allowed& allowed) const {
         Placement best;
-        if (rings_[i].neighbor[0] != j && rings_[j].neighbor[0] != i) return best;
-        const MaskBoundary::Places places = rules_.boundary->places(rings_, i, j, sum.px, sum.py);
-        for (int k = 0; k < places.count; ++k) {
-            const Vec2f& at = places.at[static_cast<std::size_t>(k)];
-            Placement p{at.x(), at.y(), 0};
-            p.cost = cost_at(i, j, sum, p);
-            if (p.cost < best.cost && allowed(p)) best = p;
+        if constexpr (kWhole) {
+            if (rings_[i].neighbor[0] != j && rings_[j].neighbor[0] != i) return best;
+            const MaskBoundary::Places places = rules_.boundary->places(rings_, i, j, sum.px, sum.py);
+            for (int k = 0; k < places.count; ++k) {
+                const Vec2f& at = places.at[static_cast<std::size_t>(k)];
+                Placement p{at.x(), at.y(), 0};
+                p.cost = cost_at(i, j, sum, p);
+                if (p.cost < best.cost && allowed(p)) best = p;
+            }
         }
         return best;
     }
@@ -107,7 +115,7 @@ class EdgeCosts {
     template <class Allowed>
     Placement cheapest_of_three(Id i, Id j, const Q& sum, const BorderConstraint& border,
                                 const Allowed& allowed) const {
-        const Ring &a = rings_[i], &b = rings_[j];
+        const auto &a = rings_[i], &b = rings_[j];
         Placement best;
         const std::pair<float, float> candidates[] = {
             {0.5f * (a.x + b.x), 0.5f * (a.y + b.y)}, {a.x, a.y}, {b.x, b.y}};
@@ -129,7 +137,9 @@ class EdgeCosts {
         return rules_.params.total_priority ? added + (quadrics_[i].error + quadrics_[j].error) : added;
     }
 
-    const RingMesh& rings_;
+    static constexpr bool kWhole = std::is_same_v<Rings, RingMesh>;
+
+    const Rings& rings_;
     const std::vector<Q>& quadrics_;
     const SimplifyRules& rules_;
 };

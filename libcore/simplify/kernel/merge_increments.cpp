@@ -10,7 +10,9 @@
 namespace imgmesh {
 namespace {
 
-IMGMESH_INLINE void increments(const ColorQuadric* quadrics, Id i, Id* others, int count, float* out) {
+template <class Number>
+IMGMESH_INLINE void increments(const ColorQuadric* quadrics, Number i, Number* others, int count,
+                               float* out) {
     const ColorQuadric8 own = in_every_lane(quadrics[i]);
     // Lanes without a vertex get i itself.
     std::fill(others + count, others + (count + 7) / 8 * 8, i);
@@ -21,7 +23,8 @@ IMGMESH_INLINE void increments(const ColorQuadric* quadrics, Id i, Id* others, i
 }
 
 #if defined(__x86_64__)
-__attribute__((target("avx2"))) void increments_avx2(const ColorQuadric* quadrics, Id i, Id* others,
+template <class Number>
+__attribute__((target("avx2"))) void increments_avx2(const ColorQuadric* quadrics, Number i, Number* others,
                                                      int count, float* out) {
     increments(quadrics, i, others, count, out);
 }
@@ -31,6 +34,14 @@ const bool kAvx2 = has_avx2();
 }  // namespace
 
 void merge_increments(const ColorQuadric* quadrics, Id i, Id* others, int count, float* out) {
+#if defined(__x86_64__)
+    if (kAvx2) return increments_avx2(quadrics, i, others, count, out);
+#endif
+    increments(quadrics, i, others, count, out);
+}
+
+void merge_increments(const ColorQuadric* quadrics, std::uint16_t i, std::uint16_t* others, int count,
+                      float* out) {
 #if defined(__x86_64__)
     if (kAvx2) return increments_avx2(quadrics, i, others, count, out);
 #endif

@@ -9,11 +9,13 @@ namespace imgmesh {
 
 /// out[k] = merged_minimum(quadrics[i], quadrics[others[k]]).increment for 0 <= k < count. Both arrays have
 /// kNeighborRoom places; those behind `count` are overwritten.
-template <int C>
-inline void merge_increments(const Quadric<C>* quadrics, Id i, Id* others, int count, float* out) {
+template <int C, class Number>
+inline void merge_increments(const Quadric<C>* quadrics, Number i, Number* others, int count, float* out) {
     for (int k = 0; k < count; ++k) out[k] = merged_minimum(quadrics[i], quadrics[others[k]]).increment;
 }
 /// The same bits on any processor.
 void merge_increments(const Quadric<3>* quadrics, Id i, Id* others, int count, float* out);
+void merge_increments(const Quadric<3>* quadrics, std::uint16_t i, std::uint16_t* others, int count,
+                      float* out);
 
 }  // namespace imgmesh

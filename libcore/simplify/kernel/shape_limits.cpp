@@ -7,10 +7,7 @@
 namespace imgmesh {
 namespace {
 
-// Positions of a vertex's neighbours, and the first one again behind the last.
-struct Corners {
-    float x[kNeighborRoom + 8], y[kNeighborRoom + 8];
-};
+using Corners = ShapeLimits::Corners;
 
 IMGMESH_INLINE bool allowed(const ShapeLimits& limits, const Corners& corners, int faces, float x, float y) {
     Int8 bad = {};
@@ -40,17 +37,7 @@ const bool kAvx2 = has_avx2();
 
 }  // namespace
 
-bool ShapeLimits::allow(const RingMesh& rings, const MergedRing& ring, bool border, float x, float y) const {
-    Corners corners;
-    std::size_t n = 0;
-    for (const auto count = static_cast<std::size_t>(ring.valence); n < count; ++n) {
-        const Ring& neighbor = rings[ring.neighbor[n]];
-        corners.x[n] = neighbor.x;
-        corners.y[n] = neighbor.y;
-    }
-    corners.x[n] = corners.x[0];
-    corners.y[n] = corners.y[0];
-    const int faces = border ? ring.valence - 1 : ring.valence;
+bool ShapeLimits::allow(const Corners& corners, int faces, float x, float y) const {
 #if defined(__x86_64__)
     if (kAvx2) return allowed_avx2(*this, corners, faces, x, y);
 #endif

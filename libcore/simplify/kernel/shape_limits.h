@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "libcore/mesh/ring_mesh.h"
+#include "libcore/simplify/kernel/neighbor_room.h"
 
 namespace imgmesh {
 
@@ -22,7 +23,26 @@ struct ShapeLimits {
     }
 
     /// Whether a vertex with the ring `ring` may stand at (x, y). border: the ring is an open fan.
-    bool allow(const RingMesh& rings, const MergedRing& ring, bool border, float x, float y) const;
+    template <class Rings, class Merged>
+    bool allow(const Rings& rings, const Merged& ring, bool border, float x, float y) const {
+        Corners corners;
+        std::size_t n = 0;
+        const auto count = static_cast<std::size_t>(ring.valence);
+        do {
+            const auto& neighbor = rings[ring.neighbor[n]];
+            corners.x[n] = neighbor.x;
+            corners.y[n] = neighbor.y;
+        } while (++n < count);
+        corners.x[n] = corners.x[0];
+        corners.y[n] = corners.y[0];
+        return allow(corners, border ? ring.valence - 1 : ring.valence, x, y);
+    }
+
+    /// Positions of a vertex's neighbours, and the first one again behind the last.
+    struct Corners {
+        float x[kNeighborRoom + 8], y[kNeighborRoom + 8];
+    };
+    bool allow(const Corners& corners, int faces, float x, float y) const;
 };
 
 }  // namespace imgmesh

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <atomic>
 #include <limits>
+#include <numeric>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -16,6 +17,7 @@
 #include "libcore/base/parallel.h"
 #include "libcore/base/parallel_vector.h"
 #include "libcore/simplify/kernel/start_tile.h"
+#include "libcore/simplify/kernel/tile_collapser.h"
 
 namespace imgmesh {
 
@@ -60,14 +62,18 @@ inline constexpr Id kElsewhere = 1u << 31;
 // Collapses the tile's edges below `threshold`. If requested, quadrics are rebuilt whenever its vertices have
 // halved. Neighbours in other tiles are locked too, so their state is known then.
 template <class Q>
-CollapseStats collapse_tile(EdgeCollapser<Q>& collapser, const SimplifyParams& params, TileMesh<Q>& tile,
+CollapseStats collapse_tile(TileCollapser<Q>& collapser, const SimplifyParams& params, TileMesh<Q>& tile,
                             float threshold, std::int64_t may_go) {
+    static_assert(4 * kStartTile * kStartTile < kElsewhere);  // a pixel has four vertices at most
+    std::vector<Id> all(tile.own);
+    std::iota(all.begin(), all.end(), Id{0});
+    const auto number = [&](Id v) { return v < tile.own ? static_cast<TileId>(v) : kNoTileId; };
     CollapseStats sum;
     for (;;) {
         std::int64_t part_may = may_go - sum.vertices;
         if (params.rebuild_quadrics) part_may = std::min(part_may, tile.live - tile.halved);
-        const CollapseStats part = collapser.run(tile.own, [](std::size_t v) { return static_cast<Id>(v); },
-                                                 threshold, {.vertices = part_may, .faces = kAllMayGo.faces});
+        const CollapseStats part = collapser.run(tile.mesh, all, number, threshold,
+                                                 {.vertices = part_may, .faces = kAllMayGo.faces});
         // Edges put off while quadrics were old may be cheaper now.
         sum.postponed = kNever;
         sum.add(part);
@@ -167,7 +173,7 @@ float start_threshold(const GridMesh& grid, const SimplifyRules& rules, double s
     for (float next = threshold;; next *= kTileWindow) {
         std::vector<CollapseStats> stats(some.size());
         each([&](std::size_t n) {
-            EdgeCollapser<Q> collapser(meshes[n].mesh, rules);
+            TileCollapser<Q> collapser(rules);
             stats[n] = collapse_tile(collapser, rules.params, meshes[n], next, kAllMayGo.vertices);
         });
         CollapseStats sum;
@@ -202,7 +208,7 @@ CollapseStats start_in_tiles(const GridMesh& grid, const SimplifyRules& rules, f
         std::vector<CollapseStats> stats(parts.size());
         parallel_blocks(begin, end, kStartTilesPerBlock, [&](int from, int to) {
             TileMesh<Q> tile;
-            EdgeCollapser<Q> collapser(tile.mesh, rules);
+            TileCollapser<Q> collapser(rules);
             for (int t = from; t < to; ++t) {
                 const auto n = static_cast<std::size_t>(t - begin);
                 fill_tile(grid, rules.params, tiles.rect(t), tile);

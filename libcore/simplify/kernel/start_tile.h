@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "libcore/mesh/masked_rings.h"
-#include "libcore/simplify/kernel/edge_collapser.h"
+#include "libcore/simplify/kernel/quadric_mesh.h"
 
 namespace imgmesh {
 

@@ -30,7 +30,8 @@ IMGMESH_INLINE Float8 half_of(const ColorQuadric& quadric, std::size_t half) {
 }
 
 /// The quadrics of these eight numbers, one in each lane.
-IMGMESH_INLINE ColorQuadric8 side_by_side(const ColorQuadric* quadrics, const Id* which) {
+template <class Number>
+IMGMESH_INLINE ColorQuadric8 side_by_side(const ColorQuadric* quadrics, const Number* which) {
     Float8 low[8], high[8];
     for (int lane = 0; lane < 8; ++lane) {
         low[lane] = half_of(quadrics[which[lane]], 0);

@@ -1,0 +1,194 @@
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <random>
+
+#include "libcore/simplify/kernel/edge_collapser.h"
+#include "libcore/simplify/kernel/tile_collapser.h"
+#include "tests/support/grid_faces.h"
+#include "tests/support/sample_pictures.h"
+#include "tests/support/simplify_params.h"
+
+using namespace imgmesh;
+using namespace imgmesh::test;
+
+namespace {
+
+using Mesh = QuadricMesh<Quadric<3>>;
+
+constexpr int kWidth = 40, kHeight = 30;
+const SimplifyHooks kNoHooks;
+
+Mesh dense(Kind kind) {
+    const GridMesh grid = grid_mesh(sample_feature(kind, kWidth, kHeight));
+    Mesh mesh;
+    mesh.rings = ring_mesh(grid);
+    mesh.quadrics =
+        initial_quadrics<Quadric<3>>(grid, mesh.rings, FeaturePatch{grid.feature}, plain_params());
+    return mesh;
+}
+
+// Of a tile that is the mesh.
+struct WholeTile {
+    std::vector<TileRing> rings;
+    std::vector<TileVertex> vertices;
+
+    explicit WholeTile(const RingMesh& mesh) {
+        for (const Ring& from : mesh) {
+            TileRing& ring = rings.emplace_back();
+            std::fill_n(ring.neighbor, TileRing::kRoom, kNoTileId);
+            std::copy_n(from.neighbor, from.valence, ring.neighbor);
+            vertices.push_back({from.x, from.y, from.valence, from.fixed, false});
+        }
+    }
+};
+
+CollapseStats collapse(Mesh& mesh, const std::vector<Id>& list, float threshold,
+                       const CollapseStats& may_go = kAllMayGo) {
+    const SimplifyParams params = plain_params();
+    const SimplifyRules rules{params, kNoHooks, 3, {}};
+    const auto number = [&](Id v) {
+        const auto at = std::lower_bound(list.begin(), list.end(), v);
+        return at != list.end() && *at == v ? static_cast<TileId>(at - list.begin()) : kNoTileId;
+    };
+    return TileCollapser<Quadric<3>>(rules).run(mesh, list, number, threshold, may_go);
+}
+
+std::vector<Id> vertices_where(const Mesh& mesh, float end_x) {
+    std::vector<Id> list;
+    for (Id v = 0; v < mesh.rings.size(); ++v)
+        if (mesh.rings[v].x < end_x) list.push_back(v);
+    return list;
+}
+
+bool same_ring(const Ring& a, const Ring& b) {
+    return a.valence == b.valence && std::equal(a.neighbor, a.neighbor + a.valence, b.neighbor);
+}
+
+}  // namespace
+
+TEST_CASE("numbers of 16 bits: found, and the least") {
+    std::mt19937 random(7);
+    for (int round = 0; round < 200; ++round) {
+        std::uint16_t values[16];
+        for (std::uint16_t& value : values)
+            value = static_cast<std::uint16_t>(random() % 0x8000 >> round % 12);
+        CHECK(least16(values) == *std::min_element(values, values + 16));
+        const std::uint16_t wanted = values[random() % 16];
+        for (unsigned k = 0; k < 16; ++k)
+            CHECK((match16(values, wanted) >> k & 1) == static_cast<unsigned>(values[k] == wanted));
+        CHECK(match16(values, 0xffff) == 0);
+    }
+}
+
+TEST_CASE("short costs: in order, and never above the cost") {
+    float before = 0;
+    for (float cost = 1e-30f; cost < 1e30f; cost *= 1.01f) {
+        CHECK(short_cost(before) <= short_cost(cost));
+        CHECK(least_cost(short_cost(cost)) <= cost);
+        CHECK(least_cost(short_cost(cost)) > cost * (1 - 1.0f / 128));
+        before = cost;
+    }
+    CHECK(short_cost(kNever) == kShortNever);
+    CHECK(least_cost(kShortNever) == kNever);
+}
+
+// Random merges until none is possible; before each, all edges of the mesh.
+TEST_CASE("tile: an edge merges as in the mesh of rings") {
+    std::mt19937 random(3);
+    RingMesh rings = ring_mesh(grid_mesh(sample_feature(Kind::kNoise, 11, 9)));
+    for (;;) {
+        const WholeTile tile(rings);
+        std::vector<std::pair<Id, Id>> legal;
+        for (Id i = 0; i < rings.size(); ++i)
+            for (int k = 0; k < rings[i].valence; ++k) {
+                const Id j = rings[i].neighbor[k];
+                MergedRing expected;
+                MergedTileRing merged;
+                const bool may = merge_rings(rings, i, j, expected);
+                INFO("edge " << i << " " << j);
+                CHECK(merge_rings(tile.rings, tile.vertices, static_cast<TileId>(i), static_cast<TileId>(j),
+                                  merged) == may);
+                if (!may) continue;
+                legal.emplace_back(i, j);
+                CHECK(merged.faces_removed == expected.faces_removed);
+                REQUIRE(merged.valence == expected.valence);
+                std::vector<Id> a(expected.neighbor.begin(), expected.neighbor.begin() + expected.valence),
+                    b(merged.neighbor, merged.neighbor + merged.valence);
+                const bool border = rings[i].border() || rings[j].border();
+                if (!border) std::rotate(b.begin(), std::find(b.begin(), b.end(), a.front()), b.end());
+                CHECK(a == b);
+                for (int n = merged.valence; n < TileRing::kRoom; ++n) CHECK(merged.neighbor[n] == kNoTileId);
+            }
+        if (legal.empty()) break;
+        const auto [i, j] = legal[random() % legal.size()];
+        MergedRing merged;
+        REQUIRE(merge_rings(rings, i, j, merged));
+        apply_merge(rings, i, j, merged);
+    }
+}
+
+// What is left are edges that cost more, or that the triangles around them forbade when they were tried. As
+// those have changed, a second run may find a few.
+TEST_CASE("tile: no edge below the threshold is left that may collapse") {
+    for (const Kind kind : kAllKinds)
+        for (const float threshold : {1e-3f, 10.0f, 1e3f, 1e6f}) {
+            INFO(name_of(kind) << " below " << threshold);
+            Mesh mesh = dense(kind);
+            const CollapseStats stats = collapse(mesh, vertices_where(mesh, 1e9f), threshold);
+            CHECK(live_list(mesh.rings).size() + static_cast<std::size_t>(stats.vertices) ==
+                  kWidth * kHeight);
+            CHECK(face_count(mesh.rings) + stats.faces == 2 * (kWidth - 1) * (kHeight - 1));
+            CHECK(short_cost(stats.postponed) >= short_cost(threshold));
+            for (Id i = 0; i < mesh.rings.size(); ++i)
+                for (int k = 0; k < mesh.rings[i].valence; ++k)
+                    CHECK(mesh.rings[mesh.rings[i].neighbor[k]].find(i) >= 0);
+            // Between its squares nearly everything is forbidden at first.
+            if (kind == Kind::kCheckerboard) continue;
+            const CollapseStats again = collapse(mesh, vertices_where(mesh, 1e9f), threshold);
+            CHECK(again.vertices <= 20 + (kWidth * kHeight - stats.vertices) / 20);
+        }
+}
+
+// The edges are the same, and so is nearly all of their order; ties and forbidden shapes are not.
+TEST_CASE("tile: about as many vertices go as from a queue") {
+    for (const float threshold : {1e4f, 1e5f}) {
+        INFO("below " << threshold);
+        Mesh mesh = dense(Kind::kNoise), queued = mesh;
+        const CollapseStats stats = collapse(mesh, vertices_where(mesh, 1e9f), threshold);
+        const SimplifyParams params = plain_params();
+        const SimplifyRules rules{params, kNoHooks, 3, {}};
+        const CollapseStats expected =
+            EdgeCollapser<Quadric<3>>(queued, rules)
+                .run(
+                    queued.rings.size(), [](std::size_t v) { return static_cast<Id>(v); }, threshold,
+                    kAllMayGo);
+        CHECK(std::abs(stats.vertices - expected.vertices) <= expected.vertices / 50);
+        CHECK(expected.vertices > 100);
+    }
+}
+
+TEST_CASE("tile: it stops where as many vertices are removed as may go") {
+    Mesh mesh = dense(Kind::kNoise);
+    CHECK(collapse(mesh, vertices_where(mesh, 1e9f), 1e6f, {.vertices = 17, .faces = 1000}).vertices == 17);
+    CHECK(live_list(mesh.rings).size() == kWidth * kHeight - 17);
+}
+
+// The left half of a mesh: what lies beside it, and the vertices at the seam, stay where they are.
+TEST_CASE("tile: vertices with a neighbour elsewhere stay") {
+    const Mesh before = dense(Kind::kNoise);
+    Mesh mesh = before;
+    constexpr float kSeam = 19;  // x of the last vertices of the tile
+    const CollapseStats stats = collapse(mesh, vertices_where(mesh, kSeam + 1), 1e6f);
+    CHECK(stats.vertices > 400);
+    CHECK(face_count(mesh.rings) + stats.faces == face_count(before.rings));
+    for (Id v = 0; v < mesh.rings.size(); ++v) {
+        const Ring &ring = mesh.rings[v], &old = before.rings[v];
+        if (old.x < kSeam) continue;
+        CHECK(ring.x == old.x);
+        CHECK(ring.y == old.y);
+        CHECK(mesh.quadrics[v].error == before.quadrics[v].error);
+        if (old.x > kSeam) CHECK(same_ring(ring, old));
+        for (int k = 0; k < ring.valence; ++k) CHECK(mesh.rings[ring.neighbor[k]].find(v) >= 0);
+    }
+}
