@@ -29,6 +29,13 @@ IMGMESH_INLINE Float8 load8_every_other(const float* p) {
     return __builtin_shufflevector(load8(p), load8(p + 8), 0, 2, 4, 6, 8, 10, 12, 14);
 }
 
+/// Says whether every lane of a comparison's result is true.
+IMGMESH_INLINE bool all_set(Int8 mask) {
+    int all = -1;
+    for (int l = 0; l < 8; ++l) all &= mask[l];
+    return all != 0;
+}
+
 /// Says whether functions built for AVX2 may be called. This is decided in one place, so that a test program
 /// can define its own and take the other path: results are the same bytes on both.
 bool has_avx2();

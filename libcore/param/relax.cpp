@@ -22,8 +22,13 @@
 namespace imgmesh {
 namespace {
 
-// Where a step would fold the grid, shorter ones are tried.
-constexpr int kHalvings = 2;
+// Where a step would fold the grid, it is first turned aside from the triangle that it folds most, then made
+// shorter.
+constexpr int kTurns = 2, kHalvings = 2;
+
+// A turned step leaves its triangle so much more than the least area [px^2], as it still has to be rounded to
+// the grid.
+constexpr float kSpareArea = 0.03f;
 
 // Rows of a block: enough work for the cost of a hand-over, few enough for all threads.
 constexpr int kSweptRows = 16;
@@ -93,32 +98,23 @@ struct Sweep {
         return clamped(rounded(displacement * steps) / steps, -kFarthest, kFarthest);
     }
 
+    // Whether a step inside a face is worth taking. With a rate that has been decided already.
+    template <typename T>
+    IMGMESH_INLINE auto is_better(const NewtonStep<T>& step, T sx, T sy) const {
+        return step.change(sx, sy) < T{} + (rate > 0 ? std::numeric_limits<float>::max() : 0);
+    }
+
     void move_pixel(int x, int y) const {
-        const int w = pixels.width, h = pixels.height;
         const std::size_t index = pixels.index(x, y);
         if (pixels.outside(index)) return;
-        // Pixels that do not exist, or are outside, are NaN, which is never the lesser.
-        float ndx[8], ndy[8], nx[8], ny[8], mean_x = 0, mean_y = 0, count = 0;
-        for (int k = 0; k < 8; ++k) {
-            const int i = x + kStepX[k], j = y + kStepY[k];
-            const bool inside = pixels.contains(i, j);
-            const float dx = ndx[k] =
-                inside ? pixels.dx[pixels.index(i, j)] : std::numeric_limits<float>::quiet_NaN();
-            const float dy = ndy[k] =
-                inside ? pixels.dy[pixels.index(i, j)] : std::numeric_limits<float>::quiet_NaN();
-            nx[k] = static_cast<float>(i) + dx;
-            ny[k] = static_cast<float>(j) + dy;
-            if (k % 2 != 0 || std::isnan(dx)) continue;
-            mean_x += dx;
-            mean_y += dy;
-            ++count;
-        }
+        const Around around(pixels, x, y);
         const float rest_x = static_cast<float>(x), rest_y = static_cast<float>(y);
-        const float px = rest_x + pixels.dx[index], py = rest_y + pixels.dy[index];
+        const float own_x = pixels.dx[index], own_y = pixels.dy[index];
+        const float px = rest_x + own_x, py = rest_y + own_y;
         float sx, sy;
         const FaceField& field = fields[pixels.face[index]];
         const float* color = feature.pixel(index);
-        NewtonStep<float> step(px, py, rest_x + mean_x / count, rest_y + mean_y / count, mu);
+        NewtonStep<float> step(px, py, rest_x + around.mean_x, rest_y + around.mean_y, mu);
         const float from_ax = px - field.ax, from_ay = py - field.ay;
         step.add_features(field.f, field.fx, field.fy, color, std::min(3, feature.channels), from_ax,
                           from_ay);
@@ -126,18 +122,103 @@ struct Sweep {
         for (std::size_t c = 0; c < auxiliary.features; ++c, f += 3)
             step.add_features(f, f + 1, f + 2, color + 3 + c, 1, from_ax, from_ay);
         step.solve(sx, sy);
+        if (rate > 0 && pixels.is_free(x, y)) make_cheap(step, own_x, own_y, around.dx, around.dy, sx, sy);
+        const bool pinned_x = pixels.pinned_x(x, y), pinned_y = pixels.pinned_y(x, y);
+        if (pinned_x) sx = 0;
+        if (pinned_y) sy = 0;
+        const float least_here = least_in(field.longest);
+        for (int tries = 0; tries <= kTurns + kHalvings; ++tries) {
+            const float qx = on_image(rest_x + on_grid(own_x + sx), pixels.width);
+            const float qy = on_image(rest_y + on_grid(own_y + sy), pixels.height);
+            if (least_area(qx, qy, around.x, around.y) >= least_here) {
+                if (beyond(field, qx, qy))
+                    cross(x, y, qx, qy);
+                else if (is_better(step, qx - px, qy - py))
+                    place(index, qx - rest_x, qy - rest_y, pixels.face[index]);
+                return;
+            }
+            float to_x = px + sx, to_y = py + sy;
+            widen_least(to_x, to_y, around.x, around.y, least_here + kSpareArea);
+            const bool turn = tries < kTurns;
+            sx = pinned_x ? 0 : turn ? to_x - px : sx * 0.5f;
+            sy = pinned_y ? 0 : turn ? to_y - py : sy * 0.5f;
+        }
+    }
+
+    // The neighbours of a pixel: their displacements, their places, and the mean displacement of the straight
+    // ones. Pixels that do not exist, or are outside, are NaN, which is never the lesser.
+    struct Around {
+        float dx[8], dy[8], x[8], y[8], mean_x = 0, mean_y = 0;
+
+        Around(const PixelEmbedding& pixels, int px, int py) {
+            float count = 0;
+            for (int k = 0; k < 8; ++k) {
+                const int i = px + kStepX[k], j = py + kStepY[k];
+                const bool inside = pixels.contains(i, j);
+                dx[k] = inside ? pixels.dx[pixels.index(i, j)] : std::numeric_limits<float>::quiet_NaN();
+                dy[k] = inside ? pixels.dy[pixels.index(i, j)] : std::numeric_limits<float>::quiet_NaN();
+                x[k] = static_cast<float>(i) + dx[k];
+                y[k] = static_cast<float>(j) + dy[k];
+                if (k % 2 != 0 || std::isnan(dx[k])) continue;
+                mean_x += dx[k];
+                mean_y += dy[k];
+                ++count;
+            }
+            mean_x /= count;
+            mean_y /= count;
+        }
+    };
+
+    template <typename T>
+    static IMGMESH_INLINE T on_image(T position, int side) {
+        return clamped(position, 0, static_cast<float>(side - 1));
+    }
+
+    // Whether a place is on the far side of one of the face's edges.
+    static bool beyond(const FaceField& field, float x, float y) {
+        const float u = field.u(x, y), v = field.v(x, y);
+        return lesser(lesser(u, v), 1 - u - v) < 0;
+    }
+
+    // Moves a pixel to a place in another face if it is better off there, else half as far if that is better.
+    void cross(int x, int y, float qx, float qy) const {
+        const std::size_t index = pixels.index(x, y);
+        const Around around(pixels, x, y);
+        const float rest_x = static_cast<float>(x), rest_y = static_cast<float>(y);
         const float own_x = pixels.dx[index], own_y = pixels.dy[index];
-        if (rate > 0 && pixels.is_free(x, y)) make_cheap(step, own_x, own_y, ndx, ndy, sx, sy);
-        if (pixels.pinned_x(x, y)) sx = 0;
-        if (pixels.pinned_y(x, y)) sy = 0;
-        for (int half = 0; half <= kHalvings; ++half, sx *= 0.5f, sy *= 0.5f) {
-            const float qx = clamped(rest_x + on_grid(own_x + sx), 0, static_cast<float>(w - 1));
-            const float qy = clamped(rest_y + on_grid(own_y + sy), 0, static_cast<float>(h - 1));
-            if (!(least_area(qx, qy, nx, ny) >= least_in(field.longest))) continue;
-            const Id face = locate_face({qx, qy}, pixels.face[index], fields, neighbors);
+        const Id own = pixels.face[index];
+        const float now = energy(index, own, rest_x + own_x, rest_y + own_y, rest_x + around.mean_x,
+                                 rest_y + around.mean_y);
+        for (const bool half : {false, true}) {
+            if (half) {
+                qx = on_image(rest_x + on_grid(own_x + (qx - rest_x - own_x) * 0.5f), pixels.width);
+                qy = on_image(rest_y + on_grid(own_y + (qy - rest_y - own_y) * 0.5f), pixels.height);
+                if (!(least_area(qx, qy, around.x, around.y) >= least_in(fields[own].longest))) return;
+            }
+            const Id face = locate_face({qx, qy}, own, fields, neighbors);
+            if (rate <= 0 &&
+                !(energy(index, face, qx, qy, rest_x + around.mean_x, rest_y + around.mean_y) < now))
+                continue;
             if (may_lie_in(face, {qx, qy})) place(index, qx - rest_x, qy - rest_y, face);
             return;
         }
+    }
+
+    // What it costs a pixel to be at a place of a face, if its neighbours would have it at (tx, ty).
+    float energy(std::size_t index, Id face, float px, float py, float tx, float ty) const {
+        const FaceField& field = fields[face];
+        const float* color = feature.pixel(index);
+        const float dx = px - field.ax, dy = py - field.ay;
+        float sum = mu * ((px - tx) * (px - tx) + (py - ty) * (py - ty));
+        const auto add = [&](float f, float fx, float fy, float wanted) {
+            const float e = f + fx * dx + fy * dy - wanted;
+            sum += e * e;
+        };
+        for (int c = 0; c < std::min(3, feature.channels); ++c)
+            add(field.f[c], field.fx[c], field.fy[c], color[c]);
+        const float* f = auxiliary.of(face);
+        for (std::size_t c = 0; c < auxiliary.features; ++c, f += 3) add(f[0], f[1], f[2], color[3 + c]);
+        return sum;
     }
 
     // Changes the step (sx, sy) to the best place into one to the cheapest.
@@ -197,34 +278,40 @@ struct Sweep {
         step.add_features(field.f, field.fx, field.fy, color, 3, px - field.ax, py - field.ay);
         step.solve(sx, sy);
         if (rate > 0) make_cheap(step, own_x, own_y, ndx, ndy, sx, sy);
-        const float right = static_cast<float>(pixels.width - 1),
-                    bottom = static_cast<float>(pixels.height - 1);
+        const Float8 least_here = least_in(field.longest);
         Float8 to_x = px, to_y = py;
-        Int8 moved = {};
-        for (int half = 0; half <= kHalvings; ++half, sx *= 0.5f, sy *= 0.5f) {
-            const Float8 qx = clamped(rest_x + on_grid(own_x + sx), 0, right),
-                         qy = clamped(rest_y + on_grid(own_y + sy), 0, bottom);
-            const Int8 take = (least_area(qx, qy, nx, ny) >= least_in(field.longest)) & ~moved;
+        Int8 found = {};
+        for (int tries = 0;; ++tries) {
+            const Float8 qx = on_image(rest_x + on_grid(own_x + sx), pixels.width),
+                         qy = on_image(rest_y + on_grid(own_y + sy), pixels.height);
+            const Int8 take = (least_area(qx, qy, nx, ny) >= least_here) & ~found;
             to_x = take ? qx : to_x;
             to_y = take ? qy : to_y;
-            moved |= take;
-            int all = -1;
-            for (int l = 0; l < 8; ++l) all &= moved[l];
-            if (all) break;
+            found |= take;
+            if (tries == kTurns + kHalvings || all_set(found)) break;
+            if (tries < kTurns) {
+                Float8 turned_x = px + sx, turned_y = py + sy;
+                widen_least(turned_x, turned_y, nx, ny, least_here + kSpareArea);
+                sx = turned_x - px;
+                sy = turned_y - py;
+            } else {
+                sx *= 0.5f;
+                sy *= 0.5f;
+            }
         }
         const Float8 ex = to_x - field.ax, ey = to_y - field.ay;
         const Float8 u = field.ux * ex + field.uy * ey, v = field.vx * ex + field.vy * ey;
-        const Float8 least_weight = lesser(lesser(u, v), 1 - u - v);
-        const Float8 dx = to_x - rest_x, dy = to_y - rest_y;
+        const Int8 outside = lesser(lesser(u, v), 1 - u - v) < Float8{};
+        const Int8 better = is_better(step, to_x - px, to_y - py);
+        const Float8 dx = better ? to_x - rest_x : own_x, dy = better ? to_y - rest_y : own_y;
         for (int l = 0; l < 8; ++l) {
-            if (!moved[l]) continue;
             const std::size_t i = index + 2 * as_index(l);
-            Id face = pixels.face[i];
-            if (least_weight[l] < 0) {
-                face = locate_face({to_x[l], to_y[l]}, face, fields, neighbors);
-                if (!may_lie_in(face, {to_x[l], to_y[l]})) continue;
+            if (found[l] & outside[l]) {
+                cross(x + 2 * l, y, to_x[l], to_y[l]);
+            } else {
+                pixels.dx[i] = dx[l];
+                pixels.dy[i] = dy[l];
             }
-            place(i, dx[l], dy[l], face);
         }
     }
 

@@ -66,15 +66,17 @@ struct RelaxParams {
 };
 
 /// Takes Gauss-Newton steps on the sum of |c(P) - c|^2 + mu |P - t|^2. c(P) is the base mesh's colour at P, c
-/// the pixel's, and t the pixel displaced like the mean of its four neighbours. A step is at most half a
-/// pixel and ends on the grid of positions, where all arithmetic on them is exact. It is halved until all
-/// four triangles (both diagonals) of each 2x2 cell around the pixel keep least_moving_area(), so the map
-/// stays a bijection. Pixels of the image's sides slide along them, corners rest. In a masked image
-/// `pixels.freedom` decides that, triangles with a pixel outside do not count, and a pixel that would leave
-/// the mesh waits.
+/// the pixel's, and t the pixel displaced like the mean of its four neighbours. A step is at most a pixel
+/// either way and ends on the grid of positions, where all arithmetic on them is exact. All four triangles
+/// (both diagonals) of each 2x2 cell around the pixel keep least_moving_area(), so the map stays a bijection:
+/// a step that would fold one is turned aside from it, and if that does not do, halved. A step is taken only
+/// if it lowers the sum, in another face by that face's own colours. Pixels of the image's sides slide along
+/// them, corners rest. In a masked image `pixels.freedom` decides that, triangles with a pixel outside do not
+/// count, and a pixel that would leave the mesh waits.
 ///
 /// With a rate, a free pixel goes to the cheapest of a few places near the best one. A place also costs the
-/// bits that a median predictor leaves of it and of the neighbours that are predicted from it.
+/// bits that a median predictor leaves of it and of the neighbours that are predicted from it, and it is not
+/// asked whether the sum has fallen.
 ///
 /// mesh       as is for `fields`; `pixels` lies on it, on the grid of `params.steps`
 /// feature    the image, size of `pixels`; both sides at least 2

@@ -11,9 +11,9 @@
 
 namespace imgmesh {
 
-// A step assumes that the mesh's colour is linear, which holds only inside one face, so a step is at most
-// half a pixel.
-inline constexpr float kLongestStep = 0.5f;
+// A step assumes that the mesh's colour is linear, which holds only inside one face, so a step is at most one
+// pixel.
+inline constexpr float kLongestStep = 1;
 
 /// Twice the area of the triangle p, a, b, positive in the grid's own orientation.
 template <typename T>
@@ -92,21 +92,53 @@ struct NewtonStep {
         sx = clamped(((gyy + mu) * bx - gxy * by) * inverse, -kLongestStep, kLongestStep);
         sy = clamped(((gxx + mu) * by - gxy * bx) * inverse, -kLongestStep, kLongestStep);
     }
+    // By how much a step changes the energy while the features stay linear.
+    IMGMESH_INLINE T change(T sx, T sy) const {
+        return (gxx + mu) * sx * sx + 2 * gxy * sx * sy + (gyy + mu) * sy * sy - 2 * (bx * sx + by * sy);
+    }
     // How much more it costs to be (ex, ey) away from the best place.
     IMGMESH_INLINE T excess(T ex, T ey) const {
         return (gxx + mu) * ex * ex + 2 * gxy * ex * ey + (gyy + mu) * ey * ey;
     }
 };
 
-/// Returns the least of the twelve triangles at (x, y) with other corners among the eight neighbours.
+// The twelve triangles at a pixel with other corners among the eight neighbours, which go from the east over
+// the south: two in a row, or two straight ones in a row.
+inline constexpr int kTriangles = 12;
+constexpr int first_corner(int triangle) {
+    return triangle < 8 ? triangle : 2 * (triangle - 8);
+}
+constexpr int second_corner(int triangle) {
+    return (first_corner(triangle) + (triangle < 8 ? 1 : 2)) % 8;
+}
+
+/// Returns the least of the twelve triangles at (x, y).
 template <typename T>
 IMGMESH_INLINE T least_area(T x, T y, const T* nx, const T* ny) {
     T least = T{} + std::numeric_limits<float>::max();
-    for (int k = 0; k < 8; ++k)
-        least = lesser(least, area2(x, y, nx[k], ny[k], nx[(k + 1) % 8], ny[(k + 1) % 8]));
-    for (int k = 0; k < 8; k += 2)
-        least = lesser(least, area2(x, y, nx[k], ny[k], nx[(k + 2) % 8], ny[(k + 2) % 8]));
+    for (int k = 0; k < kTriangles; ++k) {
+        const int a = first_corner(k), b = second_corner(k);
+        least = lesser(least, area2(x, y, nx[a], ny[a], nx[b], ny[b]));
+    }
     return least;
+}
+
+/// Moves (x, y) by the shortest way that gives the least of the twelve triangles twice the area `wanted`,
+/// unless it has that already.
+template <typename T>
+IMGMESH_INLINE void widen_least(T& x, T& y, const T* nx, const T* ny, T wanted) {
+    T least = T{} + std::numeric_limits<float>::max(), gx{}, gy{};  // and its gradient
+    for (int k = 0; k < kTriangles; ++k) {
+        const int a = first_corner(k), b = second_corner(k);
+        const T area = area2(x, y, nx[a], ny[a], nx[b], ny[b]);
+        const auto less = area < least;
+        gx = less ? ny[a] - ny[b] : gx;
+        gy = less ? nx[b] - nx[a] : gy;
+        least = less ? area : least;
+    }
+    const T way = greater(wanted - least, T{}) / (gx * gx + gy * gy);
+    x += way * gx;
+    y += way * gy;
 }
 
 /// The median predictor of a displacement from those of the west, the north and the northwest (Weinberger et
