@@ -1,6 +1,7 @@
 // Parts of the refinement: spans, sums over pixels, and what vertices may do.
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -103,6 +104,45 @@ TEST_CASE("spans: the faces of a mesh share out all pixels") {
                               });
             CHECK(count == std::vector<int>(count.size(), 1));
         }
+}
+
+// In whole numbers, for the largest images: a quotient in floating point may not cross a pixel's centre.
+TEST_CASE("spans: begin and end at the first pixel that is not left of an edge") {
+    constexpr int kSide = 65500, kUnits = 32 * (kSide - 1);
+    std::mt19937 random(3);
+    using Point = std::array<std::int64_t, 2>;  // in 1/32 px
+    const auto first_pixel = [](const Point& p, const Point& q, std::int64_t y) {
+        const std::int64_t dx = q[0] - p[0], dy = q[1] - p[1];  // dy > 0
+        const std::int64_t numerator = p[0] * dy + (32 * y - p[1]) * dx, denominator = 32 * dy;
+        return numerator / denominator + (numerator % denominator > 0);
+    };
+    for (int k = 0; k < 60; ++k) {
+        // Tall thin ones, whose edges pass close by centres; every third one has whole coordinates.
+        std::array<Point, 3> p;
+        for (Point& v : p) {
+            v[0] = static_cast<std::int64_t>(random() % kUnits);
+            v[1] = static_cast<std::int64_t>(random() % kUnits);
+            if (k % 3 == 0) v[0] &= ~31, v[1] &= ~31;
+        }
+        if (k % 2 == 0) p[2][0] = p[1][0] + 40, p[2][1] = p[1][1];
+        std::sort(p.begin(), p.end(), [](const Point& a, const Point& b) { return a[1] < b[1]; });
+        const auto at = [&](std::size_t i) {
+            return Vec2f(static_cast<float>(p[i][0]) / 32, static_cast<float>(p[i][1]) / 32);
+        };
+        const bool turned = signed_area2(at(0), at(1), at(2)) < 0;
+        if (signed_area2(at(0), at(1), at(2)) == 0) continue;
+        std::int64_t wrong = 0, rows = 0;
+        for_each_span(at(0), turned ? at(2) : at(1), turned ? at(1) : at(2), kSide, kSide,
+                      [&](int y, int begin, int end) {
+                          const std::int64_t full = first_pixel(p[0], p[2], y);
+                          const std::int64_t part =
+                              32 * y >= p[1][1] ? first_pixel(p[1], p[2], y) : first_pixel(p[0], p[1], y);
+                          wrong += begin != std::min(full, part) || end != std::max(full, part);
+                          ++rows;
+                      });
+        CHECK(wrong == 0);
+        CHECK(rows <= p[2][1] / 32 - p[0][1] / 32 + 1);
+    }
 }
 
 // Against sums in double, pixel by pixel, for faces from a sliver to hundreds of rows.
