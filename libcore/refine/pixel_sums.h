@@ -25,33 +25,34 @@ struct Corner {
     Vec3f color;
 };
 
-/// Sums over the pixels of a face, with e = drawing - image and w the first corner's weight.
-struct CornerSums {
-    double ee = 0;             ///< |e|^2: the squared error
-    double ww = 0;             ///< w^2
-    Vec3d we = Vec3d::Zero();  ///< w e
-};
-
-/// The same for all three corners.
+/// Sums over the pixels of a face, with e = drawing - image and w_i the weight of corner i.
 struct FaceSums {
-    double ee = 0;
-    double ww[3][3] = {};  ///< w_i w_j
-    Vec3d we[3] = {Vec3d::Zero(), Vec3d::Zero(), Vec3d::Zero()};
+    double ee;        ///< |e|^2: the squared error
+    double ww[3][3];  ///< w_i w_j
+    Vec3d we[3];      ///< w_i e
+
+    /// The colour of corner i changes.
+    void shift(std::size_t i, const Vec3d& change);
 };
 
 /// Sums over the face (a, b, c), counter-clockwise on screen, drawn with colours interpolated linearly, over
-/// its pixels by for_each_span(). Positions on kPositionStep. The bits are the same on every processor.
-CornerSums corner_sums(const ImagePlanes& image, const Corner& a, const Corner& b, const Corner& c);
-/// Returns only CornerSums::ee, to the bit.
-double squared_error(const ImagePlanes& image, const Corner& a, const Corner& b, const Corner& c);
+/// its pixels as FaceSpans has them. Positions on kPositionStep. The bits are the same on every processor.
 FaceSums face_sums(const ImagePlanes& image, const Corner& a, const Corner& b, const Corner& c);
+/// Returns only FaceSums::ee, to the bit.
+double squared_error(const ImagePlanes& image, const Corner& a, const Corner& b, const Corner& c);
 
-/// Returns the pixel of the face with the largest |e|^2, the first of equal ones; (-1, -1) if it has no
-/// pixels.
-struct WorstPixel {
-    int x = -1, y = -1;
-    float error = -1;  ///< |e|^2
+/// Sums over pixels with h, the weight of a new vertex: it is 1 there, 0 on the edges around it, and linear
+/// between. The vertex may lower the squared error by up to |he|^2 / hh.
+struct HatSums {
+    double hh = 0;             ///< h^2
+    Vec3d he = Vec3d::Zero();  ///< h e
 };
-WorstPixel worst_pixel(const ImagePlanes& image, const Corner& a, const Corner& b, const Corner& c);
+struct FaceHats {
+    HatSums center;               ///< of a vertex in the middle of the face
+    std::array<HatSums, 3> edge;  ///< of one on the edge opposite corner i: this face's part of it
+};
+/// at  where the vertex on the edge opposite corner i is: 0 is corner i + 1, and 1 is corner i + 2
+FaceHats face_hats(const ImagePlanes& image, const Corner& a, const Corner& b, const Corner& c,
+                   const std::array<float, 3>& at);
 
 }  // namespace imgmesh

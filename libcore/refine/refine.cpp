@@ -1,8 +1,8 @@
 // Source: docs/decisions/0012-refinement.md. One round:
-//   1. vertices move by Gauss-Newton steps on position and own colour (refiner.cpp)
-//   2. edges flip where that lowers the squared error
-//   3. vertices are relocated (relocate.cpp)
-//   4. all colours are fitted by least squares
+//   1. edges flip where that lowers the squared error (flips.cpp)
+//   2. vertices are relocated (relocate.cpp, removals.cpp, insertions.cpp)
+//   3. vertices move by Gauss-Newton steps on position and own colour (moves.cpp)
+//   4. all colours are fitted by least squares (refiner.cpp)
 #include "libcore/refine/refine.h"
 
 #include "libcore/refine/refiner.h"
@@ -21,8 +21,13 @@ RefineReport refine(BaseMesh& mesh, const FeatureImage& image, const RefineParam
     report.error.push_back(refiner.total_error());
     for (int round = 0; round < params.rounds; ++round) {
         if (progress) progress(static_cast<double>(round) / params.rounds, "refine");
-        if (params.relocations > 0) report.relocations += refiner.relocate();
-        report.flips += refiner.flip_edges();
+        if (params.relocations > 0) {
+            const Refiner::Rewired rewired = refiner.flip_and_relocate();
+            report.flips += rewired.flips;
+            report.relocations += rewired.relocations;
+        } else {
+            report.flips += refiner.flip_edges();
+        }
         report.moves += refiner.move_vertices();
         refiner.fit_colors();
         if (params.exchange > 0) refiner.exchange(params.exchange);

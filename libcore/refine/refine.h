@@ -19,8 +19,8 @@ struct RefineReport {
 };
 
 /// Lowers the squared error of the mesh drawn with colours interpolated linearly over its faces. Each round
-/// fits all colours by least squares, moves vertices by Gauss-Newton steps, flips edges, and relocates
-/// vertices from where their loss costs least to where they gain most. Every step lowers the sum of error and
+/// flips edges, relocates vertices from where their loss costs least to where they gain most, moves vertices
+/// by Gauss-Newton steps, and fits all colours by least squares. Every step lowers the sum of error and
 /// weighted shape. A round that does not lower the error itself is dropped, and so are all after it, so the
 /// error never rises. The numbers of vertices and of faces stay.
 ///

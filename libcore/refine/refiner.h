@@ -1,6 +1,7 @@
 // The state of a refinement, and its steps.
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <vector>
 
@@ -11,7 +12,7 @@
 
 namespace imgmesh {
 
-/// Source and steps: refine.cpp. Every step keeps `error` of each face up to date.
+/// Source and steps: refine.cpp. Every step keeps the sums of each face up to date.
 class Refiner {
   public:
     Refiner(const BaseMesh& mesh, const ImagePlanes& image, const RefineParams& params);
@@ -22,13 +23,18 @@ class Refiner {
     void fit_colors();
     std::int64_t move_vertices();
     std::int64_t flip_edges();
-    std::int64_t relocate();
+    struct Rewired {
+        std::int64_t flips = 0, relocations = 0;
+    };
+    /// Flips edges, then relocates vertices where no edge has flipped: the pixels are read once for both.
+    Rewired flip_and_relocate();
     /// Adds vertices where they gain most, runs all steps, removes as many where they cost least, and runs
     /// all steps again. All of it is undone unless the error has fallen.
     bool exchange(double share);
     /// Exchanges vertices inside the mesh: at most `most`, none next to another. Returns how many.
     std::int64_t insert_best(std::int64_t most);
-    std::int64_t remove_cheapest(std::int64_t most);
+    /// Looks at `some` vertices only.
+    std::int64_t remove_cheapest(std::int64_t most, std::size_t some);
 
     struct Removal {
         Id v, into;
@@ -36,9 +42,9 @@ class Refiner {
         bool border;  ///< v is one of a side
         bool operator==(const Removal&) const = default;
     };
-    /// Finds the best removal of each vertex that can be removed, in order of cost. Results are remembered
-    /// while nothing near them has changed, until forget().
-    std::vector<Removal> removals();
+    /// Finds the best removal of each of `some` vertices that seem to cost least, in order of cost. Results
+    /// are remembered while nothing near them has changed, until forget().
+    std::vector<Removal> removals(std::size_t some);
     void forget();
 
   private:
@@ -54,27 +60,54 @@ class Refiner {
         Vec2f position;
         Vec3f color;
         Cost cost;
-        std::array<double, OneRing::kMaxFaces> face_error;
+        std::array<FaceSums, OneRing::kMaxFaces> sums;
+    };
+    // What a new vertex would do in the middle of a face and on its edges. Where an edge may flip, its vertex
+    // is at the other diagonal.
+    struct FaceTrial {
+        std::array<Id, 3> across;              // the face across the edge opposite each corner, or kNone
+        std::array<std::uint8_t, 3> may_flip;  // set in the face of the lower id
+        std::array<float, 3> at;               // see face_hats()
+        FaceHats hats;
     };
 
+    // refiner.cpp
     Corner corner(Id v) const { return {vertex_.position[v], vertex_.color[v]}; }
     Vec3f allowed(const Vec3f& color) const;
     float snapped(float x) const { return std::round(x / params_.position_step) * params_.position_step; }
     bool better(const Cost& now, const Cost& before) const;
     void add_shape(Cost& cost, const Vec2f& a, const Vec2f& b, const Vec2f& c) const;
+    void add_face(Cost& cost, Id f) const;
     Cost cost_of(const OneRing& ring) const;
+    FaceSums sums_of(const Face& face) const;
+    double face_error(const Face& face) const;
+    // The vertices in classes that share no face.
+    const std::vector<std::vector<Id>>& classes();
+    void changed(const OneRing& ring);  // forgets what was remembered of its vertices
+    void changed(Id f);
+
+    // moves.cpp
     // Costs the ring with v at `position`, without and with its best colour. Returns false if that is not
     // legal.
     bool place(const OneRing& ring, const Vec2f& position, const Vec3f& color, double least_q,
                Placement& out) const;
     Vec2f newton_step(const OneRing& ring, Id v) const;
     bool move_vertex(Id v);
-    // Costs the edge opposite corner i of f, across which g lies; `first` and `second` are their present
-    // errors.
-    bool flip_is_better(Id f, std::size_t i, Id g, double& first, double& second) const;
-    bool flip_if_better(Id f, std::size_t i, Id g);
     void set(const OneRing& ring, Id v, const Placement& placement);
 
+    // flips.cpp
+    std::vector<FaceTrial> trials() const;
+    void divide_edge(Id f, std::size_t i, std::vector<FaceTrial>& trials) const;
+    // Of both faces at the edge opposite corner i of f.
+    HatSums edge_hat(const std::vector<FaceTrial>& trials, Id f, std::size_t i) const;
+    // The shape of the two faces at the edge opposite corner i of f, and with the other diagonal.
+    void flip_shapes(Id f, std::size_t i, Id g, Cost& before, Cost& after) const;
+    bool flip_seems_better(const std::vector<FaceTrial>& trials, Id f, std::size_t i) const;
+    bool flip_if_better(Id f, std::size_t i, Id g);
+    std::int64_t flip_edges(const std::vector<FaceTrial>& trials, TouchedFaces& touched);
+    std::int64_t flip_around(Id v);
+
+    // insertions.cpp
     struct Insertion {
         Id face;
         int edge;  // on the edge opposite this corner, or -1 for the inside
@@ -83,28 +116,38 @@ class Refiner {
         double gain;
         bool border;  // whether it is on an edge of one face
     };
+    std::vector<Insertion> insertions(const std::vector<FaceTrial>& trials,
+                                      const TouchedFaces& touched) const;
+    Insertion best_insertion(const std::vector<FaceTrial>& trials, const TouchedFaces& touched, Id f) const;
+    void try_insertion(Id f, int edge, const FaceTrial& trial, const HatSums& hat, Insertion& best) const;
     Id across(const Insertion& insertion) const;  // the other face that it divides, or kNone
+    Id insert(const Insertion& insertion);
+
+    // removals.cpp
+    bool may_become(const OneRing& ring, std::size_t n) const;
+    void add_fan(Cost& cost, const OneRing& ring, Id u) const;
+    double estimated_removal(Id v) const;
+    Removal best_removal(Id v) const;
+    void remove(const Removal& removal);
+
+    // relocate.cpp
     void relocate(std::size_t most, const std::vector<Removal>& removals,
                   const std::vector<Insertion>& insertions, bool border, TouchedFaces& touched,
                   std::vector<Id>& fresh);
-    void changed(const OneRing& ring);  // forgets what was remembered of its vertices
-    void changed(Id f);
-    std::vector<Insertion> insertions() const;
-    Removal best_removal(Id v) const;
-    Insertion best_insertion(Id f) const;
-    void try_insertion(Id f, int edge, const Vec2f& position, Insertion& best) const;
-    void remove(const Removal& removal);
-    Id insert(const Insertion& insertion);
-    double face_error(const Face& face) const;
 
     const ImagePlanes& image_;
     RefineParams params_;
     EditMesh mesh_;
     RefineVertices vertex_;
-    std::vector<double> error_;  // of each face
-    // The best removal of each vertex, and whether nothing that it depends on has changed since then.
-    std::vector<Removal> removal_;
-    std::vector<std::uint8_t> removal_holds_;
+    std::vector<FaceSums> sums_;            // of each face
+    std::vector<std::vector<Id>> classes_;  // empty: not known
+    // Of each vertex, whether nothing that it depends on has changed since then.
+    struct Remembered {
+        double estimate;
+        Removal removal;
+        bool estimated = false, found = false;
+    };
+    std::vector<Remembered> removal_;
     double shape_unit_ = 0;  // the squared error that weighs as much as a shape cost of 1
 };
 

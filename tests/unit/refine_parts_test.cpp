@@ -145,59 +145,112 @@ TEST_CASE("spans: begin and end at the first pixel that is not left of an edge")
     }
 }
 
+namespace {
+
+// A new vertex's weight: in the middle of the face (edge -1), or at `at` on the edge opposite a corner.
+double hat(const double (&w)[3], int edge, double at) {
+    if (edge < 0) return 3 * std::min({w[0], w[1], w[2]});
+    return std::min(w[(edge + 2) % 3] / at, w[(edge + 1) % 3] / (1 - at));
+}
+
+}  // namespace
+
 // Against sums in double, pixel by pixel, for faces from a sliver to hundreds of rows.
 TEST_CASE("sums over the pixels of a face") {
     const FeatureImage picture = sample_feature(Kind::kNoise, 70, 90);
-    const ImagePlanes planes(picture);
-    for (const auto& [columns, rows, seed] : {std::tuple{1, 1, 1u}, {7, 9, 2u}, {20, 25, 3u}}) {
-        const BaseMesh mesh = colored_grid(70, 90, columns, rows, seed);
-        double whole = 0, expected_whole = 0;
-        for (const Face& face : mesh.faces) {
-            const Corner corner[3] = {corner_of(mesh, face[0]), corner_of(mesh, face[1]),
-                                      corner_of(mesh, face[2])};
-            FaceSums want;
-            float worst = -1;
-            for_each_span(
-                corner[0].position, corner[1].position, corner[2].position, 70, 90,
-                [&](int y, int begin, int end) {
-                    for (int x = begin; x < end; ++x) {
-                        const Vec2f p(static_cast<float>(x), static_cast<float>(y));
-                        double w[3];
-                        Vec3d e = -Vec3f(picture.pixel(x, y)).cast<double>();
-                        for (std::size_t i = 0; i < 3; ++i) {
-                            w[i] =
-                                signed_area2(p, corner[(i + 1) % 3].position, corner[(i + 2) % 3].position) /
-                                signed_area2(corner[0].position, corner[1].position, corner[2].position);
-                            e += w[i] * corner[i].color.cast<double>();
-                        }
-                        want.ee += e.squaredNorm();
-                        worst = std::max(worst, static_cast<float>(e.squaredNorm()));
-                        for (int i = 0; i < 3; ++i) {
-                            want.we[i] += w[i] * e;
-                            for (int j = 0; j < 3; ++j) want.ww[i][j] += w[i] * w[j];
-                        }
-                    }
-                });
-            const FaceSums got = face_sums(planes, corner[0], corner[1], corner[2]);
-            const CornerSums one = corner_sums(planes, corner[0], corner[1], corner[2]);
-            CHECK(squared_error(planes, corner[0], corner[1], corner[2]) == one.ee);
-            const double scale = 1 + std::sqrt(want.ee);
-            CHECK(got.ee == doctest::Approx(want.ee).epsilon(1e-5));
-            CHECK(one.ee == doctest::Approx(want.ee).epsilon(1e-5));
-            CHECK(one.ww == doctest::Approx(want.ww[0][0]).epsilon(1e-4));
-            CHECK((one.we - want.we[0]).norm() < 1e-3 * scale);
-            for (int i = 0; i < 3; ++i) {
-                CHECK((got.we[i] - want.we[i]).norm() < 1e-3 * scale);
-                for (int j = 0; j < 3; ++j) CHECK(std::abs(got.ww[i][j] - want.ww[i][j]) < 1e-3);
+    Mask mask{70, 90, std::vector<std::uint8_t>(70 * 90, 1)};
+    for (std::size_t i = 0; i < mask.values.size(); i += 3) mask.values[i] = 0;
+    const std::array<float, 3> at = {0.5f, 0.2f, 0.7f};
+    for (const Mask& inside : {Mask(), mask})
+        for (const auto& [columns, rows, seed] : {std::tuple{1, 1, 1u}, {7, 9, 2u}, {20, 25, 3u}}) {
+            const ImagePlanes planes(picture, inside);
+            const BaseMesh mesh = colored_grid(70, 90, columns, rows, seed);
+            double whole = 0, expected_whole = 0;
+            for (const Face& face : mesh.faces) {
+                const Corner corner[3] = {corner_of(mesh, face[0]), corner_of(mesh, face[1]),
+                                          corner_of(mesh, face[2])};
+                FaceSums want{0, {}, {Vec3d::Zero(), Vec3d::Zero(), Vec3d::Zero()}};
+                HatSums hats[4];
+                for_each_span(corner[0].position, corner[1].position, corner[2].position, 70, 90,
+                              [&](int y, int begin, int end) {
+                                  for (int x = begin; x < end; ++x) {
+                                      if (!inside.empty() && !inside.contains(as_index(y * 70 + x))) continue;
+                                      const Vec2f p(static_cast<float>(x), static_cast<float>(y));
+                                      double w[3];
+                                      Vec3d e = -Vec3f(picture.pixel(x, y)).cast<double>();
+                                      for (std::size_t i = 0; i < 3; ++i) {
+                                          w[i] = signed_area2(p, corner[(i + 1) % 3].position,
+                                                              corner[(i + 2) % 3].position) /
+                                                 signed_area2(corner[0].position, corner[1].position,
+                                                              corner[2].position);
+                                          e += w[i] * corner[i].color.cast<double>();
+                                      }
+                                      want.ee += e.squaredNorm();
+                                      for (int i = 0; i < 3; ++i) {
+                                          want.we[i] += w[i] * e;
+                                          for (int j = 0; j < 3; ++j) want.ww[i][j] += w[i] * w[j];
+                                      }
+                                      for (int i = -1; i < 3; ++i) {
+                                          const double h = hat(w, i, i < 0 ? 0 : at[as_index(i)]);
+                                          hats[i + 1].hh += h * h;
+                                          hats[i + 1].he += h * e;
+                                      }
+                                  }
+                              });
+                const FaceSums got = face_sums(planes, corner[0], corner[1], corner[2]);
+                CHECK(squared_error(planes, corner[0], corner[1], corner[2]) == got.ee);
+                const double scale = 1 + std::sqrt(want.ee);
+                CHECK(got.ee == doctest::Approx(want.ee).epsilon(1e-5));
+                for (int i = 0; i < 3; ++i) {
+                    CHECK((got.we[i] - want.we[i]).norm() < 1e-3 * scale);
+                    for (int j = 0; j < 3; ++j) CHECK(std::abs(got.ww[i][j] - want.ww[i][j]) < 1e-3);
+                }
+                const FaceHats found = face_hats(planes, corner[0], corner[1], corner[2], at);
+                for (std::size_t i = 0; i < 4; ++i) {
+                    const HatSums& sums = i == 0 ? found.center : found.edge[i - 1];
+                    CHECK(std::abs(sums.hh - hats[i].hh) < 1e-3);
+                    CHECK((sums.he - hats[i].he).norm() < 1e-3 * scale);
+                }
+                whole += got.ee;
+                expected_whole += want.ee;
             }
-            const WorstPixel pixel = worst_pixel(planes, corner[0], corner[1], corner[2]);
-            CHECK((pixel.x < 0) == (worst < 0));
-            if (worst >= 0) CHECK(pixel.error == doctest::Approx(worst).epsilon(1e-3));
-            whole += got.ee;
-            expected_whole += want.ee;
+            CHECK(whole == doctest::Approx(expected_whole).epsilon(1e-6));
         }
-        CHECK(whole == doctest::Approx(expected_whole).epsilon(1e-6));
-    }
+}
+
+// Drawings are linear in a corner's colour.
+TEST_CASE("sums over the pixels of a face follow its colours") {
+    const ImagePlanes planes(sample_feature(Kind::kNoise, 70, 90));
+    Corner a{{3, 5}, {10, 20, 30}}, b{{20, 80}, {-5, 0, 40}}, c{{60, 30}, {70, 5, 5}};
+    FaceSums sums = face_sums(planes, a, b, c);
+    const Vec3f change(4, -30, 12);
+    sums.shift(1, change.cast<double>());
+    b.color += change;
+    const FaceSums fresh = face_sums(planes, a, b, c);
+    CHECK(sums.ee == doctest::Approx(fresh.ee).epsilon(1e-5));
+    for (int i = 0; i < 3; ++i) CHECK((sums.we[i] - fresh.we[i]).norm() < 1e-3 * std::sqrt(fresh.ee));
+}
+
+// Both drawings of four corners agree on the rim, and differ by a hat whose tip is where the diagonals cross.
+TEST_CASE("sums of a hat say what a flip changes") {
+    const ImagePlanes planes(sample_feature(Kind::kNoise, 70, 90));
+    const Corner p{{4, 30}, {10, 20, 30}}, a{{30, 70}, {-5, 0, 40}}, q{{64, 50}, {70, 5, 5}},
+        b{{24, 10}, {0, 60, -9}};
+    const auto area2 = [](const Corner& u, const Corner& v, const Corner& w) {
+        return signed_area2(u.position, v.position, w.position);
+    };
+    const auto share = [](double first, double second) {
+        return static_cast<float>(first / (first + second));
+    };
+    const float t = share(area2(p, a, q), area2(q, b, p)), s = share(area2(p, a, b), area2(q, b, a));
+    const Vec3d change = ((1 - s) * p.color + s * q.color - (1 - t) * a.color - t * b.color).cast<double>();
+    const HatSums first = face_hats(planes, p, a, b, {t, 0.5f, 0.5f}).edge[0],
+                  second = face_hats(planes, q, b, a, {1 - t, 0.5f, 0.5f}).edge[0];
+    const double before = squared_error(planes, p, a, b) + squared_error(planes, q, b, a),
+                 after = squared_error(planes, p, a, q) + squared_error(planes, q, b, p);
+    CHECK(std::abs(after - before) > 1000);
+    CHECK(2 * change.dot(first.he + second.he) + (first.hh + second.hh) * change.squaredNorm() ==
+          doctest::Approx(after - before).epsilon(1e-4));
 }
 
 TEST_CASE("refine vertices: corners are fixed, vertices of the sides slide, others are free") {

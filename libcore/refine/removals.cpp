@@ -1,0 +1,149 @@
+// Removals: half-edge collapses.
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include "libcore/base/dot.h"
+#include "libcore/base/for_each_id.h"
+#include "libcore/refine/refiner.h"
+
+namespace imgmesh {
+
+// A vertex on a side moves only along that side.
+bool Refiner::may_become(const OneRing& ring, std::size_t n) const {
+    if (ring.closed) return true;
+    const std::uint8_t fixed = vertex_.fixed[ring.center];
+    return (n == 0 || n == ring.faces) && (vertex_.fixed[ring.vertex[n]] & fixed) == fixed;
+}
+
+// The shapes of the faces around u that take the place of a ring.
+void Refiner::add_fan(Cost& cost, const OneRing& ring, Id u) const {
+    for (std::size_t k = 0; k < ring.faces && cost.legal; ++k)
+        if (!ring.has(k, u))
+            add_shape(cost, vertex_.position[u], vertex_.position[ring.vertex[k]],
+                      vertex_.position[ring.vertex[k + 1]]);
+}
+
+// What the best removal of v seems to cost, without a look at the pixels: as if only v got the colour that
+// the new face has there, and its faces stayed as they are. Infinite if it cannot be removed.
+double Refiner::estimated_removal(Id v) const {
+    double best = std::numeric_limits<double>::infinity();
+    OneRing ring;
+    if (!mesh_.live_vertex(v) || vertex_.fixed[v] == RefineVertices::kFixed || !mesh_.ring(v, ring))
+        return best;
+    double ww = 0;
+    Vec3d we = Vec3d::Zero();
+    for (std::size_t k = 0; k < ring.faces; ++k) {
+        const FaceSums& sums = sums_[ring.face[k]];
+        ww += sums.ww[ring.corner[k]][ring.corner[k]];
+        we += sums.we[ring.corner[k]];
+    }
+    const Cost before = cost_of(ring);
+    const Vec2f center = vertex_.position[v];
+    for (std::size_t n = 0; n < ring.vertices(); ++n) {
+        const Id u = ring.vertex[n];
+        if (!may_become(ring, n)) continue;
+        // The ray from u through v leaves the ring between the vertices k and k + 1.
+        const Vec2f from = vertex_.position[u];
+        double side = 0, next = signed_area2(from, center, vertex_.position[ring.vertex[0]]);
+        std::size_t k = 0;
+        for (; k < ring.faces; ++k) {
+            side = std::exchange(next, signed_area2(from, center, vertex_.position[ring.vertex[k + 1]]));
+            if (!ring.has(k, u) && side <= 0 && next >= 0 && side < next) break;
+        }
+        if (k == ring.faces) continue;
+        const Id b = ring.vertex[k], c = ring.vertex[k + 1];
+        const double area2 = signed_area2(from, vertex_.position[b], vertex_.position[c]);
+        const auto wb = static_cast<float>(next / area2), wc = static_cast<float>(-side / area2);
+        const Vec3f color = (1 - wb - wc) * vertex_.color[u] + wb * vertex_.color[b] + wc * vertex_.color[c];
+        const Vec3d change = (color - vertex_.color[v]).cast<double>();
+        const double error = 2 * dot(change, we) + ww * dot(change, change);
+        if (!(error - shape_unit_ * before.shape < best)) continue;
+        Cost after;
+        add_fan(after, ring, u);
+        if (after.legal && after.least_q >= std::min(before.least_q, params_.min_quality))
+            best = std::min(best, error + shape_unit_ * (after.shape - before.shape));
+    }
+    return best;
+}
+
+// Half-edge collapse of v into the neighbour where the error grows least.
+Refiner::Removal Refiner::best_removal(Id v) const {
+    Removal best{v, kNone, std::numeric_limits<double>::infinity(), false};
+    OneRing ring;
+    if (!mesh_.live_vertex(v) || vertex_.fixed[v] == RefineVertices::kFixed || !mesh_.ring(v, ring))
+        return best;
+    const Cost before = cost_of(ring);
+    // Neighbours of the most similar colour come first: the sum stops when it exceeds the best so far.
+    std::array<std::pair<float, Id>, OneRing::kMaxFaces> neighbors;
+    std::size_t count = 0;
+    const auto add = [&](Id u) {
+        neighbors[count++] = {(vertex_.color[u] - vertex_.color[v]).squaredNorm(), u};
+    };
+    for (std::size_t k = 0; k < ring.vertices(); ++k)
+        if (may_become(ring, k)) add(ring.vertex[k]);
+    std::sort(neighbors.begin(), neighbors.begin() + static_cast<std::ptrdiff_t>(count));
+    for (std::size_t n = 0; n < count; ++n) {
+        const Id u = neighbors[n].second;
+        Cost after;
+        add_fan(after, ring, u);
+        if (!after.legal || after.least_q < std::min(before.least_q, params_.min_quality)) continue;
+        const double shape = shape_unit_ * (after.shape - before.shape);
+        for (std::size_t k = 0; k < ring.faces && after.error - before.error + shape < best.cost; ++k)
+            if (!ring.has(k, u)) after.error += face_error({u, ring.vertex[k], ring.vertex[k + 1]});
+        const double cost = after.error - before.error + shape;
+        if (cost < best.cost) best = {v, u, cost, !ring.closed};
+    }
+    return best;
+}
+
+std::vector<Refiner::Removal> Refiner::removals(std::size_t some) {
+    removal_.resize(mesh_.vertices());
+    for_each_id(removal_.size(), [&](Id v) {
+        if (!removal_[v].estimated) removal_[v].estimate = estimated_removal(v);
+        removal_[v].estimated = true;
+    });
+    std::vector<Id> candidates;
+    for (Id v = 0; v < removal_.size(); ++v)
+        if (removal_[v].estimate < std::numeric_limits<double>::infinity()) candidates.push_back(v);
+    if (some < candidates.size()) {
+        std::nth_element(candidates.begin(), candidates.begin() + static_cast<std::ptrdiff_t>(some),
+                         candidates.end(), [&](Id a, Id b) {
+                             const double first = removal_[a].estimate, second = removal_[b].estimate;
+                             return first != second ? first < second : a < b;
+                         });
+        candidates.resize(some);
+    }
+    for_each_id(candidates.size(), [&](Id k) {
+        Remembered& remembered = removal_[candidates[k]];
+        if (!remembered.found) remembered.removal = best_removal(candidates[k]);
+        remembered.found = true;
+    });
+    std::vector<Removal> all;
+    for (const Id v : candidates)
+        if (removal_[v].removal.into != kNone) all.push_back(removal_[v].removal);
+    std::sort(all.begin(), all.end(), [](const Removal& a, const Removal& b) {
+        return a.cost != b.cost ? a.cost < b.cost : a.v < b.v;
+    });
+    return all;
+}
+
+void Refiner::remove(const Removal& removal) {
+    OneRing ring;
+    mesh_.ring(removal.v, ring);
+    changed(ring);
+    mesh_.collapse(ring, removal.into);
+    // A removed face had one neighbour at v. The ring of their common vertex now begins with that neighbour.
+    for (std::size_t k = 0; k < ring.faces; ++k) {
+        const Id f = ring.face[k];
+        if (mesh_.live_face(f)) sums_[f] = sums_of(mesh_.face(f));
+        if (mesh_.live_face(f))
+            mesh_.begin_ring(removal.into, f);
+        else if (ring.vertex[k] == removal.into)
+            mesh_.begin_ring(ring.vertex[k + 1], ring.face[(k + 1) % ring.faces]);
+        else
+            mesh_.begin_ring(ring.vertex[k], ring.face[(k + ring.faces - 1) % ring.faces]);
+    }
+}
+
+}  // namespace imgmesh
