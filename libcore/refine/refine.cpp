@@ -39,6 +39,9 @@ RefineReport refine(BaseMesh& mesh, const FeatureImage& image, const RefineParam
         const double before = report.error[report.error.size() - 2];
         if (before - error < kLeastGain * before) break;
     }
+    // A vertex that was added has the number of a removed one, somewhere else.
+    if (report.error.size() > 1 && (params.relocations > 0 || params.exchange > 0))
+        mesh = numbered_downwards(mesh);
     return report;
 }
 

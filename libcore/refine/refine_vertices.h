@@ -31,4 +31,8 @@ EditMesh refine_faces(const BaseMesh& mesh);
 /// Returns the vertices and faces that are not removed, in the order of their ids.
 BaseMesh compact(const EditMesh& mesh, const RefineVertices& vertices);
 
+/// Returns the mesh with its vertices numbered from top to bottom, and its faces by their first vertices.
+/// Sums over the pixels of a part of the image (param/fit_colors.cpp) take memory for all numbers between.
+BaseMesh numbered_downwards(const BaseMesh& mesh);
+
 }  // namespace imgmesh

@@ -284,6 +284,18 @@ TEST_CASE("refine vertices: a boundary inside the bounding box is fixed") {
     CHECK(fixed_at(1, 1) == RefineVertices::kFree);
 }
 
+// The same vertices and faces under other numbers.
+TEST_CASE("refine vertices: a mesh is numbered downwards") {
+    BaseMesh mesh;
+    mesh.position = {{5, 9}, {4, 0}, {9, 9}, {0, 9}, {2, 0}};
+    for (Id v = 0; v < 5; ++v) mesh.feature.insert(mesh.feature.end(), {float(v), 0, 0});
+    mesh.faces = {{0, 2, 1}, {1, 4, 0}, {3, 0, 4}};
+    const BaseMesh out = numbered_downwards(mesh);
+    CHECK(out.position == std::vector<Vec2f>{{2, 0}, {4, 0}, {0, 9}, {5, 9}, {9, 9}});
+    for (Id v = 0; v < 5; ++v) CHECK(out.feature_of(v)[0] == std::array{4.f, 1.f, 3.f, 0.f, 2.f}[v]);
+    CHECK(out.faces == std::vector<Face>{{1, 0, 3}, {2, 3, 0}, {3, 4, 1}});
+}
+
 // What comes out is what is alive, numbered anew.
 TEST_CASE("refine vertices: places are taken again, and compact() leaves out what has gone") {
     const BaseMesh start = colored_grid(30, 20, 3, 2, 5);
