@@ -11,6 +11,7 @@
 #include "libcore/base/parallel.h"
 #include "libcore/base/parallel_vector.h"
 #include "libcore/image/cie.h"
+#include "libcore/image/luv_decoder.h"
 
 namespace imgmesh {
 namespace {
@@ -153,6 +154,10 @@ Eigen::Matrix3d rgb_from_xyz(ColorSpace space) {
     return m.xyz_to_srgb;
 }
 
+Eigen::Matrix3d xyz_from_linear() {
+    return matrices().srgb_to_xyz;
+}
+
 Vec3f luv_from_linear(const Vec3f& linear) {
     const Vec3d xyz = times(matrices().srgb_to_xyz, Vec3d(linear.cast<double>()));
     const double y = xyz[1];
@@ -181,27 +186,6 @@ Vec3f linear_from_luv(const Vec3f& luv) {
 
 namespace {
 
-// decode_curve() of the 256 values of an 8-bit sample, as floats.
-class DecodeTable {
-  public:
-    explicit DecodeTable(ColorSpace space) : space_(space) {
-        for (std::size_t k = 0; k < value_.size(); ++k)
-            value_[k] = static_cast<float>(decode_curve(space, double(static_cast<float>(k) / 255.0f)));
-    }
-    // Other values are decoded directly.
-    float operator()(float encoded) const {
-        const float code = encoded * 255.0f;
-        const auto k = static_cast<std::size_t>(code >= 0 && code <= 255 ? code + 0.5f : 0);
-        if (static_cast<float>(k) / 255.0f == encoded) return value_[k];
-        return static_cast<float>(
-            std::copysign(decode_curve(space_, std::abs(double(encoded))), double(encoded)));
-    }
-
-  private:
-    ColorSpace space_;
-    std::array<float, 256> value_;
-};
-
 // The channels of an image's colour. Grey counts as R = G = B.
 struct ColorChannels {
     int r, g, b;
@@ -213,11 +197,6 @@ struct ColorChannels {
     bool any() const { return r >= 0; }
     Vec3f at(const float* pixel) const { return {pixel[r], pixel[g], pixel[b]}; }
 };
-
-// Whether a space has sRGB's primaries, so that decoding its curve gives linear RGB.
-bool has_srgb_primaries(ColorSpace space) {
-    return space != ColorSpace::kAdobeRgb && space != ColorSpace::kDisplayP3;
-}
 
 }  // namespace
 
@@ -236,23 +215,13 @@ FeatureImage luv_image(const Image& image, Range range) {
     const ColorChannels channels(image);
     if (!channels.any())
         throw Error(ErrorKind::kUnsupported, "the image has no colour: neither channels R, G, B nor Y");
-    const DecodeTable decode(image.color_space);
-    const bool tabulated = image.sample_type == SampleType::kUint8 && has_srgb_primaries(image.color_space);
+    const LuvDecoder decoder(image.color_space, range, image.sample_type == SampleType::kUint8);
     FeatureImage out{image.width, image.height, 3, parallel_vector<float>(image.pixel_count() * 3)};
     parallel_blocks(0, image.height, kGrainRows, [&](int first, int last) {
-        for (int y = first; y < last; ++y) {
-            const float* in = image.row(y).data();
-            float* dst = out.row(y).data();
-            for (int x = 0; x < image.width; ++x, in += image.channels, dst += 3) {
-                const Vec3f encoded = channels.at(in);
-                Vec3f linear = tabulated ? Vec3f(decode(encoded[0]), decode(encoded[1]), decode(encoded[2]))
-                                         : linear_from_encoded(image.color_space, encoded);
-                if (range != Range::kAny)
-                    linear = linear.cwiseMax(0.0f).cwiseMin(range == Range::kClipped ? 1.0f : kMaxHdr);
-                const Vec3f luv = luv_from_linear(linear);
-                std::copy(luv.data(), luv.data() + 3, dst);
-            }
-        }
+        std::vector<float> planes;
+        for (int y = first; y < last; ++y)
+            decoder.decode_row(image.row(y).data(), image.channels, {channels.r, channels.g, channels.b},
+                               image.width, planes, out.row(y).data());
     });
     return out;
 }

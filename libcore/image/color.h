@@ -23,6 +23,8 @@ Vec3f encoded_from_linear(ColorSpace space, const Vec3f& linear);
 
 /// The matrix from XYZ under D65 (white has Y = 1) to linear RGB of the space's own primaries.
 Eigen::Matrix3d rgb_from_xyz(ColorSpace space);
+/// The matrix from linear RGB (sRGB primaries) to XYZ.
+Eigen::Matrix3d xyz_from_linear();
 
 /// Converts linear RGB (sRGB primaries, white = 1,1,1) to L*u*v* under D65. Defined and continuous for every
 /// finite input: below black L* follows its linear branch, and chroma is zero where X + 15 Y + 3 Z <= 0.
@@ -64,9 +66,9 @@ Gamut gamut_of(const Image& image, const Mask& mask = {});
 /// How luv_image() treats linear RGB: leave it, clip it to [0, 1], or clip it to [0, kMaxHdr].
 enum class Range { kAny, kClipped, kHdr };
 
-/// Returns the colour of every pixel as L*u*v*. One channel (grey) counts as R = G = B; alpha is ignored.
-/// The result is the same for any number of threads. Throws Error(kUnsupported) if the image has neither R,
-/// G, B nor Y.
+/// Returns the colour of every pixel as L*u*v*, within 1e-4 of luv_from_linear(). One channel (grey) counts
+/// as R = G = B; alpha is ignored. The result is the same for any number of threads. Throws
+/// Error(kUnsupported) if the image has neither R, G, B nor Y.
 FeatureImage luv_image(const Image& image, Range range = Range::kAny);
 
 }  // namespace imgmesh

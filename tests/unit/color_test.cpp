@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <random>
+#include <utility>
 
 #include "libcore/image/color.h"
 
@@ -65,4 +66,32 @@ TEST_CASE("luv image: the table for 8-bit samples changes no bit") {
         plain.sample_type = SampleType::kFloat;
         CHECK(luv_image(image).data == luv_image(plain).data);
     }
+}
+
+TEST_CASE("luv image: rows in single precision are luv_from_linear() of each pixel") {
+    std::mt19937 random(3);
+    for (const ColorSpace space : {ColorSpace::kSrgb, ColorSpace::kLinear, ColorSpace::kRec709,
+                                   ColorSpace::kGamma22, ColorSpace::kAdobeRgb, ColorSpace::kDisplayP3})
+        for (const auto& [range, most] :
+             {std::pair(Range::kClipped, 1.0f), std::pair(Range::kHdr, kMaxHdr)}) {
+            Image image = make_image(117, 5, 4);  // rows end amid eight lanes; alpha is between them
+            image.color_space = space;
+            for (float& x : image.data) {
+                const float power =
+                    std::uniform_real_distribution<float>(-5, range == Range::kHdr ? 2 : 0)(random);
+                x = random() % 8 ? std::pow(10.0f, power)
+                                 : std::uniform_real_distribution<float>(-0.2f, 1.2f)(random);
+            }
+            image.data[0] = image.data[1] = image.data[2] = 0;
+            image.data[4] = image.data[5] = image.data[6] = 0.37f;
+            const FeatureImage luv = luv_image(image, range);
+            CHECK(luv.pixel(0)[0] == 0);
+            for (int c = 1; c < 3; ++c) CHECK((luv.pixel(0)[c] == 0 && luv.pixel(1)[c] == 0));
+            for (std::size_t i = 0; i < image.pixel_count(); ++i) {
+                const Vec3f linear = linear_from_encoded(space, Vec3f(image.pixel(i)));
+                const Vec3f expected = luv_from_linear(linear.cwiseMax(0.0f).cwiseMin(most));
+                const float scale = std::max(1.0f, expected.norm() / 100);
+                CHECK((Vec3f(luv.pixel(i)) - expected).cwiseAbs().maxCoeff() <= 1e-4f * scale);
+            }
+        }
 }
