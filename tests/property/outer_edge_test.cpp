@@ -146,8 +146,8 @@ TEST_CASE("outer edge: maps are moved without a fold, and most of the edge is re
             CHECK(mesh_quality(mesh).flipped_faces == 0);
             const double whole = area_of_faces(folded.levels[0].mesh) - area_of_faces(before.mesh);
             CAPTURE(density);
-            // In noise most cells are as thin as they may be, so that little can move.
-            CHECK(area_of_faces(mesh) - area_of_faces(before.mesh) >= (mask == &disc ? 0.3 : 0.05) * whole);
+            // In an image of noise most cells are as thin as they may be, so that little can move.
+            CHECK(area_of_faces(mesh) - area_of_faces(before.mesh) >= (mask == &disc ? 0.15 : 0.1) * whole);
         }
     }
 }
