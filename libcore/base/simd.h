@@ -1,6 +1,6 @@
-// Eight floats side by side, in the compiler's own vector types: two SSE registers, or one AVX2 register
-// inside a function built for it. Arithmetic, comparison and selection (mask ? a : b) are operators of the
-// language and work lane by lane.
+// Eight or sixteen floats side by side, in the compiler's own vector types: eight are two SSE registers, or
+// one AVX2 register inside a function built for it; sixteen are one AVX-512 register. Arithmetic, comparison
+// and selection (mask ? a : b) are operators of the language and work lane by lane.
 #pragma once
 
 #include <cstdint>
@@ -14,6 +14,14 @@ namespace imgmesh {
 
 using Float8 = float __attribute__((vector_size(32)));
 using Int8 = std::int32_t __attribute__((vector_size(32)));
+using Float16 = float __attribute__((vector_size(64)));  // sixteen of them, not half precision
+using Int16 = std::int32_t __attribute__((vector_size(64)));
+
+/// The number of lanes, and the integers of comparisons.
+template <typename T>
+inline constexpr int kLaneCount = static_cast<int>(sizeof(T) / sizeof(float));
+template <typename T>
+using LaneMask = decltype(T{} < T{});
 
 // Such vectors must not be passed between functions built for different processors, so everything here is
 // inlined.
@@ -29,16 +37,36 @@ IMGMESH_INLINE Float8 load8_every_other(const float* p) {
     return __builtin_shufflevector(load8(p), load8(p + 8), 0, 2, 4, 6, 8, 10, 12, 14);
 }
 
-/// Says whether every lane of a comparison's result is true.
-IMGMESH_INLINE bool all_set(Int8 mask) {
-    int all = -1;
-    for (int l = 0; l < 8; ++l) all &= mask[l];
-    return all != 0;
+IMGMESH_INLINE Float16 load16(const float* p) {
+    Float16 v;
+    std::memcpy(&v, p, sizeof v);
+    return v;
+}
+/// Returns p[0], p[2], ... p[30]; reads p[31] too.
+IMGMESH_INLINE Float16 load16_every_other(const float* p) {
+    return __builtin_shufflevector(load16(p), load16(p + 16), 0, 2, 4, 6, 8, 10, 12, 14, 16, 18, 20, 22, 24,
+                                   26, 28, 30);
+}
+
+/// Returns a number whose bit l is set if lane l of a comparison's result is true.
+IMGMESH_INLINE unsigned bits_of(Int8 mask) {
+    Int8 v = mask & Int8{1, 2, 4, 8, 16, 32, 64, 128};
+    v |= __builtin_shufflevector(v, v, 4, 5, 6, 7, 0, 1, 2, 3);
+    v |= __builtin_shufflevector(v, v, 2, 3, 0, 1, 6, 7, 4, 5);
+    return static_cast<unsigned>(v[0] | v[1]);
+}
+IMGMESH_INLINE unsigned bits_of(Int16 mask) {
+    const Int8 low = __builtin_shufflevector(mask, mask, 0, 1, 2, 3, 4, 5, 6, 7);
+    const Int8 high = __builtin_shufflevector(mask, mask, 8, 9, 10, 11, 12, 13, 14, 15);
+    return bits_of(low) | bits_of(high) << 8;
 }
 
 /// Says whether functions built for AVX2 may be called. This is decided in one place, so that a test program
 /// can define its own and take the other path: results are the same bytes on both.
 bool has_avx2();
+/// The same for AVX-512: functions marked IMGMESH_AVX512.
+bool has_avx512();
+#define IMGMESH_AVX512 __attribute__((target("avx512f,avx512bw,avx512dq,avx512vl")))
 
 /// Returns a number whose bit k is set if values[k] is `wanted`, for 0 <= k < 12.
 inline unsigned match12(const std::uint32_t* values, std::uint32_t wanted) {
@@ -54,24 +82,6 @@ inline unsigned match12(const std::uint32_t* values, std::uint32_t wanted) {
     for (unsigned k = 0; k < 12; ++k) found |= static_cast<unsigned>(values[k] == wanted) << k;
     return found;
 #endif
-}
-
-/// Transposes: rows[i][j] <-> rows[j][i].
-IMGMESH_INLINE void transpose8(Float8 (&rows)[8]) {
-    Float8 a[8], b[8];
-    for (int i = 0; i < 8; i += 2) {
-        a[i] = __builtin_shufflevector(rows[i], rows[i + 1], 0, 8, 1, 9, 4, 12, 5, 13);
-        a[i + 1] = __builtin_shufflevector(rows[i], rows[i + 1], 2, 10, 3, 11, 6, 14, 7, 15);
-    }
-    for (int i = 0; i < 8; i += 4)
-        for (int k = 0; k < 2; ++k) {
-            b[i + 2 * k] = __builtin_shufflevector(a[i + k], a[i + k + 2], 0, 1, 8, 9, 4, 5, 12, 13);
-            b[i + 2 * k + 1] = __builtin_shufflevector(a[i + k], a[i + k + 2], 2, 3, 10, 11, 6, 7, 14, 15);
-        }
-    for (int i = 0; i < 4; ++i) {
-        rows[i] = __builtin_shufflevector(b[i], b[i + 4], 0, 1, 2, 3, 8, 9, 10, 11);
-        rows[i + 4] = __builtin_shufflevector(b[i], b[i + 4], 4, 5, 6, 7, 12, 13, 14, 15);
-    }
 }
 
 }  // namespace imgmesh

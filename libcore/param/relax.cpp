@@ -1,11 +1,12 @@
 // Source: docs/decisions/0002-relaxed-map.md. The paper tracks pixels through every collapse instead (sec.
 // 3.3).
 //
-// A pixel's step is written twice. move_pixel() is the clear form; move_eight() does the same for eight
-// pixels side by side, bit for bit (a test compares them).
+// A pixel's step is written twice. move_pixel() is the clear form; move_lanes() does the same for pixels side
+// by side, bit for bit (a test compares them).
 #include "libcore/param/relax.h"
 
 #include <algorithm>
+#include <bit>
 #include <cassert>
 #include <cmath>
 #include <cstddef>
@@ -17,6 +18,7 @@
 #include "libcore/base/parallel_vector.h"
 #include "libcore/base/simd.h"
 #include "libcore/mesh/mask_fans.h"
+#include "libcore/param/relax_lanes.h"
 #include "libcore/param/relax_step.h"
 
 namespace imgmesh {
@@ -45,36 +47,6 @@ constexpr float kFarthest = 31;
 // The eight pixels around one, from the east over the south. Even indices are straight neighbours.
 constexpr int kStepX[8] = {1, 1, 0, -1, -1, -1, 0, 1};
 constexpr int kStepY[8] = {0, 1, 1, 1, 0, -1, -1, -1};
-
-// Eight FaceFields side by side.
-struct EightFields {
-    Float8 ax, ay, ux, uy, vx, vy;
-    Float8 f[3], fx[3], fy[3];
-    Float8 longest;
-
-    // Each is read as a whole.
-    IMGMESH_INLINE explicit EightFields(const FaceField* const (&fields)[8]) {
-        static_assert(sizeof(FaceField) == 2 * sizeof(Float8) && offsetof(FaceField, ay) == 4 &&
-                      offsetof(FaceField, ux) == 8 && offsetof(FaceField, vy) == 20 &&
-                      offsetof(FaceField, f) == 24 && offsetof(FaceField, fx) == 36 &&
-                      offsetof(FaceField, fy) == 48 && offsetof(FaceField, longest) == 60);
-        Float8 front[8], back[8];
-        for (int l = 0; l < 8; ++l) {
-            const auto* bytes = reinterpret_cast<const std::byte*>(fields[l]);
-            std::memcpy(&front[l], bytes, sizeof front[l]);
-            std::memcpy(&back[l], bytes + sizeof front[l], sizeof back[l]);
-        }
-        transpose8(front);
-        transpose8(back);
-        ax = front[0], ay = front[1], ux = front[2], uy = front[3], vx = front[4], vy = front[5];
-        f[0] = front[6], f[1] = front[7], f[2] = back[0];
-        for (int c = 0; c < 3; ++c) {
-            fx[c] = back[1 + c];
-            fy[c] = back[4 + c];
-        }
-        longest = back[7];
-    }
-};
 
 struct Sweep {
     PixelEmbedding& pixels;
@@ -246,51 +218,48 @@ struct Sweep {
         return std::min({signed_area2(a, b, p), signed_area2(b, c, p), signed_area2(c, a, p)}) >= 0;
     }
 
-    // Does what move_pixel() does for (x, y), (x + 2, y), ... (x + 14, y), none of them on a side or a
-    // boundary, with three features.
-    IMGMESH_INLINE void move_eight(int x, int y) const {
+    // Does what move_pixel() does for (x, y), (x + 2, y), ... none of them on a side or a boundary, with
+    // three features. T has a lane for each.
+    template <typename T>
+    IMGMESH_INLINE void move_lanes(int x, int y) const {
         const std::size_t index = pixels.index(x, y);
-        const FaceField* face_of[8];
-        float colors[3][8];
-        for (std::size_t l = 0; l < 8; ++l) {
-            face_of[l] = &fields[pixels.face[index + 2 * l]];
-            for (int c = 0; c < 3; ++c) colors[c][l] = feature.pixel(index + 2 * l)[c];
-        }
-        const EightFields field(face_of);
-        const Float8 color[3] = {load8(colors[0]), load8(colors[1]), load8(colors[2])};
-        const Float8 rest_x = static_cast<float>(x) + Float8{0, 2, 4, 6, 8, 10, 12, 14};
+        const LaneFields<T> field(fields.data(), &pixels.face[index]);
+        T color[3];
+        gather3(feature.pixel(index), 6, color);
+        const T rest_x = static_cast<float>(x) + every_other<T>();
         const float rest_y = static_cast<float>(y);
-        Float8 ndx[8], ndy[8], nx[8], ny[8], mean_x = {}, mean_y = {};
+        T ndx[8], ndy[8], nx[8], ny[8], mean_x = {}, mean_y = {};
         for (int k = 0; k < 8; ++k) {
             const std::size_t n = pixels.index(x + kStepX[k], y + kStepY[k]);
-            const Float8 dx = ndx[k] = load8_every_other(&pixels.dx[n]);
-            const Float8 dy = ndy[k] = load8_every_other(&pixels.dy[n]);
+            const T dx = ndx[k] = load_every_other<T>(&pixels.dx[n]);
+            const T dy = ndy[k] = load_every_other<T>(&pixels.dy[n]);
             nx[k] = rest_x + static_cast<float>(kStepX[k]) + dx;
             ny[k] = static_cast<float>(y + kStepY[k]) + dy;
             if (k % 2 != 0) continue;
             mean_x += dx;
             mean_y += dy;
         }
-        const Float8 own_x = load8_every_other(&pixels.dx[index]), px = rest_x + own_x;
-        const Float8 own_y = load8_every_other(&pixels.dy[index]), py = rest_y + own_y;
-        Float8 sx, sy;
-        NewtonStep<Float8> step(px, py, rest_x + mean_x / 4, rest_y + mean_y / 4, mu);
+        const T own_x = load_every_other<T>(&pixels.dx[index]), px = rest_x + own_x;
+        const T own_y = load_every_other<T>(&pixels.dy[index]), py = rest_y + own_y;
+        T sx, sy;
+        NewtonStep<T> step(px, py, rest_x + mean_x / 4, rest_y + mean_y / 4, mu);
         step.add_features(field.f, field.fx, field.fy, color, 3, px - field.ax, py - field.ay);
         step.solve(sx, sy);
         if (rate > 0) make_cheap(step, own_x, own_y, ndx, ndy, sx, sy);
-        const Float8 least_here = least_in(field.longest);
-        Float8 to_x = px, to_y = py;
-        Int8 found = {};
+        const T least_here = least_in(field.longest);
+        T to_x = px, to_y = py;
+        constexpr unsigned kAll = (1u << kLaneCount<T>)-1;
+        LaneMask<T> found = {};
         for (int tries = 0;; ++tries) {
-            const Float8 qx = on_image(rest_x + on_grid(own_x + sx), pixels.width),
-                         qy = on_image(rest_y + on_grid(own_y + sy), pixels.height);
-            const Int8 take = (least_area(qx, qy, nx, ny) >= least_here) & ~found;
+            const T qx = on_image(rest_x + on_grid(own_x + sx), pixels.width),
+                    qy = on_image(rest_y + on_grid(own_y + sy), pixels.height);
+            const LaneMask<T> take = (least_area(qx, qy, nx, ny) >= least_here) & ~found;
             to_x = take ? qx : to_x;
             to_y = take ? qy : to_y;
             found |= take;
-            if (tries == kTurns + kHalvings || all_set(found)) break;
+            if (tries == kTurns + kHalvings || bits_of(found) == kAll) break;
             if (tries < kTurns) {
-                Float8 turned_x = px + sx, turned_y = py + sy;
+                T turned_x = px + sx, turned_y = py + sy;
                 widen_least(turned_x, turned_y, nx, ny, least_here + kSpareArea);
                 sx = turned_x - px;
                 sy = turned_y - py;
@@ -299,49 +268,57 @@ struct Sweep {
                 sy *= 0.5f;
             }
         }
-        const Float8 ex = to_x - field.ax, ey = to_y - field.ay;
-        const Float8 u = field.ux * ex + field.uy * ey, v = field.vx * ex + field.vy * ey;
-        const Int8 outside = lesser(lesser(u, v), 1 - u - v) < Float8{};
-        const Int8 better = is_better(step, to_x - px, to_y - py);
-        const Float8 dx = better ? to_x - rest_x : own_x, dy = better ? to_y - rest_y : own_y;
-        for (int l = 0; l < 8; ++l) {
-            const std::size_t i = index + 2 * as_index(l);
-            if (found[l] & outside[l]) {
-                cross(x + 2 * l, y, to_x[l], to_y[l]);
-            } else {
-                pixels.dx[i] = dx[l];
-                pixels.dy[i] = dy[l];
-            }
+        const T ex = to_x - field.ax, ey = to_y - field.ay;
+        const T u = field.ux * ex + field.uy * ey, v = field.vx * ex + field.vy * ey;
+        const LaneMask<T> crosses = (lesser(lesser(u, v), 1 - u - v) < T{}) & found;
+        const LaneMask<T> stays = is_better(step, to_x - px, to_y - py) & ~crosses;
+        store_every_other(&pixels.dx[index], stays ? to_x - rest_x : own_x);
+        store_every_other(&pixels.dy[index], stays ? to_y - rest_y : own_y);
+        for (unsigned left = bits_of(crosses); left != 0; left &= left - 1) {
+            const int l = std::countr_zero(left);
+            cross(x + 2 * l, y, to_x[l], to_y[l]);
         }
     }
 
-    bool all_free(std::size_t index) const {
+    bool all_free(std::size_t index, std::size_t lanes) const {
         std::uint8_t all = kFree;
-        for (std::size_t lane = 0; lane < 16; lane += 2) all &= pixels.freedom[index + lane];
+        for (std::size_t lane = 0; lane < lanes; ++lane) all &= pixels.freedom[index + 2 * lane];
         return all != 0;
     }
 
+    // Moves pixels side by side while there are as many, from column x on. Returns the first column left.
+    template <typename T>
+    IMGMESH_INLINE int move_in_lanes(int x, int y) const {
+        constexpr int kColumns = 2 * kLaneCount<T>;
+        for (; x + kColumns < pixels.width; x += kColumns) {  // reads up to x + kColumns
+            if (pixels.freedom.empty() || all_free(pixels.index(x, y), kLaneCount<T>))
+                move_lanes<T>(x, y);
+            else
+                for (int lane = 0; lane < kColumns; lane += 2) move_pixel(x + lane, y);
+        }
+        return x;
+    }
+
+    template <typename T>
     IMGMESH_INLINE void move_row(int y, int parity) const {
-        const int w = pixels.width;
         int x = parity;
         if (feature.channels == 3 && y > 0 && y < pixels.height - 1) {
             if (x == 0) {
                 move_pixel(0, y);
                 x = 2;
             }
-            for (; x + 16 < w; x += 16) {  // move_eight() reads up to x + 16
-                if (pixels.freedom.empty() || all_free(pixels.index(x, y)))
-                    move_eight(x, y);
-                else
-                    for (int lane = 0; lane < 16; lane += 2) move_pixel(x + lane, y);
-            }
+            x = move_in_lanes<T>(x, y);
+            if constexpr (kLaneCount<T> == 16) x = move_in_lanes<Float8>(x, y);
         }
-        for (; x < w; x += 2) move_pixel(x, y);
+        for (; x < pixels.width; x += 2) move_pixel(x, y);
     }
-    void move_row_portably(int y, int parity) const { move_row(y, parity); }
+    void move_row_portably(int y, int parity) const { move_row<Float8>(y, parity); }
 #if defined(__x86_64__)
     __attribute__((target("avx2"))) void move_row_avx2(int y, int parity) const {
-        move_row(y, parity);
+        move_row<Float8>(y, parity);
+    }
+    IMGMESH_AVX512 void move_row_avx512(int y, int parity) const {
+        move_row<Float16>(y, parity);
     }
 #endif
 };
@@ -413,6 +390,7 @@ void relax(PixelEmbedding& pixels, const BaseMesh& mesh, const std::vector<FaceF
     auto move_row = &Sweep::move_row_portably;
 #if defined(__x86_64__)
     if (has_avx2()) move_row = &Sweep::move_row_avx2;
+    if (has_avx512()) move_row = &Sweep::move_row_avx512;
 #endif
     const int h = pixels.height;
     for (int n = 0; n < params.sweeps; ++n)

@@ -1,5 +1,5 @@
-// Where a pixel of the relaxed map wants to go: formulas for one pixel (T = float) or for eight side by side
-// (T = Float8). Internal to relax.cpp.
+// Where a pixel of the relaxed map wants to go: formulas for one pixel (T = float) or for several side by
+// side (T = Float8 or Float16). Internal to relax.cpp.
 #pragma once
 
 #include <cmath>
@@ -54,10 +54,11 @@ IMGMESH_INLINE float coarse_log2(float x) {
     std::memcpy(&bits, &x, sizeof bits);
     return static_cast<float>(bits - 0x3f800000) * (1.0f / (1 << 23));
 }
-IMGMESH_INLINE Float8 coarse_log2(Float8 x) {
-    Int8 bits;
+template <typename T>
+IMGMESH_INLINE T coarse_log2(T x) {
+    LaneMask<T> bits;
     std::memcpy(&bits, &x, sizeof bits);
-    return __builtin_convertvector(bits - 0x3f800000, Float8) * (1.0f / (1 << 23));
+    return __builtin_convertvector(bits - 0x3f800000, T) * (1.0f / (1 << 23));
 }
 
 /// The Gauss-Newton step at (px, py): it makes the face's features there the pixel's, and pulls towards (tx,

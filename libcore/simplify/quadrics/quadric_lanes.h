@@ -6,6 +6,7 @@
 #include <type_traits>
 
 #include "libcore/base/simd.h"
+#include "libcore/base/transpose.h"
 #include "libcore/base/types.h"
 #include "libcore/simplify/quadrics/quadric.h"
 

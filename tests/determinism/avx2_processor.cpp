@@ -1,0 +1,18 @@
+// The library's choice of processor, made again: as if there was no AVX-512.
+#include "libcore/base/simd.h"
+
+namespace imgmesh {
+
+bool has_avx2() {
+#if defined(__x86_64__)
+    return __builtin_cpu_supports("avx2");
+#else
+    return false;
+#endif
+}
+
+bool has_avx512() {
+    return false;
+}
+
+}  // namespace imgmesh
