@@ -9,6 +9,7 @@
 namespace imgmesh {
 
 class ColorLevels;
+struct ColorSums;
 
 /// One way to draw the image from the mesh, and the weight of its error.
 struct FitTerm {
@@ -27,5 +28,8 @@ struct FitTerm {
 ///         its neighbours', so that some of the rounding cancels out.
 void fit_colors(BaseMesh& mesh, const FeatureImage& feature, const std::vector<FitTerm>& terms,
                 const FeatureSpace& space = {}, const ColorLevels* levels = nullptr);
+/// The same from sums over the pixels, already weighted (color_sums.h).
+void fit_colors(BaseMesh& mesh, const ColorSums& sums, const FeatureSpace& space,
+                const ColorLevels* levels = nullptr);
 
 }  // namespace imgmesh

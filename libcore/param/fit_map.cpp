@@ -3,34 +3,16 @@
 #include <algorithm>
 
 #include "libcore/base/error.h"
-#include "libcore/base/parallel.h"
-#include "libcore/base/parallel_vector.h"
 #include "libcore/image/color.h"
 #include "libcore/mesh/trivial_map.h"
 #include "libcore/mesh/weight_grid.h"
+#include "libcore/param/color_sums.h"
 #include "libcore/param/fit_colors.h"
 #include "libcore/param/relax.h"
 #include "libcore/param/stored_map.h"
 
 namespace imgmesh {
 namespace {
-
-// Rows of one block: enough work to be worth handing over, few enough for every thread to get some.
-constexpr int kGrainRows = 16;
-
-// Sets `map` to the places of pixels with weights that are not rounded yet: colours are fitted to it between
-// the rounds.
-void set_unrounded(const PixelEmbedding& pixels, const std::vector<FaceField>& fields, PixelMap& map) {
-    parallel_blocks(0, map.height, kGrainRows, [&](int first, int last) {
-        for (int y = first; y < last; ++y)
-            for (int x = 0; x < map.width; ++x) {
-                const Vec2f p = pixels.image_of(x, y);
-                const Id face = pixels.face[pixels.index(x, y)];
-                if (face == kNone) continue;
-                map.at(x, y) = {face, fields[face].u(p.x(), p.y()), fields[face].v(p.x(), p.y())};
-            }
-    });
-}
 
 void round_colors(BaseMesh& mesh, const FeatureSpace& space) {
     const float weight = space.color_weight;
@@ -52,12 +34,21 @@ float longest_edge(const BaseMesh& mesh) {
 class ColorFit {
   public:
     ColorFit(BaseMesh& mesh, const FeatureImage& feature, const FitParams& params, const PixelMap& trivial)
-        : mesh_(mesh), feature_(feature), params_(params), trivial_(trivial) {}
+        : mesh_(mesh), params_(params) {
+        if (!params.keep_colors) drawing_ = color_sums(feature, trivial, mesh.faces.size());
+    }
 
-    void fit(const PixelMap& map) const {
+    void fit_drawing() const {
+        if (!params_.keep_colors) fit_colors(mesh_, drawing_, params_.space);
+    }
+    // `sums` returns the map's ColorSums.
+    template <typename Sums>
+    void fit(const Sums& sums) const {
         if (params_.keep_colors) return;
-        fit_colors(mesh_, feature_, {{&map, 1 - params_.gouraud_share}, {&trivial_, params_.gouraud_share}},
-                   params_.space);
+        ColorSums all{drawing_.channels, {}};
+        all.add(sums(), 1 - params_.gouraud_share);
+        all.add(drawing_, params_.gouraud_share);
+        fit_colors(mesh_, all, params_.space);
     }
     void round() const {
         if (params_.space.color) round_colors(mesh_, params_.space);
@@ -65,37 +56,32 @@ class ColorFit {
 
   private:
     BaseMesh& mesh_;
-    const FeatureImage& feature_;
     const FitParams& params_;
-    const PixelMap& trivial_;
+    ColorSums drawing_;
 };
 
 }  // namespace
 
 PixelMap fit_map(BaseMesh& mesh, const FeatureImage& feature, const FitParams& params,
                  const Progress& progress, const Mask& mask) {
-    const PixelMap trivial = trivial_map(mesh, feature.width, feature.height, mask);
+    PixelMap trivial = trivial_map(mesh, feature.width, feature.height, mask);
     const ColorFit colors(mesh, feature, params, trivial);
     const std::vector<Face> neighbors = face_neighbors(mesh);
     PixelEmbedding pixels = resting_pixels(trivial, mask);
-    colors.fit(trivial);
+    trivial = {};
+    colors.fit_drawing();
     // A strip of one pixel has no cells that could fold; its map stays trivial.
     const int rounds = params.color_weight > 0 && feature.width > 1 && feature.height > 1 ? params.rounds : 0;
-    PixelMap between;
-    if (rounds > 1) between = PixelMap(pixels.width, pixels.height, parallel_copy(trivial.values));
     const RelaxParams moves{static_cast<float>(1 / params.color_weight), params.steps,
                             static_cast<float>(params.rate), params.sweeps};
     for (int round = 0; round < rounds; ++round) {
         if (progress) progress(double(round) / params.rounds, "map");
         const std::vector<FaceField> fields = face_fields(mesh);
         relax(pixels, mesh, fields, neighbors, feature, moves);
-        if (round + 1 == rounds) break;
-        set_unrounded(pixels, fields, between);
-        colors.fit(between);
+        if (round + 1 < rounds) colors.fit([&] { return color_sums(feature, pixels, fields); });
     }
-    between = {};
     PixelMap map = stored_map(mesh, displacements(pixels, params.steps), params.bary);
-    colors.fit(map);
+    colors.fit([&] { return color_sums(feature, map, mesh.faces.size()); });
     colors.round();
     return map;
 }
@@ -122,8 +108,8 @@ PixelMap fit_given_map(BaseMesh& mesh, const FeatureImage& feature, PixelMap map
                 steps);
     const PixelMap trivial = trivial_map(mesh, feature.width, feature.height, mask);
     const ColorFit colors(mesh, feature, params, trivial);
-    colors.fit(trivial);
-    colors.fit(map);
+    colors.fit_drawing();
+    colors.fit([&] { return color_sums(feature, map, mesh.faces.size()); });
     colors.round();
     return map;
 }

@@ -8,6 +8,7 @@
 #include "libcore/image/color.h"
 #include "libcore/mesh/trivial_map.h"
 #include "libcore/metrics/metrics.h"
+#include "libcore/param/color_sums.h"
 #include "libcore/param/fit_colors.h"
 #include "libcore/param/fit_map.h"
 #include "libcore/simplify/simplify.h"
@@ -217,4 +218,28 @@ TEST_CASE("trivial map: without colour weight every pixel stays at its centre, a
                 CHECK((positions[static_cast<std::size_t>(y * w + x)] - Vec2d(x, y)).norm() <
                       50 * double(kFloatWeightStep));
     }
+}
+
+// Three features are summed in floats, run by run. Other numbers are summed pixel by pixel in doubles.
+TEST_CASE("colour sums: run by run, pixel by pixel, and of pixels that are being moved") {
+    const FeatureImage feature = sample_feature(Kind::kNoise, 70, 45);
+    const BaseMesh mesh = collapsed(feature, 60);
+    PixelMap map = trivial_map(mesh, 70, 45);
+    for (std::size_t i = 0; i < map.size(); i += 7) map[i] = {};  // as outside a mask
+    const ColorSums sums = color_sums(feature, map, mesh.faces.size());
+
+    FeatureImage four{70, 45, 4, {}};
+    for (std::size_t i = 0; i < map.size(); ++i) {
+        four.data.insert(four.data.end(), feature.pixel(i), feature.pixel(i) + 3);
+        four.data.push_back(0);
+    }
+    const ColorSums clear = color_sums(four, map, mesh.faces.size());
+    const ColorSums moved = color_sums(feature, resting_pixels(map), face_fields(mesh));
+    for (std::size_t f = 0; f < mesh.faces.size(); ++f)
+        for (std::size_t corner = 0; corner < 3; ++corner)
+            for (std::size_t k = 0; k < 6; ++k) {
+                const double wanted = clear.row(f, corner)[k];
+                CHECK(sums.row(f, corner)[k] == doctest::Approx(wanted).epsilon(1e-6).scale(100));
+                CHECK(moved.row(f, corner)[k] == doctest::Approx(wanted).epsilon(1e-4).scale(100));
+            }
 }

@@ -1,0 +1,168 @@
+#include "libcore/param/color_sums.h"
+
+#include <algorithm>
+#include <cstring>
+
+#include "libcore/base/parallel.h"
+#include "libcore/base/simd.h"
+
+namespace imgmesh {
+namespace {
+
+// Sums of one run of pixels of a row in the same face. A run is short, so floats are enough.
+struct Run {
+    using Float4 = float __attribute__((vector_size(16)));
+    Float4 weights[3] = {}, features[3] = {};
+
+    // Adds a pixel with `features` in its first three lanes.
+    void add(float u, float v, Float4 pixel) {
+        const float w[3] = {1 - u - v, u, v};
+        const Float4 all{w[0], u, v, 0};
+        for (int a = 0; a < 3; ++a) {
+            weights[a] += w[a] * all;
+            features[a] += w[a] * pixel;
+        }
+    }
+    void add_to(double* sums) const {
+        for (int a = 0; a < 3; ++a)
+            for (int k = 0; k < 3; ++k) {
+                sums[6 * a + k] += double{weights[a][k]};
+                sums[6 * a + 3 + k] += double{features[a][k]};
+            }
+    }
+};
+
+// The sums over some rows, for the faces from `first` on.
+struct PartialSums {
+    std::size_t first = 0;
+    std::vector<double> values;
+};
+
+// face(i) is the face of pixel i, weights(x, y, face) returns a PixelCoord.
+template <typename FaceOf, typename WeightsOf>
+class Summing {
+  public:
+    Summing(const FeatureImage& feature, FaceOf face, WeightsOf weights)
+        : feature_(feature),
+          face_(face),
+          weights_(weights),
+          stride_(3 * (3 + as_index(feature.channels))),
+          last_pixel_(feature.pixel_count() - 1) {}
+
+    PartialSums rows(int begin, int end) const {
+        PartialSums part;
+        Id least = kNone, most = 0;
+        for (std::size_t i = feature_.row_begin(0) + as_index(begin) * as_index(feature_.width),
+                         last = as_index(end) * as_index(feature_.width);
+             i < last; ++i) {
+            const Id face = face_(i);
+            least = std::min(least, face);
+            most = std::max(most, face == kNone ? 0 : face);
+        }
+        if (least == kNone) return part;
+        part.first = least;
+        part.values.resize((most - least + 1) * stride_);
+        for (int y = begin; y < end; ++y) feature_.channels == 3 ? add_runs(y, part) : add_pixels(y, part);
+        return part;
+    }
+
+    std::size_t stride() const { return stride_; }
+
+  private:
+    double* sums(PartialSums& part, Id face) const {
+        return part.values.data() + (face - part.first) * stride_;
+    }
+
+    // The clear form, for any number of features.
+    void add_pixels(int y, PartialSums& part) const {
+        for (int x = 0; x < feature_.width; ++x) {
+            const std::size_t i = feature_.index(x, y);
+            const Id face = face_(i);
+            if (face == kNone) continue;
+            const PixelCoord coord = weights_(x, y, face);
+            const double w[3] = {double{1 - coord.u - coord.v}, double{coord.u}, double{coord.v}};
+            double* to = sums(part, face);
+            for (const double weight : w) {
+                for (const double other : w) *to++ += weight * other;
+                for (int c = 0; c < feature_.channels; ++c) *to++ += weight * double{feature_.pixel(i)[c]};
+            }
+        }
+    }
+
+    void add_runs(int y, PartialSums& part) const {
+        Run run;
+        Id current = kNone;
+        for (int x = 0; x < feature_.width; ++x) {
+            const std::size_t i = feature_.index(x, y);
+            const Id face = face_(i);
+            if (face != current) {
+                if (current != kNone) run.add_to(sums(part, current));
+                run = {};
+                current = face;
+            }
+            if (face == kNone) continue;
+            const PixelCoord coord = weights_(x, y, face);
+            Run::Float4 pixel{};  // read as a whole, except where the image ends
+            std::memcpy(&pixel, feature_.pixel(i), i < last_pixel_ ? sizeof pixel : 3 * sizeof(float));
+            run.add(coord.u, coord.v, pixel);
+        }
+        if (current != kNone) run.add_to(sums(part, current));
+    }
+
+    const FeatureImage& feature_;
+    FaceOf face_;
+    WeightsOf weights_;
+    std::size_t stride_, last_pixel_;
+};
+
+template <typename FaceOf, typename WeightsOf>
+ColorSums sum_up(const FeatureImage& feature, std::size_t faces, FaceOf face, WeightsOf weights) {
+    // Each part has sums for up to all faces, so the number of parts is limited by the memory they take.
+    constexpr int kParts = 8, kGrainFaces = 4096;
+    const Summing<FaceOf, WeightsOf> summing(feature, face, weights);
+    PartialSums parts[kParts];
+    parallel_blocks(0, kParts, 1, [&](int part, int) {
+        const auto row = [&](int p) { return static_cast<int>(std::int64_t{feature.height} * p / kParts); };
+        parts[part] = summing.rows(row(part), row(part + 1));
+    });
+    const std::size_t stride = summing.stride();
+    ColorSums sums{feature.channels, std::vector<double>(faces * stride)};
+    parallel_blocks(0, as_int(faces), kGrainFaces, [&](int begin, int end) {
+        for (const PartialSums& part : parts) {
+            const std::size_t first = std::max(as_index(begin), part.first),
+                              last = std::min(as_index(end), part.first + part.values.size() / stride);
+            for (std::size_t f = first; f < last; ++f)
+                for (std::size_t k = 0; k < stride; ++k)
+                    sums.values[f * stride + k] += part.values[(f - part.first) * stride + k];
+        }
+    });
+    return sums;
+}
+
+}  // namespace
+
+void ColorSums::add(const ColorSums& other, double weight) {
+    constexpr int kGrain = 1 << 16;
+    values.resize(other.values.size());
+    parallel_blocks(0, as_int(values.size()), kGrain, [&](int begin, int end) {
+        for (std::size_t i = as_index(begin); i < as_index(end); ++i) values[i] += weight * other.values[i];
+    });
+}
+
+ColorSums color_sums(const FeatureImage& feature, const PixelMap& map, std::size_t faces) {
+    return sum_up(
+        feature, faces, [&](std::size_t i) { return map[i].face; },
+        [&](int x, int y, Id) { return map.at(x, y); });
+}
+
+ColorSums color_sums(const FeatureImage& feature, const PixelEmbedding& pixels,
+                     const std::vector<FaceField>& fields) {
+    return sum_up(
+        feature, fields.size(), [&](std::size_t i) { return pixels.face[i]; },
+        [&](int x, int y, Id face) {
+            const Vec2f p = pixels.image_of(x, y);
+            return PixelCoord{face, fields[face].u(p.x(), p.y()), fields[face].v(p.x(), p.y())};
+        });
+}
+
+}  // namespace imgmesh
