@@ -3,7 +3,6 @@
 #include <cmath>
 
 #include "libcore/base/dot.h"
-#include "libcore/base/for_each_id.h"
 #include "libcore/refine/refiner.h"
 
 namespace imgmesh {
@@ -122,8 +121,7 @@ bool Refiner::move_vertex(Id v) {
 std::int64_t Refiner::move_vertices() {
     forget();
     std::vector<std::uint8_t> moved(mesh_.vertices(), false);
-    for (const std::vector<Id>& members : classes())
-        for_each_id(members.size(), [&](Id k) { moved[members[k]] = move_vertex(members[k]); });
+    tiles().for_each([&](Id v) { moved[v] = move_vertex(v); });
     return std::count(moved.begin(), moved.end(), true);
 }
 

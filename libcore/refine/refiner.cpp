@@ -6,7 +6,6 @@
 #include "libcore/base/dot.h"
 #include "libcore/base/for_each_id.h"
 #include "libcore/image/color.h"
-#include "libcore/mesh/vertex_coloring.h"
 
 namespace imgmesh {
 
@@ -69,9 +68,9 @@ Refiner::Cost Refiner::cost_of(const OneRing& ring) const {
     return cost;
 }
 
-const std::vector<std::vector<Id>>& Refiner::classes() {
-    if (classes_.empty()) classes_ = vertex_coloring(mesh_.faces(), mesh_.vertices());
-    return classes_;
+const VertexTiles& Refiner::tiles() {
+    if (!tiles_) tiles_.emplace(mesh_.faces(), vertex_.position);
+    return *tiles_;
 }
 
 // Least squares over all pixels by projected Gauss-Seidel, as in param/fit_colors.cpp, on changes of the
@@ -108,9 +107,7 @@ void Refiner::fit_colors() {
         vertex_.color[v] = next;
         change[v] = (next - before[v]).cast<double>();
     };
-    for (int pass = 0; pass < kPasses; ++pass)
-        for (const std::vector<Id>& members : classes())
-            for_each_id(members.size(), [&](Id k) { improve(members[k]); });
+    for (int pass = 0; pass < kPasses; ++pass) tiles().for_each(improve);
     for_each_id(mesh_.faces().size(), [&](Id f) {
         if (!mesh_.live_face(f)) return;
         for (std::size_t i = 0; i < 3; ++i) sums_[f].shift(i, change[mesh_.face(f)[i]]);
@@ -121,7 +118,7 @@ void Refiner::changed(const OneRing& ring) {
     for (std::size_t k = 0; k < ring.faces; ++k) changed(ring.face[k]);
 }
 void Refiner::changed(Id f) {
-    classes_.clear();
+    tiles_.reset();
     for (const Id v : mesh_.face(f))
         if (v < removal_.size()) removal_[v].estimated = removal_[v].found = false;
 }

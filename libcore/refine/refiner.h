@@ -3,12 +3,14 @@
 
 #include <array>
 #include <cmath>
+#include <optional>
 #include <vector>
 
 #include "libcore/mesh/touched_faces.h"
 #include "libcore/refine/pixel_sums.h"
 #include "libcore/refine/refine.h"
 #include "libcore/refine/refine_vertices.h"
+#include "libcore/refine/vertex_tiles.h"
 
 namespace imgmesh {
 
@@ -81,8 +83,7 @@ class Refiner {
     Cost cost_of(const OneRing& ring) const;
     FaceSums sums_of(const Face& face) const;
     double face_error(const Face& face) const;
-    // The vertices in classes that share no face.
-    const std::vector<std::vector<Id>>& classes();
+    const VertexTiles& tiles();
     void changed(const OneRing& ring);  // forgets what was remembered of its vertices
     void changed(Id f);
 
@@ -139,8 +140,8 @@ class Refiner {
     RefineParams params_;
     EditMesh mesh_;
     RefineVertices vertex_;
-    std::vector<FaceSums> sums_;            // of each face
-    std::vector<std::vector<Id>> classes_;  // empty: not known
+    std::vector<FaceSums> sums_;        // of each face
+    std::optional<VertexTiles> tiles_;  // of the present faces
     // Of each vertex, whether nothing that it depends on has changed since then.
     struct Remembered {
         double estimate;

@@ -72,7 +72,7 @@ bool Refiner::exchange(double share) {
     mesh_ = mesh;
     vertex_ = vertices;
     sums_ = sums;
-    classes_.clear();
+    tiles_.reset();
     forget();
     return false;
 }

@@ -12,6 +12,7 @@
 #include "libcore/refine/face_spans.h"
 #include "libcore/refine/pixel_sums.h"
 #include "libcore/refine/refine_vertices.h"
+#include "libcore/refine/vertex_tiles.h"
 #include "tests/support/meshes.h"
 #include "tests/support/sample_pictures.h"
 
@@ -60,6 +61,35 @@ TEST_CASE("vertex classes: every vertex that has a face is in one, and no face h
     // One face, and nothing at all.
     CHECK(vertex_coloring(std::vector<Face>{{0, 1, 2}}, 3).size() == 3);
     CHECK(vertex_coloring({}, 0).empty());
+}
+
+// The tiles of one class change at the same time, so none may see another. Some faces are longer than a tile.
+TEST_CASE("vertex tiles: every vertex that has a face is in one, and no face has two tiles of a class") {
+    for (const auto& [columns, rows] : {std::pair{40, 30}, {4, 3}, {1, 1}}) {
+        BaseMesh mesh = jittered_grid(0, 0, 400, 300, columns, rows, 5);
+        if (mesh.faces.size() > 20) mesh.faces[7] = {kNone, kNone, kNone};
+        const VertexTiles tiles(mesh.faces, mesh.position);
+        std::vector<Id> tile_of(mesh.vertex_count(), kNone);
+        for (Id tile = 0; tile < tiles.members().size(); ++tile)
+            for (const Id v : tiles.members()[tile]) {
+                CHECK(tile_of[v] == kNone);
+                tile_of[v] = tile;
+            }
+        std::vector<Id> class_of(tiles.members().size(), kNone);
+        for (Id c = 0; c < tiles.classes().size(); ++c)
+            for (const Id tile : tiles.classes()[c]) class_of[tile] = c;
+        for (const auto& [a, b, c] : mesh.faces) {
+            if (a == kNone) continue;
+            for (const auto& [u, v] : {std::pair{a, b}, {b, c}, {c, a}}) {
+                REQUIRE(tile_of[u] != kNone);
+                CHECK(class_of[tile_of[u]] != kNone);
+                CHECK((tile_of[u] == tile_of[v]) == (class_of[tile_of[u]] == class_of[tile_of[v]]));
+            }
+        }
+        std::vector<int> calls(mesh.vertex_count(), 0);
+        tiles.for_each([&](Id v) { ++calls[v]; });
+        CHECK(calls == std::vector<int>(mesh.vertex_count(), 1));
+    }
 }
 
 // What was found before holds for no face that has changed or is new.
