@@ -8,34 +8,34 @@
 
 namespace imgmesh {
 
-void Refiner::flip_shapes(Id f, std::size_t i, Id g, Cost& before, Cost& after) const {
-    const Id p = mesh_.face(f)[i], a = mesh_.face(f)[(i + 1) % 3], b = mesh_.face(f)[(i + 2) % 3];
-    const Id q = mesh_.apex(g, f);
-    add_shape(after, vertex_.position[p], vertex_.position[a], vertex_.position[q]);
-    add_shape(after, vertex_.position[q], vertex_.position[b], vertex_.position[p]);
-    if (!after.legal) return;
-    add_shape(before, vertex_.position[p], vertex_.position[a], vertex_.position[b]);
-    add_shape(before, vertex_.position[q], vertex_.position[b], vertex_.position[a]);
+Refiner::Cost Refiner::flip_shapes(Id f, std::size_t i, Id g) const {
+    const Face& face = mesh_.face(f);
+    const Vec2f &p = vertex_.position[face[i]], &a = vertex_.position[face[(i + 1) % 3]],
+                &b = vertex_.position[face[(i + 2) % 3]], &q = vertex_.position[mesh_.apex(g, f)];
+    Cost cost;
+    add_shape(cost, p, a, q);
+    add_shape(cost, q, b, p);
+    return cost;
 }
 
 // Says where the edge opposite corner i of f is divided. Each inner edge is handled once, for both faces.
 void Refiner::divide_edge(Id f, std::size_t i, std::vector<FaceTrial>& trials) const {
-    FaceTrial& trial = trials[f];
-    const Id g = trial.across[i] = mesh_.across(f, i);
-    trial.may_flip[i] = false;
-    if (g == kNone) trial.at[i] = 0.5f;
-    if (g == kNone || g < f) return;
     const Face& face = mesh_.face(f);
-    const Id q = mesh_.apex(g, f);
+    if (face[(i + 1) % 3] > face[(i + 2) % 3]) return;
+    const Id g = mesh_.across(f, i);
+    if (g == kNone) return;
+    const Id apex = mesh_.apex(g, f);
+    const std::size_t j = corner_of(mesh_.face(g), apex);
+    trials[f].across[i] = g;
+    trials[g].across[j] = f;
+    const bool legal = flip_shapes(f, i, g).legal;
+    trials[f].may_flip[i] = trials[g].may_flip[j] = legal;
+    if (!legal) return;
     const Vec2f &p = vertex_.position[face[i]], &a = vertex_.position[face[(i + 1) % 3]],
-                &b = vertex_.position[face[(i + 2) % 3]], &r = vertex_.position[q];
-    Cost flipped;
-    add_shape(flipped, p, a, r);
-    add_shape(flipped, r, b, p);
-    const double beside_a = signed_area2(p, a, r), beside_b = signed_area2(r, b, p);
-    trial.may_flip[i] = flipped.legal;
-    trial.at[i] = flipped.legal ? static_cast<float>(beside_a / (beside_a + beside_b)) : 0.5f;
-    trials[g].at[corner_of(mesh_.face(g), q)] = 1 - trial.at[i];
+                &b = vertex_.position[face[(i + 2) % 3]], &q = vertex_.position[apex];
+    const double beside_a = signed_area2(p, a, q), beside_b = signed_area2(q, b, p);
+    trials[f].at[i] = static_cast<float>(beside_a / (beside_a + beside_b));
+    trials[g].at[j] = 1 - trials[f].at[i];
 }
 
 std::vector<Refiner::FaceTrial> Refiner::trials() const {
@@ -48,23 +48,22 @@ std::vector<Refiner::FaceTrial> Refiner::trials() const {
         const auto [a, b, c] = mesh_.face(f);
         out[f].hats = face_hats(image_, corner(a), corner(b), corner(c), out[f].at);
     });
+    for_each_id(out.size(), [&](Id f) {
+        for (std::size_t i = 0; i < 3 && mesh_.live_face(f); ++i) {
+            const Id g = out[f].across[i];
+            if (g == kNone || g < f) continue;
+            const std::size_t j = corner_of(mesh_.face(g), mesh_.apex(g, f));
+            out[f].hats.edge[i].hh += out[g].hats.edge[j].hh;
+            out[f].hats.edge[i].he += out[g].hats.edge[j].he;
+        }
+    });
     return out;
-}
-
-HatSums Refiner::edge_hat(const std::vector<FaceTrial>& trials, Id f, std::size_t i) const {
-    HatSums hat = trials[f].hats.edge[i];
-    const Id g = trials[f].across[i];
-    if (g == kNone) return hat;
-    const HatSums& other = trials[g].hats.edge[corner_of(mesh_.face(g), mesh_.apex(g, f))];
-    hat.hh += other.hh;
-    hat.he += other.he;
-    return hat;
 }
 
 bool Refiner::flip_seems_better(const std::vector<FaceTrial>& trials, Id f, std::size_t i) const {
     const FaceTrial& trial = trials[f];
-    if (!trial.may_flip[i]) return false;
     const Id g = trial.across[i];
+    if (!trial.may_flip[i] || g < f) return false;
     const Face& face = mesh_.face(f);
     const Id p = face[i], a = face[(i + 1) % 3], b = face[(i + 2) % 3], q = mesh_.apex(g, f);
     const double beside_p = signed_area2(vertex_.position[p], vertex_.position[a], vertex_.position[b]),
@@ -73,29 +72,31 @@ bool Refiner::flip_seems_better(const std::vector<FaceTrial>& trials, Id f, std:
     const Vec3f now = (1 - t) * vertex_.color[a] + t * vertex_.color[b],
                 flipped = (1 - s) * vertex_.color[p] + s * vertex_.color[q];
     const Vec3d change = (flipped - now).cast<double>();
-    const HatSums hat = edge_hat(trials, f, i);
-    Cost before, after;
-    before.error = sums_[f].ee + sums_[g].ee;
-    after.error = before.error + 2 * dot(change, hat.he) + hat.hh * dot(change, change);
-    flip_shapes(f, i, g, before, after);
+    const HatSums& hat = trial.hats.edge[i];
+    const double growth = 2 * dot(change, hat.he) + hat.hh * dot(change, change);
+    Cost before;
+    add_face(before, f);
+    add_face(before, g);
+    if (growth > shape_unit_ * before.shape) return false;
+    Cost after = flip_shapes(f, i, g);
+    after.error = before.error + growth;
     return better(after, before);
 }
 
 bool Refiner::flip_if_better(Id f, std::size_t i, Id g) {
     const Id p = mesh_.face(f)[i], a = mesh_.face(f)[(i + 1) % 3], b = mesh_.face(f)[(i + 2) % 3];
     const Id q = mesh_.apex(g, f);
-    Cost before, after;
-    flip_shapes(f, i, g, before, after);
+    Cost before, after = flip_shapes(f, i, g);
     if (!after.legal) return false;
-    const FaceSums first = sums_of({p, a, q}), second = sums_of({q, b, p});
-    before.error = sums_[f].ee + sums_[g].ee;
-    after.error = first.ee + second.ee;
+    add_face(before, f);
+    add_face(before, g);
+    after.error = face_error({p, a, q}) + face_error({q, b, p});
     if (!better(after, before) || !mesh_.may_flip(f, i)) return false;
     mesh_.flip(f, i);
-    sums_[f] = first;
-    sums_[g] = second;
-    changed(f);
-    changed(g);
+    for (const Id face : {f, g}) {
+        measure(face);
+        changed(face);
+    }
     return true;
 }
 

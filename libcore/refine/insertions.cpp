@@ -51,7 +51,7 @@ void Refiner::try_insertion(Id f, int edge, const FaceTrial& trial, const HatSum
     Cost after;
     for (std::size_t k = 0; k < count && after.legal; ++k)
         add_shape(after, position, vertex_.position[faces[k][1]], vertex_.position[faces[k][2]]);
-    if (!after.legal || after.least_q < std::min(before.least_q, params_.min_quality)) return;
+    if (!after.legal || too_thin(after, before)) return;
     const double shape = shape_unit_ * (before.shape - after.shape);
     if (!(most + shape > best.gain)) return;
     const Vec3f chosen = allowed(color - (hat.he / hh).cast<float>());
@@ -77,7 +77,7 @@ Refiner::Insertion Refiner::best_insertion(const std::vector<FaceTrial>& trials,
             // Inner edges are tried once.
             if (g < f || touched.has(g)) continue;
         }
-        try_insertion(f, static_cast<int>(n), trial, edge_hat(trials, f, n), best);
+        try_insertion(f, static_cast<int>(n), trial, trial.hats.edge[n], best);
     }
     return best;
 }
@@ -107,10 +107,11 @@ Id Refiner::insert(const Insertion& insertion) {
     }
     vertex_.set(v, insertion.position, insertion.color, fixed);
     sums_.resize(mesh_.faces().size());
+    inverse_q_.resize(mesh_.faces().size());
     OneRing ring;
     mesh_.ring(v, ring);
     changed(ring);
-    for (std::size_t k = 0; k < ring.faces; ++k) sums_[ring.face[k]] = sums_of(mesh_.face(ring.face[k]));
+    for (std::size_t k = 0; k < ring.faces; ++k) measure(ring.face[k]);
     return v;
 }
 

@@ -7,15 +7,16 @@
 
 namespace imgmesh {
 
-bool Refiner::place(const OneRing& ring, const Vec2f& position, const Vec3f& color, double least_q,
+bool Refiner::place(const OneRing& ring, const Vec2f& position, const Vec3f& color, const Cost& before,
                     Placement& out) const {
     out.position = position;
     out.cost = {};
     double ww = 1e-3;
     Vec3d we = Vec3d::Zero();
     for (std::size_t k = 0; k < ring.faces; ++k)
-        add_shape(out.cost, position, vertex_.position[ring.vertex[k]], vertex_.position[ring.vertex[k + 1]]);
-    if (!out.cost.legal || out.cost.least_q < std::min(least_q, params_.min_quality)) return false;
+        out.inverse_q[k] = add_shape(out.cost, position, vertex_.position[ring.vertex[k]],
+                                     vertex_.position[ring.vertex[k + 1]]);
+    if (!out.cost.legal || too_thin(out.cost, before)) return false;
     for (std::size_t k = 0; k < ring.faces; ++k) {
         const Face& face = mesh_.face(ring.face[k]);
         const std::size_t i = ring.corner[k];
@@ -37,7 +38,10 @@ bool Refiner::place(const OneRing& ring, const Vec2f& position, const Vec3f& col
 void Refiner::set(const OneRing& ring, Id v, const Placement& placement) {
     vertex_.position[v] = placement.position;
     vertex_.color[v] = placement.color;
-    for (std::size_t k = 0; k < ring.faces; ++k) sums_[ring.face[k]] = placement.sums[k];
+    for (std::size_t k = 0; k < ring.faces; ++k) {
+        sums_[ring.face[k]] = placement.sums[k];
+        inverse_q_[ring.face[k]] = placement.inverse_q[k];
+    }
 }
 
 // With e the drawing's error and w the vertex's weight, moving the vertex by d and its colour by s changes a
@@ -110,7 +114,7 @@ bool Refiner::move_vertex(Id v) {
                       fixed == kFixedY ? from.y() : snapped(from.y() + step.y()));
         if (p == from || p == last) break;
         last = p;
-        if (place(ring, p, vertex_.color[v], before.least_q, placement) && better(placement.cost, before)) {
+        if (place(ring, p, vertex_.color[v], before, placement) && better(placement.cost, before)) {
             set(ring, v, placement);
             return true;
         }

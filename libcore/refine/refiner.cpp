@@ -12,18 +12,30 @@ namespace imgmesh {
 // No new triangle is thinner than the collapse allows (simplify/kernel/shape_limits.h).
 constexpr double kFatness = 0.05;
 
-void Refiner::add_shape(Cost& cost, const Vec2f& a, const Vec2f& b, const Vec2f& c) const {
+double Refiner::add_shape(Cost& cost, const Vec2f& a, const Vec2f& b, const Vec2f& c) const {
     const double area2 = signed_area2(a, b, c);
     const double ab = (b - a).squaredNorm(), bc = (c - b).squaredNorm(), ca = (a - c).squaredNorm();
     if (!(area2 > kFatness * std::max({ab, bc, ca})) || area2 > 2 * params_.max_face_area) cost.legal = false;
-    const double q = area2 > 0 ? 2 * std::sqrt(3.0) * area2 / (ab + bc + ca) : 1e-6;
-    cost.least_q = std::min(cost.least_q, q);
-    cost.shape += 1 / q - 1;
+    constexpr double kRegular = 3.4641016151377545871;  // 2 sqrt(3)
+    const double inverse_q = area2 > 0 ? (ab + bc + ca) / (kRegular * area2) : 1e6;
+    cost.worst = std::max(cost.worst, inverse_q);
+    cost.shape += inverse_q - 1;
+    return inverse_q;
+}
+
+// A face below the floor may only become better.
+bool Refiner::too_thin(const Cost& now, const Cost& before) const {
+    return now.worst * params_.min_quality > 1 && now.worst > before.worst;
 }
 
 Refiner::Refiner(const BaseMesh& mesh, const ImagePlanes& image, const RefineParams& params)
-    : image_(image), params_(params), mesh_(refine_faces(mesh)), vertex_(mesh), sums_(mesh.faces.size()) {
-    for_each_id(sums_.size(), [&](Id f) { sums_[f] = sums_of(mesh_.face(f)); });
+    : image_(image),
+      params_(params),
+      mesh_(refine_faces(mesh)),
+      vertex_(mesh),
+      sums_(mesh.faces.size()),
+      inverse_q_(mesh.faces.size()) {
+    for_each_id(sums_.size(), [&](Id f) { measure(f); });
     fit_colors();
     shape_unit_ = params.shape_weight * total_error() / static_cast<double>(mesh.faces.size());
 }
@@ -43,9 +55,7 @@ Vec3f Refiner::allowed(const Vec3f& color) const {
 bool Refiner::better(const Cost& now, const Cost& before) const {
     // Gains within the rounding of the sums do not count.
     const double slack = 1e-5 * before.error + 1e-9;
-    if (!now.legal) return false;
-    // A face below the floor may only become better.
-    if (now.least_q < params_.min_quality && now.least_q < before.least_q) return false;
+    if (!now.legal || too_thin(now, before)) return false;
     return now.error + shape_unit_ * now.shape < before.error + shape_unit_ * before.shape - slack;
 }
 
@@ -56,10 +66,18 @@ double Refiner::face_error(const Face& face) const {
     return squared_error(image_, corner(face[0]), corner(face[1]), corner(face[2]));
 }
 
+void Refiner::measure(Id f) {
+    const Face& face = mesh_.face(f);
+    sums_[f] = sums_of(face);
+    Cost cost;
+    inverse_q_[f] =
+        add_shape(cost, vertex_.position[face[0]], vertex_.position[face[1]], vertex_.position[face[2]]);
+}
+
 void Refiner::add_face(Cost& cost, Id f) const {
-    const auto [a, b, c] = mesh_.face(f);
     cost.error += sums_[f].ee;
-    add_shape(cost, vertex_.position[a], vertex_.position[b], vertex_.position[c]);
+    cost.shape += inverse_q_[f] - 1;
+    cost.worst = std::max(cost.worst, inverse_q_[f]);
 }
 
 Refiner::Cost Refiner::cost_of(const OneRing& ring) const {

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "libcore/mesh/touched_faces.h"
@@ -50,12 +51,12 @@ class Refiner {
     void forget();
 
   private:
-    // The cost of a ring or a pair of faces: squared error, and the worst and the summed shape.
+    // The cost of some faces: squared error, and the summed and the worst shape.
     struct Cost {
-        double error = 0;    // summed squared error
-        double shape = 0;    // sum of 1/q - 1
-        double least_q = 1;  // least q
-        bool legal = true;   // whether every area is positive and there is no sliver
+        double error = 0;   // summed squared error
+        double shape = 0;   // sum of 1/q - 1
+        double worst = 1;   // largest 1/q
+        bool legal = true;  // whether every area is positive and there is no sliver
     };
     // Vertex v at some position, with its best colour there.
     struct Placement {
@@ -63,14 +64,15 @@ class Refiner {
         Vec3f color;
         Cost cost;
         std::array<FaceSums, OneRing::kMaxFaces> sums;
+        std::array<double, OneRing::kMaxFaces> inverse_q;
     };
     // What a new vertex would do in the middle of a face and on its edges. Where an edge may flip, its vertex
     // is at the other diagonal.
     struct FaceTrial {
-        std::array<Id, 3> across;              // the face across the edge opposite each corner, or kNone
-        std::array<std::uint8_t, 3> may_flip;  // set in the face of the lower id
-        std::array<float, 3> at;               // see face_hats()
-        FaceHats hats;
+        std::array<Id, 3> across = {kNone, kNone, kNone};  // the face across the edge opposite each corner
+        std::array<float, 3> at = {0.5f, 0.5f, 0.5f};      // see face_hats()
+        std::array<std::uint8_t, 3> may_flip = {};
+        FaceHats hats;  // at edges, those of both faces in the face of the lower number
     };
 
     // refiner.cpp
@@ -78,10 +80,13 @@ class Refiner {
     Vec3f allowed(const Vec3f& color) const;
     float snapped(float x) const { return std::round(x / params_.position_step) * params_.position_step; }
     bool better(const Cost& now, const Cost& before) const;
-    void add_shape(Cost& cost, const Vec2f& a, const Vec2f& b, const Vec2f& c) const;
+    // Adds a triangle, and returns its 1/q.
+    double add_shape(Cost& cost, const Vec2f& a, const Vec2f& b, const Vec2f& c) const;
     void add_face(Cost& cost, Id f) const;
+    bool too_thin(const Cost& now, const Cost& before) const;
     Cost cost_of(const OneRing& ring) const;
     FaceSums sums_of(const Face& face) const;
+    void measure(Id f);  // its sums and its shape
     double face_error(const Face& face) const;
     const VertexTiles& tiles();
     void changed(const OneRing& ring);  // forgets what was remembered of its vertices
@@ -90,7 +95,7 @@ class Refiner {
     // moves.cpp
     // Costs the ring with v at `position`, without and with its best colour. Returns false if that is not
     // legal.
-    bool place(const OneRing& ring, const Vec2f& position, const Vec3f& color, double least_q,
+    bool place(const OneRing& ring, const Vec2f& position, const Vec3f& color, const Cost& before,
                Placement& out) const;
     Vec2f newton_step(const OneRing& ring, Id v) const;
     bool move_vertex(Id v);
@@ -99,10 +104,8 @@ class Refiner {
     // flips.cpp
     std::vector<FaceTrial> trials() const;
     void divide_edge(Id f, std::size_t i, std::vector<FaceTrial>& trials) const;
-    // Of both faces at the edge opposite corner i of f.
-    HatSums edge_hat(const std::vector<FaceTrial>& trials, Id f, std::size_t i) const;
-    // The shape of the two faces at the edge opposite corner i of f, and with the other diagonal.
-    void flip_shapes(Id f, std::size_t i, Id g, Cost& before, Cost& after) const;
+    // The shapes of the two faces with the other diagonal instead of the edge opposite corner i of f.
+    Cost flip_shapes(Id f, std::size_t i, Id g) const;
     bool flip_seems_better(const std::vector<FaceTrial>& trials, Id f, std::size_t i) const;
     bool flip_if_better(Id f, std::size_t i, Id g);
     std::int64_t flip_edges(const std::vector<FaceTrial>& trials, TouchedFaces& touched);
@@ -127,6 +130,9 @@ class Refiner {
     // removals.cpp
     bool may_become(const OneRing& ring, std::size_t n) const;
     void add_fan(Cost& cost, const OneRing& ring, Id u) const;
+    // A neighbour and what it seems to cost in error, in any order; returns how many.
+    using Estimates = std::array<std::pair<double, Id>, OneRing::kMaxFaces + 1>;
+    std::size_t estimate(const OneRing& ring, Estimates& out) const;
     double estimated_removal(Id v) const;
     Removal best_removal(Id v) const;
     void remove(const Removal& removal);
@@ -141,6 +147,7 @@ class Refiner {
     EditMesh mesh_;
     RefineVertices vertex_;
     std::vector<FaceSums> sums_;        // of each face
+    std::vector<double> inverse_q_;     // of each face, 1/q
     std::optional<VertexTiles> tiles_;  // of the present faces
     // Of each vertex, whether nothing that it depends on has changed since then.
     struct Remembered {

@@ -49,6 +49,7 @@ bool Refiner::exchange(double share) {
     const EditMesh mesh = mesh_;
     const RefineVertices vertices = vertex_;
     const std::vector<FaceSums> sums = sums_;
+    const std::vector<double> inverse_q = inverse_q_;
     const double before = total_error();
     const auto settle = [&] {
         flip_edges();
@@ -72,6 +73,7 @@ bool Refiner::exchange(double share) {
     mesh_ = mesh;
     vertex_ = vertices;
     sums_ = sums;
+    inverse_q_ = inverse_q;
     tiles_.reset();
     forget();
     return false;
