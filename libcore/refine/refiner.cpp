@@ -25,7 +25,7 @@ double Refiner::add_shape(Cost& cost, const Vec2f& a, const Vec2f& b, const Vec2
 
 // A face below the floor may only become better.
 bool Refiner::too_thin(const Cost& now, const Cost& before) const {
-    return now.worst * params_.min_quality > 1 && now.worst > before.worst;
+    return now.worst * params_.min_quality > 1 - 1e-12 && now.worst > before.worst;
 }
 
 Refiner::Refiner(const BaseMesh& mesh, const ImagePlanes& image, const RefineParams& params)
