@@ -9,7 +9,7 @@ namespace {
 
 // Measured as in docs/limits.md. Encoders work on rows and on blocks of a fixed size.
 constexpr double kEncoderMemory = 14e6;
-constexpr double kBuildBytes = 82, kChannelBytes = 8;
+constexpr double kBuildBytes = 62, kChannelBytes = 8;
 constexpr double kLevelBytes = 29;         // of each level after the first
 constexpr double kManyFeatureBytes = 104;  // quadrics of more features than a colour has
 constexpr std::size_t kFewFeatures = 3;

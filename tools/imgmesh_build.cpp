@@ -76,8 +76,8 @@ Report build_one(const BuildOptions& given, Context& context) {
     std::vector<std::string>& warnings = context.warnings;
     Stopwatch whole, stage;
     check_output(o.output, context.overwrite);
-    const ReadImage read = read_with_warnings(o.input, read_options(o), warnings);
-    const Image& image = read.image;
+    ReadImage read = read_with_warnings(o.input, read_options(o), warnings);
+    Image& image = read.image;
     const auto add_warning = [&](const std::string& text) { warnings.push_back(cat(o.input, ": ", text)); };
     const SourcePlan plan = plan_source(image, o.alpha, !o.mask.empty(), o.params, option_text);
     for (const std::string& warning : plan.warnings) add_warning(warning);
@@ -105,8 +105,13 @@ Report build_one(const BuildOptions& given, Context& context) {
             return encode_texture(image, mask, o.texture.type,
                                   keep ? TextureAlpha::kOwn : TextureAlpha::kMask);
         });
-    BuildResult result = in_file(
-        o.input, [&] { return build_mesh_image(image, plan.params, context.progress, std::move(mask)); });
+    Image shape{{image.width, image.height, image.channels, {}},
+                image.channel_names,
+                image.sample_type,
+                image.color_space};
+    BuildResult result = in_file(o.input, [&] {
+        return build_mesh_image(std::move(image), plan.params, context.progress, std::move(mask));
+    });
     const std::vector<std::string> missed = missed_targets(plan.params, result, o.density);
     tell_missed(o.input, missed, o.strict, context.warnings);
     result.mesh_image.generator = context.generator;
@@ -140,11 +145,11 @@ Report build_one(const BuildOptions& given, Context& context) {
     Report report = {{"input", o.input}, {"output", o.output}};
     for (const auto& [name, value] : written.mesh_image.parameters)
         std::visit([&member = report["parameters"][name]](const auto& v) { member = v; }, value);
-    const char* use = image.channel("A") < 0         ? "none"
+    const char* use = shape.channel("A") < 0         ? "none"
                       : keep                         ? "kept"
                       : plan.alpha == AlphaUse::kCut ? "cut"
                                                      : "ignored";
-    report.update(image_report(image, use, o.params.values, result.report, written,
+    report.update(image_report(shape, use, o.params.values, result.report, written,
                                {read_seconds, write_seconds, whole.lap()}));
     report.update(target_report(missed));
     report.update(read_report(read));

@@ -102,18 +102,14 @@ Mask checked(Mask mask, const Image& image) {
 // Turns collapsed meshes into levels.
 struct Pipeline {
     const FeatureImage& feature;
+    const GridMesh& grid;
     const FeatureSpace& space;
     const Mask& mask;
     const BuildParams& params;
     BuildReport& report;
     const Progress& progress;
 
-    GridMesh grid() const {
-        return grid_mesh({feature.width, feature.height, feature.channels, parallel_copy(feature.data)},
-                         mask);
-    }
-
-    std::vector<SimplifyResult> collapse(const GridMesh& grid, const SimplifyParams& limits,
+    std::vector<SimplifyResult> collapse(const SimplifyParams& limits,
                                          std::span<const SimplifyTarget> targets,
                                          const SimplifyHooks& hooks = {}) const {
         Stopwatch watch;
@@ -205,11 +201,10 @@ struct Pipeline {
 void build_levels(const Pipeline& pipeline, const SimplifyParams& limits,
                   std::span<const SimplifyTarget> targets, MeshImage& mesh_image) {
     Stopwatch watch;
-    const GridMesh grid = pipeline.grid();
-    Tracking tracking(grid, pipeline.feature.width, pipeline.feature.height, pipeline.params);
+    Tracking tracking(pipeline.grid, pipeline.feature.width, pipeline.feature.height, pipeline.params);
     BuildReport& report = pipeline.report;
     report.seconds.collapse += watch.lap();
-    std::vector<SimplifyResult> collapsed = pipeline.collapse(grid, limits, targets, tracking.hooks());
+    std::vector<SimplifyResult> collapsed = pipeline.collapse(limits, targets, tracking.hooks());
     report.collapses = collapsed.back().collapses;
     report.rejected = tracking.rejected();
     mesh_image.visits = tracking.take_visits();
@@ -239,12 +234,12 @@ constexpr double kEstimateShare = 0.85;
 // Meshes for the search by a wanted error.
 class RmsMeshes : public MeasuredMeshes {
   public:
-    RmsMeshes(const Pipeline& pipeline, const GridMesh& grid, SimplifyParams& limits, MeshImage& mesh_image)
+    RmsMeshes(const Pipeline& pipeline, SimplifyParams& limits, MeshImage& mesh_image)
         : pipeline_(pipeline),
           limits_(limits),
           collapsing_(part_of(pipeline.progress, 0, 0.7)),
           lods_(
-              grid, [this](std::int64_t vertices) { return limits_for(vertices); }, collapsing_),
+              pipeline.grid, [this](std::int64_t vertices) { return limits_for(vertices); }, collapsing_),
           mesh_image_(mesh_image) {}
 
     Probe finished(std::int64_t vertices) override {
@@ -296,7 +291,7 @@ class RmsMeshes : public MeasuredMeshes {
 
 // Returns the level that StopParams::rms asks for. Sets limits.smoothing to that of its collapse.
 void build_to_rms(const Pipeline& pipeline, SimplifyParams& limits, MeshImage& mesh_image) {
-    const GridMesh grid = pipeline.grid();
+    const GridMesh& grid = pipeline.grid;
     const double rms = *pipeline.params.stop.rms;
     mesh_image.levels.clear();
     // All vertices of the dense mesh: strips of one pixel have more vertices than pixels.
@@ -308,15 +303,27 @@ void build_to_rms(const Pipeline& pipeline, SimplifyParams& limits, MeshImage& m
     constexpr double kUsualRms = 3.8, kUsualShare = 0.01, kAhead = 5, kPower = 2.6, kMost = 1.0 / 8;
     const double share = kAhead * kUsualShare * std::pow(kUsualRms / std::max(rms, 1e-3), kPower);
     const double guess = std::clamp(share, 1.0 / 4096, kMost) * static_cast<double>(vertices);
-    RmsMeshes meshes(pipeline, grid, limits, mesh_image);
+    RmsMeshes meshes(pipeline, limits, mesh_image);
     // Without success, the search ends with the mesh of all vertices.
     if (!search_rms(std::max(std::int64_t{4}, vertices), std::llround(guess), rms, meshes)) meshes.keep();
 }
 
-}  // namespace
+// The features of pixels, and of the vertices of the dense mesh.
+struct Features {
+    FeatureImage apart;  // of pixels, where the dense mesh has other vertices as well; else empty
+    GridMesh grid;
 
-BuildResult build_mesh_image(const Image& image, const BuildParams& asked, const Progress& progress,
-                             Mask mask) {
+    Features(FeatureImage feature, const Mask& mask) {
+        if (!mask.empty() || std::min(feature.width, feature.height) < 2)
+            apart = {feature.width, feature.height, feature.channels, parallel_copy(feature.data)};
+        grid = grid_mesh(std::move(feature), mask);
+    }
+    const FeatureImage& of_pixels() const { return apart.data.empty() ? grid.feature : apart; }
+};
+
+// `own` is the image itself, if its samples may be freed.
+BuildResult build(const Image& image, Image* own, const BuildParams& asked, const Progress& progress,
+                  Mask mask) {
     check_params(asked);
     if (image.width < 1 || image.height < 1) throw Error(ErrorKind::kBadArgument, "the image is empty");
     for (const float sample : image.data)
@@ -341,11 +348,12 @@ BuildResult build_mesh_image(const Image& image, const BuildParams& asked, const
         throw Error(ErrorKind::kUnsupported,
                     cat("color-levels is only for colours without HDR; this image has ",
                         space.color ? "HDR colours" : "no colour"));
-    const FeatureImage feature = extract_features(image, space, mask);
-
     BuildResult result;
-    result.report.seconds.collapse = watch.lap();
     result.report.clipped_samples = count_clipped(image, space, mask);
+    FeatureImage feature = extract_features(image, space, mask);
+    if (own) std::vector<float>().swap(own->data);
+    const Features features(std::move(feature), mask);
+    result.report.seconds.collapse = watch.lap();
     result.report.pixels = mask.empty() ? static_cast<std::int64_t>(image.pixel_count()) : mask.count();
     const auto pixels = static_cast<double>(result.report.pixels);
     const BuildParams scaled = in_features(params, static_cast<double>(space.unit));
@@ -353,7 +361,8 @@ BuildResult build_mesh_image(const Image& image, const BuildParams& asked, const
     SimplifyParams collapse = collapse_params(scaled, targets.front(), pixels);
     const std::vector<Level>& levels = result.mesh_image.levels;
     if (params.max_cluster) collapse.max_face_area = static_cast<float>(*params.max_cluster);
-    const Pipeline pipeline{feature, space, mask, scaled, result.report, progress};
+    const Pipeline pipeline{features.of_pixels(), features.grid, space, mask, scaled,
+                            result.report,        progress};
     for (;;) {
         if (params.stop.rms)
             build_to_rms(pipeline, collapse, result.mesh_image);
@@ -381,6 +390,17 @@ BuildResult build_mesh_image(const Image& image, const BuildParams& asked, const
     result.mesh_image.parameters = list_params(closed_params(params, collapse, levels.front().map.precision));
     if (progress) progress(1.0, "done");
     return result;
+}
+
+}  // namespace
+
+BuildResult build_mesh_image(const Image& image, const BuildParams& params, const Progress& progress,
+                             Mask mask) {
+    return build(image, nullptr, params, progress, std::move(mask));
+}
+
+BuildResult build_mesh_image(Image&& image, const BuildParams& params, const Progress& progress, Mask mask) {
+    return build(image, &image, params, progress, std::move(mask));
 }
 
 }  // namespace imgmesh

@@ -62,11 +62,14 @@ struct BuildResult {
 ///           and weights exactly
 ///
 /// The result is the same for any number of threads. With default parameters takes about 2 us of processor
-/// time and 110 bytes of memory for each pixel (docs/performance.md).
+/// time for each pixel, and 85 bytes of memory beside the image (docs/performance.md).
 /// Throws Error(kBadArgument) for a parameter out of range, Error(kBadFile) for a mask of another size, and
 /// Error(kUnsupported) for a mask without a pixel inside and for an image without colour channels or with
 /// values that are not finite; also as feature_space() and extract_features() do.
 BuildResult build_mesh_image(const Image& image, const BuildParams& params, const Progress& progress = {},
+                             Mask mask = {});
+/// The same, but the image's samples are freed as soon as they have become features.
+BuildResult build_mesh_image(Image&& image, const BuildParams& params, const Progress& progress = {},
                              Mask mask = {});
 
 }  // namespace imgmesh

@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "libcore/base/error.h"
 #include "libcore/base/parallel.h"
@@ -249,6 +250,14 @@ TEST_CASE("build: progress rises from 0 to 1") {
         last = fraction;
     });
     CHECK(last == 1);
+}
+
+TEST_CASE("build: an image that is given away has no samples any more, and the same mesh") {
+    Image image = sample_picture(Kind::kNoise, 50, 40);
+    const Level expected = build_mesh_image(image, with_density(10)).mesh_image.levels[0];
+    CHECK(image.data.size() == image.sample_count());
+    CHECK(same(build_mesh_image(std::move(image), with_density(10)).mesh_image.levels[0], expected));
+    CHECK(image.data.empty());  // NOLINT(bugprone-use-after-move): what this is about
 }
 
 // L*u*v* of negative linear RGB has no bound, so one unclipped sample would outweigh the whole image.
