@@ -36,6 +36,18 @@ void add_up(std::span<std::uint8_t> bytes) {
     for (; i < bytes.size(); ++i) bytes[i] = sum = static_cast<std::uint8_t>(bytes[i] + sum - 128);
 }
 
+// Writes every other byte, from `first` on, less the one before of these, plus 128; the first as it is.
+// Returns how many they are.
+std::size_t differences(std::span<const std::uint8_t> bytes, std::size_t first, std::uint8_t* out) {
+    const std::size_t count = (bytes.size() + 1 - first) / 2;
+    if (count == 0) return 0;
+    const std::uint8_t* const from = bytes.data() + first;
+    out[0] = from[0];
+    for (std::size_t i = 1; i < count; ++i)
+        out[i] = static_cast<std::uint8_t>(from[2 * i] - from[2 * i - 2] + 128);
+    return count;
+}
+
 }  // namespace
 
 ZipPacker::ZipPacker() : deflate_(libdeflate_alloc_compressor(kLevel)) {
@@ -46,16 +58,12 @@ ZipPacker::~ZipPacker() {
 }
 
 std::vector<std::uint8_t> ZipPacker::pack(std::span<const std::uint8_t> samples) {
-    const std::size_t size = samples.size(), evens = (size + 1) / 2;
+    const std::size_t size = samples.size();
     sorted_.resize(size);
-    for (std::size_t i = 0; i < size / 2; ++i) {
-        sorted_[i] = samples[2 * i];
-        sorted_[evens + i] = samples[2 * i + 1];
-    }
-    if (size % 2) sorted_[evens - 1] = samples[size - 1];
-    // Backwards, so that the previous byte is still unchanged.
-    for (std::size_t i = size; i-- > 1;)
-        sorted_[i] = static_cast<std::uint8_t>(sorted_[i] - sorted_[i - 1] + 128);
+    const std::size_t evens = differences(samples, 0, sorted_.data());
+    differences(samples, 1, sorted_.data() + evens);
+    // Where the odd bytes begin, the last of the even ones is the one before.
+    if (size > 1) sorted_[evens] = static_cast<std::uint8_t>(samples[1] - samples[(size - 1) / 2 * 2] + 128);
     // Without room for that many bytes it gives up at once.
     std::vector<std::uint8_t> packed(size);
     const std::size_t length =
