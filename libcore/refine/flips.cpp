@@ -73,7 +73,7 @@ bool Refiner::flip_seems_better(const std::vector<FaceTrial>& trials, Id f, std:
                 flipped = (1 - s) * vertex_.color[p] + s * vertex_.color[q];
     const Vec3d change = (flipped - now).cast<double>();
     const HatSums& hat = trial.hats.edge[i];
-    const double growth = 2 * dot(change, hat.he) + hat.hh * dot(change, change);
+    const double growth = 2 * dot(change, Vec3d(hat.he.cast<double>())) + hat.hh * dot(change, change);
     Cost before;
     add_face(before, f);
     add_face(before, g);

@@ -12,8 +12,9 @@ constexpr double kPull = 1e-3;
 
 void Refiner::try_insertion(Id f, int edge, const FaceTrial& trial, const HatSums& hat,
                             Insertion& best) const {
+    const Vec3d he = hat.he.cast<double>();
     const double hh = hat.hh + kPull;
-    const double most = dot(hat.he, hat.he) / hh;  // what the best colour gains
+    const double most = dot(he, he) / hh;  // what the best colour gains
     const auto n = static_cast<std::size_t>(edge);
     const Id g = edge < 0 ? kNone : trial.across[n];
     Cost before;
@@ -54,9 +55,9 @@ void Refiner::try_insertion(Id f, int edge, const FaceTrial& trial, const HatSum
     if (!after.legal || too_thin(after, before)) return;
     const double shape = shape_unit_ * (before.shape - after.shape);
     if (!(most + shape > best.gain)) return;
-    const Vec3f chosen = allowed(color - (hat.he / hh).cast<float>());
+    const Vec3f chosen = allowed(color - (he / hh).cast<float>());
     const Vec3d change = (chosen - color).cast<double>();
-    const double gain = shape - 2 * dot(change, hat.he) - hat.hh * dot(change, change);
+    const double gain = shape - 2 * dot(change, he) - hat.hh * dot(change, change);
     if (gain > best.gain) best = {f, edge, position, chosen, gain, edge >= 0 && count == 2};
 }
 

@@ -23,8 +23,8 @@ bool Refiner::place(const OneRing& ring, const Vec2f& position, const Vec3f& col
         std::array<Corner, 3> at = {corner(face[0]), corner(face[1]), corner(face[2])};
         at[i] = {position, color};
         out.sums[k] = face_sums(image_, at[0], at[1], at[2]);
-        ww += out.sums[k].ww[i][i];
-        we += out.sums[k].we[i];
+        ww += out.sums[k].square[i];
+        we += out.sums[k].we[i].cast<double>();
     }
     out.color = allowed(color - (we / ww).cast<float>());
     const Vec3d change = (out.color - color).cast<double>();
@@ -54,8 +54,8 @@ Vec2f Refiner::newton_step(const OneRing& ring, Id v) const {
     const Corner own = corner(v);
     for (std::size_t k = 0; k < ring.faces; ++k) {
         const Corner b = corner(ring.vertex[k]), c = corner(ring.vertex[k + 1]);
-        const double face_ww = sums_[ring.face[k]].ww[ring.corner[k]][ring.corner[k]];
-        const Vec3d& face_we = sums_[ring.face[k]].we[ring.corner[k]];
+        const double face_ww = sums_[ring.face[k]].square[ring.corner[k]];
+        const Vec3d face_we = sums_[ring.face[k]].we[ring.corner[k]].cast<double>();
         const Vec2d pb = (b.position - own.position).cast<double>(),
                     pc = (c.position - own.position).cast<double>();
         const Vec3d db = (b.color - own.color).cast<double>(), dc = (c.color - own.color).cast<double>();

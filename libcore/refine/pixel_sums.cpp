@@ -137,7 +137,7 @@ IMGMESH_INLINE FaceSums face_sums_of(const ImagePlanes& image, const Corner& a, 
                                      const Corner& c) {
     const Plane plane(a, b, c);
     FaceSums sums;
-    sums.ee = 0;
+    double squares = 0;
     Areas areas;
     Float8 part[8] = {}, y2 = {}, ee = {};  // e, dx e, dy e of three channels: the last one is y2
     Float8 area[8] = {};
@@ -169,7 +169,7 @@ IMGMESH_INLINE FaceSums face_sums_of(const ImagePlanes& image, const Corner& a, 
                 part[k] = Float8{};
             }
             linear[8] += total(y2);
-            sums.ee += total(ee);
+            squares += total(ee);
             ee = y2 = Float8{};
             if (!kMasked) {
                 areas.add(spans, rows, a.position.x(), a.position.y());
@@ -187,13 +187,17 @@ IMGMESH_INLINE FaceSums face_sums_of(const ImagePlanes& image, const Corner& a, 
     // The corners' weights are at + x dx + y dy.
     const double x[3] = {-double(plane.ux) - plane.vx, plane.ux, plane.vx},
                  y[3] = {-double(plane.uy) - plane.vy, plane.uy, plane.vy}, at[3] = {1, 0, 0};
+    sums.ee = static_cast<float>(squares);
     for (int i = 0; i < 3; ++i) {
         const double one = at[i] * areas.one + x[i] * areas.x + y[i] * areas.y,
                      dx = at[i] * areas.x + x[i] * areas.xx + y[i] * areas.xy,
                      dy = at[i] * areas.y + x[i] * areas.xy + y[i] * areas.yy;
-        for (int j = 0; j <= i; ++j) sums.ww[i][j] = sums.ww[j][i] = at[j] * one + x[j] * dx + y[j] * dy;
-        for (int k = 0; k < 3; ++k)
-            sums.we[i][k] = at[i] * linear[k] + x[i] * linear[3 + k] + y[i] * linear[6 + k];
+        const int j = (i + 1) % 3, k = (i + 2) % 3;
+        sums.square[i] = static_cast<float>(at[i] * one + x[i] * dx + y[i] * dy);
+        sums.product[k] = static_cast<float>(at[j] * one + x[j] * dx + y[j] * dy);
+        for (int m = 0; m < 3; ++m)
+            sums.we[i][m] =
+                static_cast<float>(at[i] * linear[m] + x[i] * linear[3 + m] + y[i] * linear[6 + m]);
     }
     return sums;
 }
@@ -236,7 +240,7 @@ IMGMESH_INLINE FaceHats face_hats_of(const ImagePlanes& image, const Corner& a, 
                              totals({he[2][0], he[2][1], he[2][2], he[2][3], hh[0], hh[1], hh[2], hh[3]});
             for (int i = 0; i < 4; ++i) {
                 HatSums& sums = i < 3 ? hats.edge[static_cast<std::size_t>(i)] : hats.center;
-                sums.he += Vec3d(first[i], first[4 + i], second[i]);
+                sums.he += Vec3f(first[i], first[4 + i], second[i]);
                 sums.hh += second[4 + i];
                 hh[i] = he[0][i] = he[1][i] = he[2][i] = Float8{};
             }
@@ -292,8 +296,13 @@ ImagePlanes::ImagePlanes(const FeatureImage& image, const Mask& mask)
 }
 
 void FaceSums::shift(std::size_t i, const Vec3d& change) {
-    ee = std::max(0.0, ee + 2 * dot(change, we[i]) + ww[i][i] * dot(change, change));
-    for (std::size_t j = 0; j < 3; ++j) we[j] += ww[i][j] * change;
+    const std::size_t j = (i + 1) % 3, k = (i + 2) % 3;
+    const double error = ee + 2 * dot(change, Vec3d(we[i].cast<double>())) + square[i] * dot(change, change);
+    ee = static_cast<float>(std::max(0.0, error));
+    const Vec3f shifted = change.cast<float>();
+    we[i] += square[i] * shifted;
+    we[j] += product[k] * shifted;
+    we[k] += product[j] * shifted;
 }
 
 double squared_error(const ImagePlanes& image, const Corner& a, const Corner& b, const Corner& c) {

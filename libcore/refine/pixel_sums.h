@@ -25,11 +25,13 @@ struct Corner {
     Vec3f color;
 };
 
-/// Sums over the pixels of a face, with e = drawing - image and w_i the weight of corner i.
+/// Sums over the pixels of a face, with e = drawing - image and w_i the weight of corner i. As large as a
+/// line of a cache.
 struct FaceSums {
-    double ee;        ///< |e|^2: the squared error
-    double ww[3][3];  ///< w_i w_j
-    Vec3d we[3];      ///< w_i e
+    float ee;          ///< |e|^2: the squared error
+    float square[3];   ///< w_i^2
+    float product[3];  ///< w_j w_k of the two corners other than i
+    Vec3f we[3];       ///< w_i e
 
     /// The colour of corner i changes.
     void shift(std::size_t i, const Vec3d& change);
@@ -38,14 +40,14 @@ struct FaceSums {
 /// Sums over the face (a, b, c), counter-clockwise on screen, drawn with colours interpolated linearly, over
 /// its pixels as FaceSpans has them. Positions on kPositionStep. The bits are the same on every processor.
 FaceSums face_sums(const ImagePlanes& image, const Corner& a, const Corner& b, const Corner& c);
-/// Returns only FaceSums::ee, to the bit.
+/// Returns only FaceSums::ee, before it is rounded to a float.
 double squared_error(const ImagePlanes& image, const Corner& a, const Corner& b, const Corner& c);
 
 /// Sums over pixels with h, the weight of a new vertex: it is 1 there, 0 on the edges around it, and linear
 /// between. The vertex may lower the squared error by up to |he|^2 / hh.
 struct HatSums {
-    double hh = 0;             ///< h^2
-    Vec3d he = Vec3d::Zero();  ///< h e
+    float hh = 0;              ///< h^2
+    Vec3f he = Vec3f::Zero();  ///< h e
 };
 struct FaceHats {
     HatSums center;               ///< of a vertex in the middle of the face

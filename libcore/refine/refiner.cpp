@@ -115,10 +115,12 @@ void Refiner::fit_colors() {
         for (Id k = first[v]; k < first[v + 1]; ++k) {
             const Id f = corners[k] / 3;
             const std::size_t i = corners[k] % 3;
-            diagonal += sums_[f].ww[i][i];
-            rhs -= sums_[f].we[i];
-            for (const std::size_t j : {(i + 1) % 3, (i + 2) % 3})
-                rhs -= sums_[f].ww[i][j] * change[mesh_.face(f)[j]];
+            const FaceSums& sums = sums_[f];
+            const Face& face = mesh_.face(f);
+            const std::size_t j = (i + 1) % 3, m = (i + 2) % 3;
+            diagonal += sums.square[i];
+            rhs -= sums.we[i].cast<double>() + sums.product[m] * change[face[j]] +
+                   sums.product[j] * change[face[m]];
         }
         const Vec3f best = before[v] + (rhs / diagonal).cast<float>(), next = allowed(best);
         if ((next - best).squaredNorm() >= (vertex_.color[v] - best).squaredNorm()) return;

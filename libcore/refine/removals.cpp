@@ -32,8 +32,8 @@ std::size_t Refiner::estimate(const OneRing& ring, Estimates& out) const {
     Vec3d we = Vec3d::Zero();
     for (std::size_t k = 0; k < ring.faces; ++k) {
         const FaceSums& sums = sums_[ring.face[k]];
-        ww += sums.ww[ring.corner[k]][ring.corner[k]];
-        we += sums.we[ring.corner[k]];
+        ww += sums.square[ring.corner[k]];
+        we += sums.we[ring.corner[k]].cast<double>();
     }
     const Vec2f center = vertex_.position[v];
     std::size_t count = 0;

@@ -199,8 +199,10 @@ TEST_CASE("sums over the pixels of a face") {
             for (const Face& face : mesh.faces) {
                 const Corner corner[3] = {corner_of(mesh, face[0]), corner_of(mesh, face[1]),
                                           corner_of(mesh, face[2])};
-                FaceSums want{0, {}, {Vec3d::Zero(), Vec3d::Zero(), Vec3d::Zero()}};
-                HatSums hats[4];
+                double ee = 0, ww[3][3] = {}, hh[4] = {};
+                Vec3d we[3], he[4];
+                for (Vec3d& v : we) v.setZero();
+                for (Vec3d& v : he) v.setZero();
                 for_each_span(corner[0].position, corner[1].position, corner[2].position, 70, 90,
                               [&](int y, int begin, int end) {
                                   for (int x = begin; x < end; ++x) {
@@ -215,34 +217,35 @@ TEST_CASE("sums over the pixels of a face") {
                                                               corner[2].position);
                                           e += w[i] * corner[i].color.cast<double>();
                                       }
-                                      want.ee += e.squaredNorm();
+                                      ee += e.squaredNorm();
                                       for (int i = 0; i < 3; ++i) {
-                                          want.we[i] += w[i] * e;
-                                          for (int j = 0; j < 3; ++j) want.ww[i][j] += w[i] * w[j];
+                                          we[i] += w[i] * e;
+                                          for (int j = 0; j < 3; ++j) ww[i][j] += w[i] * w[j];
                                       }
                                       for (int i = -1; i < 3; ++i) {
                                           const double h = hat(w, i, i < 0 ? 0 : at[as_index(i)]);
-                                          hats[i + 1].hh += h * h;
-                                          hats[i + 1].he += h * e;
+                                          hh[i + 1] += h * h;
+                                          he[i + 1] += h * e;
                                       }
                                   }
                               });
                 const FaceSums got = face_sums(planes, corner[0], corner[1], corner[2]);
-                CHECK(squared_error(planes, corner[0], corner[1], corner[2]) == got.ee);
-                const double scale = 1 + std::sqrt(want.ee);
-                CHECK(got.ee == doctest::Approx(want.ee).epsilon(1e-5));
+                CHECK(static_cast<float>(squared_error(planes, corner[0], corner[1], corner[2])) == got.ee);
+                const double scale = 1 + std::sqrt(ee);
+                CHECK(got.ee == doctest::Approx(ee).epsilon(1e-5));
                 for (int i = 0; i < 3; ++i) {
-                    CHECK((got.we[i] - want.we[i]).norm() < 1e-3 * scale);
-                    for (int j = 0; j < 3; ++j) CHECK(std::abs(got.ww[i][j] - want.ww[i][j]) < 1e-3);
+                    CHECK((got.we[i].cast<double>() - we[i]).norm() < 1e-3 * scale);
+                    CHECK(std::abs(got.square[i] - ww[i][i]) < 1e-3);
+                    CHECK(std::abs(got.product[i] - ww[(i + 1) % 3][(i + 2) % 3]) < 1e-3);
                 }
                 const FaceHats found = face_hats(planes, corner[0], corner[1], corner[2], at);
                 for (std::size_t i = 0; i < 4; ++i) {
                     const HatSums& sums = i == 0 ? found.center : found.edge[i - 1];
-                    CHECK(std::abs(sums.hh - hats[i].hh) < 1e-3);
-                    CHECK((sums.he - hats[i].he).norm() < 1e-3 * scale);
+                    CHECK(std::abs(sums.hh - hh[i]) < 1e-3);
+                    CHECK((sums.he.cast<double>() - he[i]).norm() < 1e-3 * scale);
                 }
                 whole += got.ee;
-                expected_whole += want.ee;
+                expected_whole += ee;
             }
             CHECK(whole == doctest::Approx(expected_whole).epsilon(1e-6));
         }
@@ -279,7 +282,8 @@ TEST_CASE("sums of a hat say what a flip changes") {
     const double before = squared_error(planes, p, a, b) + squared_error(planes, q, b, a),
                  after = squared_error(planes, p, a, q) + squared_error(planes, q, b, p);
     CHECK(std::abs(after - before) > 1000);
-    CHECK(2 * change.dot(first.he + second.he) + (first.hh + second.hh) * change.squaredNorm() ==
+    const Vec3d he = (first.he + second.he).cast<double>();
+    CHECK(2 * change.dot(he) + (first.hh + second.hh) * change.squaredNorm() ==
           doctest::Approx(after - before).epsilon(1e-4));
 }
 
