@@ -2,6 +2,8 @@
 //
 // The drawings with one diagonal and with the other differ by a multiple of one hat, which is 1 where they
 // cross: so the error of both follows from the sums of that hat. They also say what a vertex there gains.
+#include <algorithm>
+
 #include "libcore/base/dot.h"
 #include "libcore/base/for_each_id.h"
 #include "libcore/refine/refiner.h"
@@ -83,39 +85,60 @@ bool Refiner::flip_seems_better(const std::vector<FaceTrial>& trials, Id f, std:
     return better(after, before);
 }
 
-bool Refiner::flip_if_better(Id f, std::size_t i, Id g) {
-    const Id p = mesh_.face(f)[i], a = mesh_.face(f)[(i + 1) % 3], b = mesh_.face(f)[(i + 2) % 3];
-    const Id q = mesh_.apex(g, f);
+bool Refiner::flip_is_better(const Edge& edge) const {
+    const auto [f, i] = edge;
+    const Face& face = mesh_.face(f);
+    const Id g = mesh_.across(f, i), q = mesh_.apex(g, f);
     Cost before, after = flip_shapes(f, i, g);
     if (!after.legal) return false;
     add_face(before, f);
     add_face(before, g);
-    after.error = face_error({p, a, q}) + face_error({q, b, p});
-    if (!better(after, before) || !mesh_.may_flip(f, i)) return false;
-    mesh_.flip(f, i);
-    for (const Id face : {f, g}) {
-        measure(face);
-        changed(face);
-    }
-    return true;
+    after.error = face_error({face[i], face[(i + 1) % 3], q}) + face_error({q, face[(i + 2) % 3], face[i]});
+    return better(after, before);
 }
 
-// The edges around v, opposite it and at it.
-std::int64_t Refiner::flip_around(Id v) {
-    OneRing ring;
-    if (!mesh_.ring(v, ring)) return 0;
-    std::int64_t flips = 0;
-    for (std::size_t k = 0; k < ring.faces; ++k) {
-        const Id f = ring.face[k];
-        const auto tried = [&](std::size_t turn) {
-            const std::size_t i = (corner_of(mesh_.face(f), v) + turn) % 3;
-            const Id g = mesh_.face(f)[(i + 3 - turn) % 3] == v ? mesh_.across(f, i) : kNone;
-            return g != kNone && flip_if_better(f, i, g);
-        };
-        flips += tried(0);
-        flips += tried(1);
+// One after the other, except where a face has flipped already. Returns both faces of each.
+std::vector<Id> Refiner::flip(const std::vector<Edge>& edges) {
+    TouchedFaces touched(mesh_.faces().size());
+    std::vector<Id> flipped;
+    for (const auto& [f, i] : edges) {
+        if (touched.has(f)) continue;
+        const Id g = mesh_.across(f, i);
+        if (touched.has(g) || !mesh_.may_flip(f, i)) continue;
+        mesh_.flip(f, i);
+        for (const Id face : {f, g}) {
+            touched.add(face);
+            changed(face);
+            flipped.push_back(face);
+        }
     }
-    return flips;
+    measure_changed();
+    return flipped;
+}
+
+std::vector<Id> Refiner::flip_near(std::vector<Id> faces) {
+    // What flips after four passes hardly matters.
+    constexpr int kPasses = 4;
+    std::vector<Id> all;
+    for (int pass = 0; pass < kPasses && !faces.empty(); ++pass) {
+        std::vector<Edge> edges;  // each once, in the face of the lower number
+        for (const Id f : faces)
+            for (std::size_t i = 0; i < 3; ++i) {
+                const Id g = mesh_.across(f, i);
+                if (g == kNone) continue;
+                edges.push_back(f < g ? Edge{f, i} : Edge{g, corner_of(mesh_.face(g), mesh_.apex(g, f))});
+            }
+        std::sort(edges.begin(), edges.end());
+        edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+        std::vector<std::uint8_t> worthwhile(edges.size());
+        for_each_id(edges.size(), [&](Id k) { worthwhile[k] = flip_is_better(edges[k]); });
+        std::vector<Edge> chosen;
+        for (std::size_t k = 0; k < edges.size(); ++k)
+            if (worthwhile[k]) chosen.push_back(edges[k]);
+        faces = flip(chosen);
+        all.insert(all.end(), faces.begin(), faces.end());
+    }
+    return all;
 }
 
 std::int64_t Refiner::flip_edges() {
@@ -123,8 +146,6 @@ std::int64_t Refiner::flip_edges() {
     return flip_edges(trials(), touched);
 }
 
-// All threads compute the effects of flips. They hold for pairs of faces that no earlier flip has changed, so
-// the outcome is that of one edge after the other.
 std::int64_t Refiner::flip_edges(const std::vector<FaceTrial>& trials, TouchedFaces& touched) {
     const std::size_t faces = mesh_.faces().size();
     std::vector<std::array<std::uint8_t, 3>> worthwhile(faces);
@@ -132,20 +153,15 @@ std::int64_t Refiner::flip_edges(const std::vector<FaceTrial>& trials, TouchedFa
         for (std::size_t i = 0; i < 3; ++i)
             worthwhile[f][i] = mesh_.live_face(f) && flip_seems_better(trials, f, i);
     });
-    std::int64_t flips = 0;
-    for (Id f = 0; f < faces; ++f) {
-        if (!mesh_.live_face(f)) continue;
-        for (std::size_t i = 0; i < 3; ++i) {
-            Id g = trials[f].across[i];
-            const bool is_new = touched.has(f) || touched.has(g);
-            if (is_new) g = mesh_.across(f, i);
-            if (g == kNone || f > g || !(worthwhile[f][i] || is_new) || !flip_if_better(f, i, g)) continue;
-            touched.add(f);
-            touched.add(g);
-            ++flips;
-        }
-    }
-    return flips;
+    std::vector<Edge> edges;
+    for (Id f = 0; f < faces; ++f)
+        for (std::size_t i = 0; i < 3; ++i)
+            if (worthwhile[f][i]) edges.push_back({f, i});
+    std::vector<Id> flipped = flip(edges);
+    const std::vector<Id> later = flip_near(flipped);
+    flipped.insert(flipped.end(), later.begin(), later.end());
+    for (const Id f : flipped) touched.add(f);
+    return static_cast<std::int64_t>(flipped.size() / 2);
 }
 
 }  // namespace imgmesh

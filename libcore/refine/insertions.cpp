@@ -112,7 +112,6 @@ Id Refiner::insert(const Insertion& insertion) {
     OneRing ring;
     mesh_.ring(v, ring);
     changed(ring);
-    for (std::size_t k = 0; k < ring.faces; ++k) measure(ring.face[k]);
     return v;
 }
 

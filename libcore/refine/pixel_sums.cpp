@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "libcore/base/dot.h"
+#include "libcore/base/parallel_vector.h"
 #include "libcore/base/simd.h"
 #include "libcore/refine/face_spans.h"
 
@@ -286,13 +287,17 @@ const bool kAvx2 = has_avx2();
 ImagePlanes::ImagePlanes(const FeatureImage& image, const Mask& mask)
     : width(image.width), height(image.height) {
     constexpr std::size_t kPadding = 8;
-    for (std::size_t k = 0; k < 3; ++k) {
-        channel[k].resize(image.pixel_count() + kPadding);
-        for (std::size_t i = 0; i < image.pixel_count(); ++i) channel[k][i] = image.pixel(i)[k];
-    }
-    if (mask.empty()) return;
-    inside.resize(image.pixel_count() + kPadding);
-    for (std::size_t i = 0; i < image.pixel_count(); ++i) inside[i] = mask.contains(i) ? 1.0f : 0.0f;
+    constexpr int kRows = 64;
+    const std::size_t pixels = image.pixel_count(), columns = static_cast<std::size_t>(width);
+    for (std::vector<float>& plane : channel) plane = parallel_vector<float>(pixels + kPadding);
+    if (!mask.empty()) inside = parallel_vector<float>(pixels + kPadding);
+    parallel_blocks(0, height, kRows, [&](int begin, int end) {
+        for (std::size_t i = static_cast<std::size_t>(begin) * columns;
+             i < static_cast<std::size_t>(end) * columns; ++i) {
+            for (std::size_t k = 0; k < 3; ++k) channel[k][i] = image.pixel(i)[k];
+            if (!mask.empty()) inside[i] = mask.contains(i) ? 1.0f : 0.0f;
+        }
+    });
 }
 
 void FaceSums::shift(std::size_t i, const Vec3d& change) {

@@ -6,6 +6,7 @@
 #include "libcore/base/dot.h"
 #include "libcore/base/for_each_id.h"
 #include "libcore/image/color.h"
+#include "libcore/mesh/adjacency.h"
 
 namespace imgmesh {
 
@@ -74,6 +75,15 @@ void Refiner::measure(Id f) {
         add_shape(cost, vertex_.position[face[0]], vertex_.position[face[1]], vertex_.position[face[2]]);
 }
 
+void Refiner::measure_changed() {
+    std::sort(unmeasured_.begin(), unmeasured_.end());
+    unmeasured_.erase(std::unique(unmeasured_.begin(), unmeasured_.end()), unmeasured_.end());
+    for_each_id(unmeasured_.size(), [&](Id k) {
+        if (mesh_.live_face(unmeasured_[k])) measure(unmeasured_[k]);
+    });
+    unmeasured_.clear();
+}
+
 void Refiner::add_face(Cost& cost, Id f) const {
     cost.error += sums_[f].ee;
     cost.shape += inverse_q_[f] - 1;
@@ -100,24 +110,14 @@ void Refiner::fit_colors() {
     constexpr int kPasses = 3;
     // A vertex that no pixel touches stays unchanged.
     constexpr double kPull = 1e-3;
-    // The corners around each vertex, 3 face + place, in the order of its ring: every pass needs them.
-    std::vector<Id> corners, first{0};
-    OneRing ring;
-    for (Id v = 0; v < mesh_.vertices(); ++v) {
-        const std::size_t faces = mesh_.ring(v, ring) ? ring.faces : 0;
-        for (std::size_t k = 0; k < faces; ++k) corners.push_back(3 * ring.face[k] + ring.corner[k]);
-        first.push_back(static_cast<Id>(corners.size()));
-    }
+    const VertexCorners corners = vertex_corners(mesh_.faces(), mesh_.vertices());
     const auto improve = [&](Id v) {
-        if (first[v] == first[v + 1]) return;
         double diagonal = kPull;
         Vec3d rhs = kPull * change[v];
-        for (Id k = first[v]; k < first[v + 1]; ++k) {
-            const Id f = corners[k] / 3;
-            const std::size_t i = corners[k] % 3;
-            const FaceSums& sums = sums_[f];
-            const Face& face = mesh_.face(f);
-            const std::size_t j = (i + 1) % 3, m = (i + 2) % 3;
+        for (const std::size_t corner : corners.of(v)) {
+            const FaceSums& sums = sums_[corner / 3];
+            const Face& face = mesh_.faces()[corner / 3];
+            const std::size_t i = corner % 3, j = (i + 1) % 3, m = (i + 2) % 3;
             diagonal += sums.square[i];
             rhs -= sums.we[i].cast<double>() + sums.product[m] * change[face[j]] +
                    sums.product[j] * change[face[m]];
@@ -138,6 +138,7 @@ void Refiner::changed(const OneRing& ring) {
     for (std::size_t k = 0; k < ring.faces; ++k) changed(ring.face[k]);
 }
 void Refiner::changed(Id f) {
+    unmeasured_.push_back(f);
     tiles_.reset();
     for (const Id v : mesh_.face(f))
         if (v < removal_.size()) removal_[v].estimated = removal_[v].found = false;

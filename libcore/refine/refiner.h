@@ -87,10 +87,12 @@ class Refiner {
     Cost cost_of(const OneRing& ring) const;
     FaceSums sums_of(const Face& face) const;
     void measure(Id f);  // its sums and its shape
+    void measure_changed();
     double face_error(const Face& face) const;
     const VertexTiles& tiles();
-    void changed(const OneRing& ring);  // forgets what was remembered of its vertices
+    // What was remembered of its vertices no longer holds. It is measured later, by all threads.
     void changed(Id f);
+    void changed(const OneRing& ring);
 
     // moves.cpp
     // Costs the ring with v at `position`, without and with its best colour. Returns false if that is not
@@ -107,9 +109,17 @@ class Refiner {
     // The shapes of the two faces with the other diagonal instead of the edge opposite corner i of f.
     Cost flip_shapes(Id f, std::size_t i, Id g) const;
     bool flip_seems_better(const std::vector<FaceTrial>& trials, Id f, std::size_t i) const;
-    bool flip_if_better(Id f, std::size_t i, Id g);
+    struct Edge {
+        Id face;
+        std::size_t corner;  // opposite the edge
+        auto operator<=>(const Edge&) const = default;
+    };
+    bool flip_is_better(const Edge& edge) const;
+    std::vector<Id> flip(const std::vector<Edge>& edges);
+    // Tries the edges of some faces, and those of the faces that change by it; returns both faces of each
+    // flip.
+    std::vector<Id> flip_near(std::vector<Id> faces);
     std::int64_t flip_edges(const std::vector<FaceTrial>& trials, TouchedFaces& touched);
-    std::int64_t flip_around(Id v);
 
     // insertions.cpp
     struct Insertion {
@@ -138,6 +148,9 @@ class Refiner {
     void remove(const Removal& removal);
 
     // relocate.cpp
+    // Moves vertices without a common face.
+    void move(const std::vector<Id>& vertices);
+    std::vector<Id> faces_around(const std::vector<Id>& vertices) const;
     void relocate(std::size_t most, const std::vector<Removal>& removals,
                   const std::vector<Insertion>& insertions, bool border, TouchedFaces& touched,
                   std::vector<Id>& fresh);
@@ -148,6 +161,7 @@ class Refiner {
     RefineVertices vertex_;
     std::vector<FaceSums> sums_;        // of each face
     std::vector<double> inverse_q_;     // of each face, 1/q
+    std::vector<Id> unmeasured_;        // perhaps removed, or several times the same
     std::optional<VertexTiles> tiles_;  // of the present faces
     // Of each vertex, whether nothing that it depends on has changed since then.
     struct Remembered {

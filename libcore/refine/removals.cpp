@@ -149,7 +149,6 @@ void Refiner::remove(const Removal& removal) {
     // A removed face had one neighbour at v. The ring of their common vertex now begins with that neighbour.
     for (std::size_t k = 0; k < ring.faces; ++k) {
         const Id f = ring.face[k];
-        if (mesh_.live_face(f)) measure(f);
         if (mesh_.live_face(f))
             mesh_.begin_ring(removal.into, f);
         else if (ring.vertex[k] == removal.into)
