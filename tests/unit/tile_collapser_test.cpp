@@ -51,7 +51,11 @@ CollapseStats collapse(Mesh& mesh, const std::vector<Id>& list, float threshold,
         const auto at = std::lower_bound(list.begin(), list.end(), v);
         return at != list.end() && *at == v ? static_cast<TileId>(at - list.begin()) : kNoTileId;
     };
-    return TileCollapser<Quadric<3>>(rules).run(mesh, list, number, threshold, may_go);
+    TileCollapser<Quadric<3>> collapser(rules);
+    collapser.load(mesh, list, number);
+    const CollapseStats stats = collapser.run(threshold, may_go);
+    collapser.store(mesh, list);
+    return stats;
 }
 
 std::vector<Id> vertices_where(const Mesh& mesh, float end_x) {
@@ -67,7 +71,7 @@ bool same_ring(const Ring& a, const Ring& b) {
 
 }  // namespace
 
-TEST_CASE("numbers of 16 bits: found, and the least") {
+TEST_CASE("numbers of 16 bits: each operation against a loop") {
     std::mt19937 random(7);
     for (int round = 0; round < 200; ++round) {
         std::uint16_t values[16];
@@ -78,6 +82,18 @@ TEST_CASE("numbers of 16 bits: found, and the least") {
         for (unsigned k = 0; k < 16; ++k)
             CHECK((match16(values, wanted) >> k & 1) == static_cast<unsigned>(values[k] == wanted));
         CHECK(match16(values, 0xffff) == 0);
+        const std::uint16_t other = values[random() % 16];
+        CHECK(match16(values, wanted, other) == (match16(values, wanted) | match16(values, other)));
+        const int at = static_cast<int>(random() % 16);
+        std::uint16_t expected[16], result[16];
+        std::copy_n(values, 16, expected);
+        std::copy_n(values, 16, result);
+        std::copy(values + at + 1, values + 16, expected + at);
+        remove16(result, at);
+        CHECK(std::equal(expected, expected + 16, result));
+        std::fill(expected + at, expected + 16, wanted);
+        fill16_from(result, at, wanted);
+        CHECK(std::equal(expected, expected + 16, result));
     }
 }
 
@@ -91,6 +107,25 @@ TEST_CASE("short costs: in order, and never above the cost") {
     }
     CHECK(short_cost(kNever) == kShortNever);
     CHECK(least_cost(kShortNever) == kNever);
+}
+
+TEST_CASE("merge_colors: as merged() but for rounding") {
+    std::mt19937 random(5);
+    const Mesh mesh = dense(Kind::kNoise);
+    for (int round = 0; round < 500; ++round) {
+        const auto any = [&] { return mesh.quadrics[random() % mesh.quadrics.size()]; };
+        const Quadric<3> i = merged(any(), any()), j = any(), expected = merged(i, j);
+        Quadric<3> sum;
+        merge_colors(i, j, sum);
+        const auto close = [](float a, float b) { return std::abs(a - b) <= 1e-3f + 1e-4f * std::abs(b); };
+        CHECK(sum.weight == expected.weight);
+        CHECK(close(sum.error, expected.error));
+        for (const Vec2f& p : {Vec2f(3, 4), Vec2f(30, 20)}) {
+            CHECK(close(sum.rise(p.x(), p.y()), expected.rise(p.x(), p.y())));
+            for (int c = 0; c < 3; ++c)
+                CHECK(close(sum.feature(c, p.x(), p.y()), expected.feature(c, p.x(), p.y())));
+        }
+    }
 }
 
 // Random merges until none is possible; before each, all edges of the mesh.

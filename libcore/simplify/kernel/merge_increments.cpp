@@ -10,9 +10,7 @@
 namespace imgmesh {
 namespace {
 
-template <class Number>
-IMGMESH_INLINE void increments(const ColorQuadric* quadrics, Number i, Number* others, int count,
-                               float* out) {
+IMGMESH_INLINE void increments(const ColorQuadric* quadrics, Id i, Id* others, int count, float* out) {
     const ColorQuadric8 own = in_every_lane(quadrics[i]);
     // Lanes without a vertex get i itself.
     std::fill(others + count, others + (count + 7) / 8 * 8, i);
@@ -23,8 +21,7 @@ IMGMESH_INLINE void increments(const ColorQuadric* quadrics, Number i, Number* o
 }
 
 #if defined(__x86_64__)
-template <class Number>
-__attribute__((target("avx2"))) void increments_avx2(const ColorQuadric* quadrics, Number i, Number* others,
+__attribute__((target("avx2"))) void increments_avx2(const ColorQuadric* quadrics, Id i, Id* others,
                                                      int count, float* out) {
     increments(quadrics, i, others, count, out);
 }
@@ -34,14 +31,6 @@ const bool kAvx2 = has_avx2();
 }  // namespace
 
 void merge_increments(const ColorQuadric* quadrics, Id i, Id* others, int count, float* out) {
-#if defined(__x86_64__)
-    if (kAvx2) return increments_avx2(quadrics, i, others, count, out);
-#endif
-    increments(quadrics, i, others, count, out);
-}
-
-void merge_increments(const ColorQuadric* quadrics, std::uint16_t i, std::uint16_t* others, int count,
-                      float* out) {
 #if defined(__x86_64__)
     if (kAvx2) return increments_avx2(quadrics, i, others, count, out);
 #endif

@@ -15,7 +15,5 @@ inline void merge_increments(const Quadric<C>* quadrics, Number i, Number* other
 }
 /// The same bits on any processor.
 void merge_increments(const Quadric<3>* quadrics, Id i, Id* others, int count, float* out);
-void merge_increments(const Quadric<3>* quadrics, std::uint16_t i, std::uint16_t* others, int count,
-                      float* out);
 
 }  // namespace imgmesh

@@ -77,7 +77,7 @@ struct TileLists {
     /// Returns whether every tile's vertices can be numbered by a TileId.
     bool fit() const {
         for (std::size_t t = 0; t + 1 < first.size(); ++t)
-            if (first[t + 1] - first[t] >= kElsewhere) return false;
+            if (first[t + 1] - first[t] >= kNotInTile) return false;
         return true;
     }
 };
@@ -103,8 +103,9 @@ CollapseStats round_in_tiles(QuadricMesh<Q>& mesh, const SimplifyRules& rules, R
             for (std::size_t n = 0; n < list.size(); ++n) number[list[n]] = static_cast<TileId>(n);
             const auto number_here = [&](Id v) { return lists.tile[v] == t ? number[v] : kNoTileId; };
             const auto may_go = static_cast<std::int64_t>(share_that_goes * double(list.size()));
-            stats[t] =
-                collapser.run(mesh, list, number_here, threshold, {.vertices = may_go, .faces = 2 * may_go});
+            collapser.load(mesh, list, number_here);
+            stats[t] = collapser.run(threshold, {.vertices = may_go, .faces = 2 * may_go});
+            collapser.store(mesh, list);
         }
     });
     CollapseStats sum;

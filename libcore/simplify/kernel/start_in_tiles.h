@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <deque>
 #include <limits>
 #include <numeric>
 #include <thread>
@@ -59,32 +60,52 @@ namespace start_tiles {
 // Among the neighbours in what survivors() returns: a neighbour in another tile, by its pixel.
 inline constexpr Id kElsewhere = 1u << 31;
 
-// Collapses the tile's edges below `threshold`. If requested, quadrics are rebuilt whenever its vertices have
-// halved. Neighbours in other tiles are locked too, so their state is known then.
+// A start tile and what collapses it: from load() to store() its vertices are there.
 template <class Q>
-CollapseStats collapse_tile(TileCollapser<Q>& collapser, const SimplifyParams& params, TileMesh<Q>& tile,
-                            float threshold, std::int64_t may_go) {
-    static_assert(4 * kStartTile * kStartTile < kElsewhere);  // a pixel has four vertices at most
-    std::vector<Id> all(tile.own);
-    std::iota(all.begin(), all.end(), Id{0});
-    const auto number = [&](Id v) { return v < tile.own ? static_cast<TileId>(v) : kNoTileId; };
-    CollapseStats sum;
-    for (;;) {
-        std::int64_t part_may = may_go - sum.vertices;
-        if (params.rebuild_quadrics) part_may = std::min(part_may, tile.live - tile.halved);
-        const CollapseStats part = collapser.run(tile.mesh, all, number, threshold,
-                                                 {.vertices = part_may, .faces = kAllMayGo.faces});
-        // Edges put off while quadrics were old may be cheaper now.
-        sum.postponed = kNever;
-        sum.add(part);
-        tile.live -= part.vertices;
-        const bool halved = params.rebuild_quadrics && part.vertices > 0 && tile.live <= tile.halved;
-        if (!halved || sum.vertices >= may_go) return sum;
-        const std::vector<Q> rebuilt = rebuilt_quadrics(tile.mesh.rings, tile.mesh.quadrics, params);
-        std::copy_n(rebuilt.begin(), tile.own, tile.mesh.quadrics.begin());  // ghosts stay as they are
-        tile.halved = tile.live / 2;
+struct StartCollapse {
+    static_assert(4 * kStartTile * kStartTile < kNotInTile);  // a pixel has four vertices at most
+
+    TileMesh<Q> tile;
+    TileCollapser<Q> collapser;
+    std::vector<Id> all;  // of the tile's own vertices
+
+    explicit StartCollapse(const SimplifyRules& rules) : collapser(rules) {}
+
+    void fill(const GridMesh& grid, const SimplifyParams& params, const PixelRect& rect) {
+        fill_tile(grid, params, rect, tile);
+        all.resize(tile.own);
+        std::iota(all.begin(), all.end(), Id{0});
+        load();
     }
-}
+    void load() {
+        collapser.load(tile.mesh, all,
+                       [&](Id v) { return v < tile.own ? static_cast<TileId>(v) : kNoTileId; });
+    }
+    void store() { collapser.store(tile.mesh, all); }
+
+    // Collapses the tile's edges below `threshold`. If requested, quadrics are rebuilt whenever its vertices
+    // have halved. Neighbours in other tiles are locked too, so their state is known then.
+    CollapseStats run(const SimplifyParams& params, float threshold, std::int64_t may_go) {
+        CollapseStats sum;
+        for (;;) {
+            std::int64_t part_may = may_go - sum.vertices;
+            if (params.rebuild_quadrics) part_may = std::min(part_may, tile.live - tile.halved);
+            const CollapseStats part =
+                collapser.run(threshold, {.vertices = part_may, .faces = kAllMayGo.faces});
+            // Edges put off while quadrics were old may be cheaper now.
+            sum.postponed = kNever;
+            sum.add(part);
+            tile.live -= part.vertices;
+            const bool halved = params.rebuild_quadrics && part.vertices > 0 && tile.live <= tile.halved;
+            if (!halved || sum.vertices >= may_go) return sum;
+            store();
+            const std::vector<Q> rebuilt = rebuilt_quadrics(tile.mesh.rings, tile.mesh.quadrics, params);
+            std::copy_n(rebuilt.begin(), tile.own, tile.mesh.quadrics.begin());  // ghosts stay as they are
+            tile.halved = tile.live / 2;
+            load();
+        }
+    }
+};
 
 // Returns the remaining vertices, numbered from 0. Writes these numbers to number[vertex].
 template <class Q>
@@ -157,25 +178,23 @@ float start_threshold(const GridMesh& grid, const SimplifyRules& rules, double s
     using namespace start_tiles;
     const StartTiles tiles(grid);
     const std::vector<int> some = some_tiles(tiles);
-    std::vector<TileMesh<Q>> meshes(some.size());
+    std::deque<StartCollapse<Q>> parts;
+    for (std::size_t n = 0; n < some.size(); ++n) parts.emplace_back(rules);
     std::vector<float> medians(some.size());
     const auto each = [&](const auto& body) {
         parallel_blocks(0, static_cast<int>(some.size()), 1,
                         [&](int n, int) { body(static_cast<std::size_t>(n)); });
     };
     each([&](std::size_t n) {
-        fill_tile(grid, rules.params, tiles.rect(some[n]), meshes[n]);
-        medians[n] = median_cost(meshes[n].mesh, rules);
+        parts[n].fill(grid, rules.params, tiles.rect(some[n]));
+        medians[n] = median_cost(parts[n].tile.mesh, rules);
     });
     std::int64_t all = 0, removed = 0;
-    for (const TileMesh<Q>& tile : meshes) all += tile.live - tile.boundary;
+    for (const StartCollapse<Q>& part : parts) all += part.tile.live - part.tile.boundary;
     float threshold = std::max(median(medians), std::numeric_limits<float>::min());
     for (float next = threshold;; next *= kTileWindow) {
         std::vector<CollapseStats> stats(some.size());
-        each([&](std::size_t n) {
-            TileCollapser<Q> collapser(rules);
-            stats[n] = collapse_tile(collapser, rules.params, meshes[n], next, kAllMayGo.vertices);
-        });
+        each([&](std::size_t n) { stats[n] = parts[n].run(rules.params, next, kAllMayGo.vertices); });
         CollapseStats sum;
         for (const CollapseStats& part : stats) sum.add(part);
         removed += sum.vertices;
@@ -207,14 +226,15 @@ CollapseStats start_in_tiles(const GridMesh& grid, const SimplifyRules& rules, f
         std::vector<QuadricMesh<Q>> parts(static_cast<std::size_t>(end - begin));
         std::vector<CollapseStats> stats(parts.size());
         parallel_blocks(begin, end, kStartTilesPerBlock, [&](int from, int to) {
-            TileMesh<Q> tile;
-            TileCollapser<Q> collapser(rules);
+            StartCollapse<Q> part(rules);
+            const TileMesh<Q>& tile = part.tile;
             for (int t = from; t < to; ++t) {
                 const auto n = static_cast<std::size_t>(t - begin);
-                fill_tile(grid, rules.params, tiles.rect(t), tile);
+                part.fill(grid, rules.params, tiles.rect(t));
                 const auto may_go = static_cast<std::int64_t>(share_that_goes *
                                                               static_cast<double>(tile.live - tile.boundary));
-                stats[n] = collapse_tile(collapser, rules.params, tile, threshold, may_go);
+                stats[n] = part.run(rules.params, threshold, may_go);
+                part.store();
                 parts[n] = survivors(tile, number);
                 removed += stats[n].vertices;
             }

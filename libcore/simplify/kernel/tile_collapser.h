@@ -10,14 +10,18 @@
 #pragma once
 
 #include <algorithm>
+#include <bit>
 #include <cassert>
+#include <cstring>
 #include <span>
+#include <type_traits>
 #include <vector>
 
 #include "libcore/simplify/kernel/collapse_stats.h"
 #include "libcore/simplify/kernel/edge_costs.h"
 #include "libcore/simplify/kernel/quadric_mesh.h"
 #include "libcore/simplify/kernel/tile_rings.h"
+#include "libcore/simplify/quadrics/quadric_lanes.h"
 
 namespace imgmesh {
 
@@ -27,50 +31,66 @@ class TileCollapser {
   public:
     explicit TileCollapser(const SimplifyRules& rules) : rules_(rules), costs_(vertices_, quadrics_, rules) {}
 
-    /// Collapses the edges between the vertices of `list` that cost less than `threshold` and may collapse,
-    /// until there is none left or as many vertices or faces are removed as may go. Vertices stay as they are
-    /// if they have a neighbour elsewhere, or lie on the boundary of a masked image.
+    /// Copies the vertices of `list`. They must stay as they are until store(), while the mesh may change
+    /// elsewhere. Vertices with a neighbour elsewhere are locked, and so are those on the boundary of a
+    /// masked image: they and their edges will stay.
     ///
-    /// list        fewer than kElsewhere vertices; the mesh may change elsewhere meanwhile
+    /// list        fewer than kNotInTile vertices
     /// number(v)   the place of vertex v in the list, kNoTileId where it is not in it
     template <class Number>
-    CollapseStats run(QuadricMesh<Q>& mesh, std::span<const Id> list, const Number& number, float threshold,
-                      const CollapseStats& may_go) {
-        assert(list.size() < kElsewhere);
+    void load(const QuadricMesh<Q>& mesh, std::span<const Id> list, const Number& number) {
+        assert(list.size() < kNotInTile);
+        copy(mesh, list, number);
+        evaluate_all();
+    }
+
+    /// Collapses edges that cost less than `threshold` and may collapse, until there is none left or as many
+    /// vertices or faces are removed as may go.
+    CollapseStats run(float threshold, const CollapseStats& may_go) {
         stats_ = {};
         may_go_ = may_go;
-        load(mesh, list, number);
-        evaluate_all();
         threshold_ = short_cost(threshold);
-        for (std::size_t v = 0; v < vertices_.size() && !stats_.reached(may_go_); ++v) {
-            merged_.assign(1, static_cast<TileId>(v));
-            while (!merged_.empty()) {
-                const TileId start = merged_.back();
-                merged_.pop_back();
-                follow(start);
-            }
-        }
+        collapse_all();
         stats_.postponed = least_left();
-        store(mesh, list);
         return stats_;
+    }
+
+    /// Writes the vertices back to where they come from.
+    void store(QuadricMesh<Q>& mesh, std::span<const Id> list) const {
+        for (std::size_t v = 0; v < list.size(); ++v) {
+            Ring& to = mesh.rings[list[v]];
+            const TileVertex& vertex = vertices_[v];
+            if (vertex.live()) {
+                const Ring before = to;
+                to.x = vertex.x;
+                to.y = vertex.y;
+                to.fixed = vertex.fixed;
+                for (int k = 0; k < vertex.valence; ++k) {
+                    const TileId n = rings_[v].neighbor[k];
+                    to.neighbor[k] = n < kNotInTile ? list[n] : before.neighbor[n - kNotInTile];
+                }
+                mesh.quadrics[list[v]] = quadrics_[v];
+            }
+            to.valence = vertex.valence;
+        }
     }
 
   private:
     template <class Number>
-    void load(const QuadricMesh<Q>& mesh, std::span<const Id> list, const Number& number) {
+    void copy(const QuadricMesh<Q>& mesh, std::span<const Id> list, const Number& number) {
         rings_.resize(list.size());
         vertices_.resize(list.size());
         quadrics_.resize(list.size());
         for (std::size_t v = 0; v < list.size(); ++v) {
             const Ring& from = mesh.rings[list[v]];
             TileRing& ring = rings_[v];
-            std::fill_n(ring.neighbor, TileRing::kRoom, kNoTileId);
-            std::fill_n(ring.cost, TileRing::kRoom, kNoEdge);
+            fill16_from(ring.neighbor, 0, kNoTileId);
+            fill16_from(ring.cost, 0, kNoEdge);
             bool locked = rules_.boundary != nullptr && from.border();
             for (int k = 0; k < from.valence; ++k) {
                 const TileId n = number(from.neighbor[k]);
                 locked |= n == kNoTileId;
-                ring.neighbor[k] = n == kNoTileId ? static_cast<TileId>(kElsewhere + k) : n;
+                ring.neighbor[k] = n == kNoTileId ? static_cast<TileId>(kNotInTile + k) : n;
                 ring.cost[k] = kShortNever;
             }
             vertices_[v] = {from.x, from.y, from.valence, from.fixed, locked || from.locked};
@@ -78,44 +98,85 @@ class TileCollapser {
         }
     }
 
-    void store(QuadricMesh<Q>& mesh, std::span<const Id> list) const {
-        for (std::size_t v = 0; v < list.size(); ++v) {
-            Ring& to = mesh.rings[list[v]];
-            const Ring before = to;
-            const TileVertex& vertex = vertices_[v];
-            to.valence = vertex.valence;
-            if (!vertex.live()) continue;
-            to.x = vertex.x;
-            to.y = vertex.y;
-            to.fixed = vertex.fixed;
-            for (int k = 0; k < vertex.valence; ++k) {
-                const TileId n = rings_[v].neighbor[k];
-                to.neighbor[k] = n < kElsewhere ? list[n] : before.neighbor[n - kElsewhere];
+    // Steps in two forms: with everything that they call built for AVX2, and for any processor.
+    void evaluate_all() {
+#if defined(__x86_64__)
+        if (kColor && has_avx2()) return evaluate_avx2();
+#endif
+        evaluate_here();
+    }
+    void collapse_all() {
+#if defined(__x86_64__)
+        if (kColor && has_avx2()) return collapse_avx2();
+#endif
+        collapse_here();
+    }
+#if defined(__x86_64__)
+    __attribute__((target("avx2"), flatten)) void evaluate_avx2() {
+        evaluate_here();
+    }
+    __attribute__((target("avx2"), flatten)) void collapse_avx2() {
+        collapse_here();
+    }
+#endif
+    IMGMESH_INLINE void evaluate_here() {
+        for (TileId v = 0; v < vertices_.size(); ++v)
+            if (vertices_[v].live() && !vertices_[v].locked) evaluate_later_edges(v);
+    }
+    IMGMESH_INLINE void collapse_here() {
+        chain_.resize(kFirstChain);
+        for (TileId v = 0; v < vertices_.size() && !stats_.reached(may_go_); ++v) {
+            follow(v);
+            while (!merged_.empty()) {
+                const TileId start = merged_.back();
+                merged_.pop_back();
+                follow(start);
             }
-            mesh.quadrics[list[v]] = quadrics_[v];
         }
     }
 
-    void evaluate_all() {
-        for (TileId v = 0; v < vertices_.size(); ++v) {
-            const TileVertex& vertex = vertices_[v];
-            if (!vertex.live() || vertex.locked) continue;
-            TileId others[kNeighborRoom];
-            int place[kNeighborRoom], count = 0;
-            for (int k = 0; k < vertex.valence; ++k) {
-                const TileId n = rings_[v].neighbor[k];
-                others[count] = n;
-                place[count] = k;
-                count += n > v && !vertices_[n].locked;
+    // The edges of a vertex to those of higher numbers.
+    IMGMESH_INLINE void evaluate_later_edges(TileId v) {
+        TileId others[kNeighborRoom];
+        int place[kNeighborRoom], count = 0;
+        for (int k = 0; k < vertices_[v].valence; ++k) {
+            const TileId n = rings_[v].neighbor[k];
+            others[count] = n;
+            place[count] = k;
+            count += n > v && !vertices_[n].locked;
+        }
+        ShortCost costs[kNeighborRoom];
+        evaluate(v, others, count, costs);
+        for (int k = 0; k < count; ++k) {
+            rings_[v].cost[place[k]] = costs[k];
+            rings_[others[k]].cost[rings_[others[k]].find(v)] = costs[k];
+        }
+    }
+
+    // The costs of edges of vertex i. Both arrays have kNeighborRoom places; those behind `count` are
+    // overwritten.
+    IMGMESH_INLINE void evaluate(TileId i, TileId* others, int count, ShortCost* costs) const {
+        if constexpr (kColor) {
+            fill16_from(others, count, i);
+            const ColorQuadric8 own = in_every_lane(quadrics_[i]);
+            for (int k = 0; k < count; k += 8) {
+                const Float8 increment =
+                    merged_minimum(own, side_by_side(quadrics_.data(), others + k)).increment;
+                const Float8 added = increment > 0 ? increment : Float8{};
+                const Int8 upper = std::bit_cast<Int8>(added) >> 16;
+                const auto shorts = __builtin_convertvector(upper, Short8);
+                std::memcpy(costs + k, &shorts, sizeof shorts);
             }
-            float increments[kNeighborRoom];
-            costs_.increments(v, others, count, increments);
-            for (int k = 0; k < count; ++k) {
-                const ShortCost cost = short_cost(costs_.cost(v, others[k], increments[k]));
-                rings_[v].cost[place[k]] = cost;
-                rings_[others[k]].cost[rings_[others[k]].find(v)] = cost;
+            if (!rules_.params.total_priority && !vertices_[i].border()) {
+                for (int k = 0; k < count; ++k)
+                    if (vertices_[others[k]].border()) costs[k] = cost_beside(i, others[k]);
+                return;
             }
         }
+        for (int k = 0; k < count; ++k) costs[k] = cost_beside(i, others[k]);
+    }
+    [[gnu::noinline]] ShortCost cost_beside(TileId i, TileId j) const {
+        return short_cost(costs_.cost(i, j));
     }
 
     // The least of the costs that edges are left with.
@@ -130,37 +191,49 @@ class TileCollapser {
     // the vertex before; merges the two and goes on from the one before them. Ends where the first vertex has
     // no edge below the threshold. Costs fall along the chain, and in a tie the vertex before comes first, so
     // it never goes round.
-    void follow(TileId start) {
-        chain_.assign(1, start);
-        while (!chain_.empty() && !stats_.reached(may_go_)) {
-            const TileId v = chain_.back();
+    IMGMESH_INLINE void follow(TileId start) {
+        chain_[0] = start;
+        std::size_t length = 1;
+        while (length > 0 && !stats_.reached(may_go_)) {
+            const TileId v = chain_[length - 1];
             const TileRing& ring = rings_[v];
             const ShortCost cost = least16(ring.cost);
             if (cost >= threshold_ || !vertices_[v].live()) {
-                chain_.pop_back();
+                --length;
                 continue;
             }
             const unsigned cheapest = match16(ring.cost, cost);
-            const TileId before = chain_.size() > 1 ? chain_[chain_.size() - 2] : kNoTileId;
+            const TileId before = length > 1 ? chain_[length - 2] : kNoTileId;
             if ((cheapest & match16(ring.neighbor, before)) == 0) {
-                chain_.push_back(ring.neighbor[std::countr_zero(cheapest)]);
+                if (length == chain_.size()) chain_.resize(2 * length);
+                chain_[length++] = ring.neighbor[std::countr_zero(cheapest)];
                 continue;
             }
-            chain_.pop_back();
+            --length;
             if (!try_collapse(before, v, cost)) continue;
-            chain_.pop_back();
+            --length;
             merged_.push_back(before);
         }
     }
 
     // Merges j into i. Where that is not allowed the edge becomes more expensive, and it returns false.
-    bool try_collapse(TileId i, TileId j, ShortCost cost) {
+    IMGMESH_INLINE bool try_collapse(TileId i, TileId j, ShortCost cost) {
         MergedTileRing ring;
         if (!merge_rings(rings_, vertices_, i, j, ring)) return set_cost(i, j, kShortNever);
-        const Q sum = merged(quadrics_[i], quadrics_[j]);
-        Placement place = costs_.best_place(i, j, sum);
-        if (!costs_.allowed(i, j, ring, place)) {
-            place = costs_.fallback(i, j, ring, sum);
+        Q sum;
+        Placement place;
+        bool allowed;
+        const bool inside = kColor && !vertices_[i].border() && !vertices_[j].border();
+        if (inside) {
+            if constexpr (kColor) merge_colors(quadrics_[i], quadrics_[j], sum);
+            place.x = snapped(sum.px);
+            place.y = snapped(sum.py);
+            allowed = shape_allowed(ring, place);
+        } else {
+            allowed = place_beside(i, j, ring, sum, place);
+        }
+        if (!allowed) {
+            place = fallback(i, j, ring, sum);
             if (short_cost(place.cost) > cost) return set_cost(i, j, short_cost(place.cost));
         }
         const float total = sum.at(place.x, place.y);
@@ -179,28 +252,54 @@ class TileCollapser {
         return true;
     }
 
-    bool set_cost(TileId i, TileId j, ShortCost cost) {
+    // EdgeCosts::allowed() away from the border.
+    IMGMESH_INLINE bool shape_allowed(const MergedTileRing& ring, const Placement& place) const {
+        ShapeLimits::Corners corners;
+        const int count = ring.valence;
+        for (int k = 0; k < count; ++k) {
+            const TileVertex& corner = vertices_[ring.neighbor[k]];
+            corners.xy[2 * k] = corner.x;
+            corners.xy[2 * k + 1] = corner.y;
+        }
+        corners.xy[2 * count] = corners.xy[0];
+        corners.xy[2 * count + 1] = corners.xy[1];
+        return rules_.limits.allow_here(corners, count, place.x, place.y);
+    }
+    // Where one end may be on the border. Returns whether the place is allowed.
+    [[gnu::noinline]] bool place_beside(TileId i, TileId j, const MergedTileRing& ring, Q& sum,
+                                        Placement& place) const {
+        sum = merged(quadrics_[i], quadrics_[j]);
+        place = costs_.best_place(i, j, sum);
+        return costs_.allowed(i, j, ring, place);
+    }
+    [[gnu::noinline]] Placement fallback(TileId i, TileId j, const MergedTileRing& ring, const Q& sum) const {
+        return costs_.fallback(i, j, ring, sum);
+    }
+
+    IMGMESH_INLINE bool set_cost(TileId i, TileId j, ShortCost cost) {
         rings_[i].cost[rings_[i].find(j)] = cost;
         rings_[j].cost[rings_[j].find(i)] = cost;
         return false;
     }
 
     // Gives i its new ring, names it i in the rings around, and evaluates its edges.
-    void merge_into_rings(TileId i, TileId j, const MergedTileRing& ring) {
+    IMGMESH_INLINE void merge_into_rings(TileId i, TileId j, const MergedTileRing& ring) {
         TileRing& own = rings_[i];
-        std::copy_n(ring.neighbor, TileRing::kRoom, own.neighbor);
-        std::fill_n(own.cost, TileRing::kRoom, kNoEdge);
+        store16(own.neighbor, load16(ring.neighbor));
         TileId others[kNeighborRoom];
-        std::copy_n(ring.neighbor, kNeighborRoom, others);
-        float increments[kNeighborRoom];
-        costs_.increments(i, others, ring.valence, increments);
+        store16(others, load16(ring.neighbor));
+        evaluate(i, others, ring.valence, own.cost);
+        fill16_from(own.cost, ring.valence, kNoEdge);
         for (int k = 0; k < ring.valence; ++k) {
-            const TileId n = ring.neighbor[k];
+            const TileId n = others[k];
             TileVertex& vertex = vertices_[n];
-            own.cost[k] = vertex.locked ? kShortNever : short_cost(costs_.cost(i, n, increments[k]));
-            vertex.valence -= rings_[n].merge(i, j, own.cost[k], vertex.valence);
+            if (vertex.locked) own.cost[k] = kShortNever;
+            vertex.valence = static_cast<std::uint8_t>(vertex.valence - rings_[n].merge(i, j, own.cost[k]));
         }
     }
+
+    static constexpr bool kColor = std::is_same_v<Q, ColorQuadric>;
+    static constexpr std::size_t kFirstChain = 64;
 
     const SimplifyRules& rules_;
     std::vector<TileRing> rings_;

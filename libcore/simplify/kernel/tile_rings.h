@@ -2,9 +2,9 @@
 // merge with it.
 #pragma once
 
+#include <algorithm>
 #include <bit>
 #include <cstdint>
-#include <cstring>
 #include <vector>
 
 #include "libcore/mesh/ring_mesh.h"
@@ -12,11 +12,11 @@
 
 namespace imgmesh {
 
-/// The number of a vertex in its tile, below kElsewhere.
+/// The number of a vertex in its tile, below kNotInTile.
 using TileId = std::uint16_t;
-/// kElsewhere + k: not in the tile; the k-th neighbour of the ring that the tile's was made from. Only the
+/// kNotInTile + k: not in the tile; the k-th neighbour of the ring that the tile's was made from. Only the
 /// rings of locked vertices have such.
-inline constexpr TileId kElsewhere = 0xff00;
+inline constexpr TileId kNotInTile = 0xff00;
 inline constexpr TileId kNoTileId = 0xffff;
 
 /// The upper half of a float >= 0, which keeps the order: 7 bits of the mantissa.
@@ -40,29 +40,25 @@ struct alignas(64) TileRing {
     ShortCost cost[kRoom];   ///< of the edge to it; kNoEdge behind the last
 
     /// Returns the place of a neighbour.
-    int find(TileId n) const { return std::countr_zero(match16(neighbor, n)); }
+    IMGMESH_INLINE int find(TileId n) const { return std::countr_zero(match16(neighbor, n)); }
     /// Names i what was i or j, at the cost of the edge to i. Returns whether both were there: then the ring
     /// has a neighbour less.
-    bool merge(TileId i, TileId j, ShortCost edge, int valence) {
-        const unsigned at = match16(neighbor, i) | match16(neighbor, j);
+    IMGMESH_INLINE bool merge(TileId i, TileId j, ShortCost edge) {
+        const unsigned at = match16(neighbor, i, j);
         const int first = std::countr_zero(at);
         neighbor[first] = i;
         cost[first] = edge;
         const unsigned rest = at & (at - 1);
         if (rest == 0) return false;
-        for (int k = std::countr_zero(rest); k + 1 < valence; ++k) {
-            neighbor[k] = neighbor[k + 1];
-            cost[k] = cost[k + 1];
-        }
-        neighbor[valence - 1] = kNoTileId;
-        cost[valence - 1] = kNoEdge;
+        remove16(neighbor, std::countr_zero(rest));
+        remove16(cost, std::countr_zero(rest));
         return true;
     }
 };
 static_assert(TileRing::kRoom > kMaxValence && sizeof(TileRing) == 64);
 
 /// What else a vertex has; members as in Ring.
-struct TileVertex {
+struct alignas(16) TileVertex {
     float x, y;
     std::uint8_t valence, fixed;
     bool locked;  ///< must stay unchanged, with its edges: a neighbour is elsewhere
@@ -73,7 +69,7 @@ struct TileVertex {
 
 /// MergedRing in a tile; kNoTileId behind the last.
 struct MergedTileRing {
-    TileId neighbor[3 * TileRing::kRoom];
+    TileId neighbor[2 * TileRing::kRoom];
     int valence;
     int faces_removed;
 };
@@ -87,17 +83,16 @@ struct End {
 };
 
 // Writes the neighbours of a vertex inside the mesh, beginning behind the other end.
-inline void write_cycle(const End& end, int behind, TileId* out) {
-    constexpr std::size_t kBytes = sizeof(TileRing::neighbor);
+IMGMESH_INLINE void write_cycle(const End& end, int behind, TileId* out) {
     // Written twice, one behind the other, so that it can be read from any place on.
     TileId twice[2 * TileRing::kRoom + 2];
-    std::memcpy(twice, end.ring, kBytes);
-    std::memcpy(twice + end.valence, end.ring, kBytes);
-    std::memcpy(out, twice + end.at + behind, kBytes);
+    store16(twice, load16(end.ring));
+    store16(twice + end.valence, load16(end.ring));
+    store16(out, load16(twice + end.at + behind));
 }
 
 // Returns false where the edge does not lie along the border.
-inline bool merge_along_border(const End& a, const End& b, TileId* out) {
+[[gnu::noinline]] inline bool merge_along_border(const End& a, const End& b, TileId* out) {
     if (a.at == a.valence - 1 && b.at == 0) {
         out = std::copy(a.ring, a.ring + a.valence - 1, out);
         std::copy(b.ring + 2, b.ring + b.valence, out);
@@ -111,7 +106,7 @@ inline bool merge_along_border(const End& a, const End& b, TileId* out) {
 }
 
 // `outer` is on the border, `inner` is not.
-inline void merge_to_border(const End& outer, const End& inner, TileId* out) {
+[[gnu::noinline]] inline void merge_to_border(const End& outer, const End& inner, TileId* out) {
     out = std::copy(outer.ring, outer.ring + outer.at, out);
     for (int k = 2; k < inner.valence - 1; ++k) *out++ = inner.ring[(inner.at + k) % inner.valence];
     std::copy(outer.ring + outer.at + 1, outer.ring + outer.valence, out);
@@ -121,8 +116,8 @@ inline void merge_to_border(const End& outer, const End& inner, TileId* out) {
 
 /// merge_rings() for two vertices of a tile that are not locked: the same answer, and the same ring but for
 /// where it begins inside the mesh.
-inline bool merge_rings(const std::vector<TileRing>& rings, const std::vector<TileVertex>& vertices, TileId i,
-                        TileId j, MergedTileRing& merged) {
+IMGMESH_INLINE bool merge_rings(const std::vector<TileRing>& rings, const std::vector<TileVertex>& vertices,
+                                TileId i, TileId j, MergedTileRing& merged) {
     const TileRing &a = rings[i], &b = rings[j];
     const bool border_i = vertices[i].border(), border_j = vertices[j].border();
     const int na = vertices[i].valence, nb = vertices[j].valence;
@@ -143,7 +138,7 @@ inline bool merge_rings(const std::vector<TileRing>& rings, const std::vector<Ti
     } else {
         tile_rings::merge_to_border(end_j, end_i, merged.neighbor);
     }
-    std::fill_n(merged.neighbor + merged.valence, TileRing::kRoom, kNoTileId);
+    fill16_from(merged.neighbor, merged.valence, kNoTileId);
     return true;
 }
 

@@ -63,24 +63,40 @@ struct MergedMinimum {
     T increment;  ///< e - e_i - e_j
 };
 
+/// What the sum of two quadrics depends on beside their own members. E = G_i - G_j, r is the difference of
+/// their features at j's minimiser.
+template <typename T>
+struct MergeTerms {
+    T h;                          ///< W_i W_j / (W_i + W_j)
+    T dx, dy;                     ///< m_p,j - m_p,i
+    T txx, txy, tyy, ux, uy, rr;  ///< E'E, E'r, r'r
+};
+
+template <int C, typename T>
+inline __attribute__((always_inline)) MergeTerms<T> merge_terms(const Quadric<C, T>& i,
+                                                                const Quadric<C, T>& j) {
+    MergeTerms<T> m{
+        i.weight * j.weight / (i.weight + j.weight), j.px - i.px, j.py - i.py, {}, {}, {}, {}, {}, {}};
+    for (int c = 0; c < C; ++c) {
+        const T ex = i.gx[c] - j.gx[c], ey = i.gy[c] - j.gy[c];
+        const T r = i.s[c] - j.s[c] + j.gx[c] * m.dx + j.gy[c] * m.dy;
+        m.txx += ex * ex;
+        m.txy += ex * ey;
+        m.tyy += ey * ey;
+        m.ux += ex * r;
+        m.uy += ey * r;
+        m.rr += r * r;
+    }
+    return m;
+}
+
 /// Sum of two quadrics, in closed form (derivation in docs/decisions/0001-canonical-quadric.md). Where S is
 /// singular, the minimiser is not unique: the midpoint of both is taken. O(1), about 60 flops.
 template <int C, typename T>
 inline __attribute__((always_inline)) MergedMinimum<T> merged_minimum(const Quadric<C, T>& i,
-                                                                      const Quadric<C, T>& j) {
-    const T h = i.weight * j.weight / (i.weight + j.weight);
-    const T dx = j.px - i.px, dy = j.py - i.py;
-    T txx = {}, txy = {}, tyy = {}, ux = {}, uy = {}, rr = {};
-    for (int c = 0; c < C; ++c) {
-        const T ex = i.gx[c] - j.gx[c], ey = i.gy[c] - j.gy[c];
-        const T r = i.s[c] - j.s[c] + j.gx[c] * dx + j.gy[c] * dy;
-        txx += ex * ex;
-        txy += ex * ey;
-        tyy += ey * ey;
-        ux += ex * r;
-        uy += ey * r;
-        rr += r * r;
-    }
+                                                                      const Quadric<C, T>& j,
+                                                                      const MergeTerms<T>& terms) {
+    const auto& [h, dx, dy, txx, txy, tyy, ux, uy, rr] = terms;
     const T axx = i.sxx + j.sxx + h * txx, axy = i.sxy + j.sxy + h * txy, ayy = i.syy + j.syy + h * tyy;
     const T bx = j.sxx * dx + j.sxy * dy - h * ux, by = j.sxy * dx + j.syy * dy - h * uy;
     const T det = axx * ayy - axy * axy;
@@ -102,6 +118,12 @@ inline __attribute__((always_inline)) MergedMinimum<T> merged_minimum(const Quad
                     m.qy * (txy * m.qx + tyy * m.qy);
     m.increment = own + other + h * (color > T{} ? color : T{});
     return m;
+}
+
+template <int C, typename T>
+inline __attribute__((always_inline)) MergedMinimum<T> merged_minimum(const Quadric<C, T>& i,
+                                                                      const Quadric<C, T>& j) {
+    return merged_minimum(i, j, merge_terms(i, j));
 }
 
 /// Q_i + Q_j in canonical form.

@@ -23,6 +23,10 @@ static_assert(offsetof(ColorQuadric, s) == 2 * sizeof(float) &&
               offsetof(ColorQuadric, sxx) == 11 * sizeof(float) &&
               offsetof(ColorQuadric, weight) == 14 * sizeof(float));
 
+IMGMESH_INLINE void store4(float* p, const Float4& v) {
+    std::memcpy(p, &v, sizeof v);
+}
+
 /// Half a record: 0 or 1.
 IMGMESH_INLINE Float8 half_of(const ColorQuadric& quadric, std::size_t half) {
     Float8 v;
@@ -86,6 +90,50 @@ IMGMESH_INLINE ColorQuadric8 in_every_lane(const ColorQuadric& quadric) {
     q.weight = zero + quadric.weight;
     q.error = zero + quadric.error;
     return q;
+}
+
+/// merged() but for rounding, with the channels side by side.
+IMGMESH_INLINE void merge_colors(const ColorQuadric& i, const ColorQuadric& j, ColorQuadric& sum) {
+    // Three channels and the member behind them, whose results are not used.
+    const Float4 gx_i = load4(i.gx), gx_j = load4(j.gx), gy_i = load4(i.gy), gy_j = load4(j.gy);
+    const Float4 ex = gx_i - gx_j, ey = gy_i - gy_j;
+    MergeTerms<float> t;
+    t.h = i.weight * j.weight / (i.weight + j.weight);
+    t.dx = j.px - i.px;
+    t.dy = j.py - i.py;
+    const Float4 r = load4(i.s) - load4(j.s) + gx_j * t.dx + gy_j * t.dy;
+    // Sums over the three channels: transposed, so that a lane is a sum.
+    const Float4 a = ex * ex, b = ex * ey, c = ey * ey, d = ex * r, e = ey * r, f = r * r;
+    const Float4 ab = __builtin_shufflevector(a, b, 0, 4, 1, 5),
+                 cd = __builtin_shufflevector(c, d, 0, 4, 1, 5);
+    const Float4 first = __builtin_shufflevector(ab, cd, 0, 1, 4, 5),
+                 second = __builtin_shufflevector(ab, cd, 2, 3, 6, 7);
+    const Float4 ab_third = __builtin_shufflevector(a, b, 2, 6, 2, 6),
+                 third =
+                     __builtin_shufflevector(ab_third, __builtin_shufflevector(c, d, 2, 6, 2, 6), 0, 1, 4, 5);
+    const Float4 sums = first + second + third;
+    t.txx = sums[0];
+    t.txy = sums[1];
+    t.tyy = sums[2];
+    t.ux = sums[3];
+    t.uy = e[0] + e[1] + e[2];
+    t.rr = f[0] + f[1] + f[2];
+    const MergedMinimum<float> m = merged_minimum(i, j, t);
+    const float weight = i.weight + j.weight, px = i.px + m.qx, py = i.py + m.qy;
+    const float wi = i.weight / weight, wj = j.weight / weight;
+    const Float4 s = wi * (load4(i.s) + gx_i * (px - i.px) + gy_i * (py - i.py)) +
+                     wj * (load4(j.s) + gx_j * (px - j.px) + gy_j * (py - j.py));
+    // In the order of members, so that the next one writes what lies behind the channels.
+    sum.px = px;
+    sum.py = py;
+    store4(sum.s, s);
+    store4(sum.gx, wi * gx_i + wj * gx_j);
+    store4(sum.gy, wi * gy_i + wj * gy_j);
+    sum.sxx = i.sxx + j.sxx + t.h * t.txx;
+    sum.sxy = i.sxy + j.sxy + t.h * t.txy;
+    sum.syy = i.syy + j.syy + t.h * t.tyy;
+    sum.weight = weight;
+    sum.error = i.error + j.error + m.increment;
 }
 
 }  // namespace imgmesh
