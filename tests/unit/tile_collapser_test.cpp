@@ -1,9 +1,11 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <numeric>
 #include <random>
 
 #include "libcore/simplify/kernel/edge_collapser.h"
+#include "libcore/simplify/kernel/start_tile.h"
 #include "libcore/simplify/kernel/tile_collapser.h"
 #include "tests/support/grid_faces.h"
 #include "tests/support/sample_pictures.h"
@@ -225,5 +227,38 @@ TEST_CASE("tile: vertices with a neighbour elsewhere stay") {
         CHECK(mesh.quadrics[v].error == before.quadrics[v].error);
         if (old.x > kSeam) CHECK(same_ring(ring, old));
         for (int k = 0; k < ring.valence; ++k) CHECK(mesh.rings[ring.neighbor[k]].find(v) >= 0);
+    }
+}
+
+// Tiles with and without a side of the image, and smaller than a vector.
+TEST_CASE("tile: loaded from the grid it is what the tile's mesh makes it") {
+    for (const Kind kind : {Kind::kNoise, Kind::kGradient}) {
+        const GridMesh grid = grid_mesh(sample_feature(kind, 150, 133));
+        const SimplifyParams params = plain_params();
+        const SimplifyRules rules{params, kNoHooks, 3, {}};
+        const StartTiles tiles(grid);
+        TileCollapser<Quadric<3>> direct(rules), expected(rules);
+        for (int t = 0; t < tiles.count(); ++t) {
+            INFO(name_of(kind) << ", tile " << t);
+            direct.load_grid(grid, tiles.rect(t), smoothed_patch(grid, params.smoothing, tiles.rect(t)));
+            TileMesh<Quadric<3>> tile;
+            fill_tile(grid, params, tiles.rect(t), tile);
+            std::vector<Id> all(tile.own);
+            std::iota(all.begin(), all.end(), Id{0});
+            expected.load(tile.mesh, all,
+                          [&](Id v) { return v < tile.own ? static_cast<TileId>(v) : kNoTileId; });
+            REQUIRE(direct.vertices().size() == tile.own);
+            int different = 0;
+            for (std::size_t v = 0; v < tile.own; ++v) {
+                const TileVertex &a = direct.vertices()[v], &b = expected.vertices()[v];
+                const TileRing &ring = direct.rings()[v], &wanted = expected.rings()[v];
+                different += a.x != b.x || a.y != b.y || a.valence != b.valence || a.fixed != b.fixed ||
+                             a.locked != b.locked;
+                different += !std::equal(ring.neighbor, ring.neighbor + TileRing::kRoom, wanted.neighbor);
+                different += !std::equal(ring.cost, ring.cost + TileRing::kRoom, wanted.cost);
+                different += direct.quadrics()[v].error != expected.quadrics()[v].error;
+            }
+            CHECK(different == 0);
+        }
     }
 }

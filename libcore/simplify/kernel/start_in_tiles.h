@@ -60,53 +60,6 @@ namespace start_tiles {
 // Among the neighbours in what survivors() returns: a neighbour in another tile, by its pixel.
 inline constexpr Id kElsewhere = 1u << 31;
 
-// A start tile and what collapses it: from load() to store() its vertices are there.
-template <class Q>
-struct StartCollapse {
-    static_assert(4 * kStartTile * kStartTile < kNotInTile);  // a pixel has four vertices at most
-
-    TileMesh<Q> tile;
-    TileCollapser<Q> collapser;
-    std::vector<Id> all;  // of the tile's own vertices
-
-    explicit StartCollapse(const SimplifyRules& rules) : collapser(rules) {}
-
-    void fill(const GridMesh& grid, const SimplifyParams& params, const PixelRect& rect) {
-        fill_tile(grid, params, rect, tile);
-        all.resize(tile.own);
-        std::iota(all.begin(), all.end(), Id{0});
-        load();
-    }
-    void load() {
-        collapser.load(tile.mesh, all,
-                       [&](Id v) { return v < tile.own ? static_cast<TileId>(v) : kNoTileId; });
-    }
-    void store() { collapser.store(tile.mesh, all); }
-
-    // Collapses the tile's edges below `threshold`. If requested, quadrics are rebuilt whenever its vertices
-    // have halved. Neighbours in other tiles are locked too, so their state is known then.
-    CollapseStats run(const SimplifyParams& params, float threshold, std::int64_t may_go) {
-        CollapseStats sum;
-        for (;;) {
-            std::int64_t part_may = may_go - sum.vertices;
-            if (params.rebuild_quadrics) part_may = std::min(part_may, tile.live - tile.halved);
-            const CollapseStats part =
-                collapser.run(threshold, {.vertices = part_may, .faces = kAllMayGo.faces});
-            // Edges put off while quadrics were old may be cheaper now.
-            sum.postponed = kNever;
-            sum.add(part);
-            tile.live -= part.vertices;
-            const bool halved = params.rebuild_quadrics && part.vertices > 0 && tile.live <= tile.halved;
-            if (!halved || sum.vertices >= may_go) return sum;
-            store();
-            const std::vector<Q> rebuilt = rebuilt_quadrics(tile.mesh.rings, tile.mesh.quadrics, params);
-            std::copy_n(rebuilt.begin(), tile.own, tile.mesh.quadrics.begin());  // ghosts stay as they are
-            tile.halved = tile.live / 2;
-            load();
-        }
-    }
-};
-
 // Returns the remaining vertices, numbered from 0. Writes these numbers to number[vertex].
 template <class Q>
 QuadricMesh<Q> survivors(const TileMesh<Q>& tile, std::vector<Id>& number) {
@@ -132,6 +85,106 @@ QuadricMesh<Q> survivors(const TileMesh<Q>& tile, std::vector<Id>& number) {
     }
     return out;
 }
+
+// The same of a tile that was loaded from the grid.
+template <class Q>
+QuadricMesh<Q> survivors(const TileCollapser<Q>& collapser, const GridMesh& grid, const PixelRect& rect,
+                         std::vector<Id>& number) {
+    const std::vector<TileVertex>& vertices = collapser.vertices();
+    const auto width = static_cast<Id>(rect.width());
+    const auto x_of = [&](Id v) { return rect.left + static_cast<int>(v % width); };
+    const auto y_of = [&](Id v) { return rect.top + static_cast<int>(v / width); };
+    std::vector<Id> place(vertices.size());
+    QuadricMesh<Q> out;
+    for (Id v = 0; v < vertices.size(); ++v) {
+        if (!vertices[v].live()) continue;
+        place[v] = static_cast<Id>(out.pixel.size());
+        const Id pixel = as_id(grid.feature.index(x_of(v), y_of(v)));
+        number[pixel] = place[v];
+        out.pixel.push_back(pixel);
+    }
+    out.rings.reserve(out.pixel.size());
+    out.quadrics.reserve(out.pixel.size());
+    for (Id v = 0; v < vertices.size(); ++v) {
+        const TileVertex& vertex = vertices[v];
+        if (!vertex.live()) continue;
+        Ring& ring = out.rings.emplace_back();
+        if (vertex.locked) ring = grid_ring(grid, x_of(v), y_of(v));
+        const Ring before = ring;
+        for (int k = 0; k < vertex.valence; ++k) {
+            const TileId n = collapser.rings()[v].neighbor[k];
+            ring.neighbor[k] = n < kNotInTile ? place[n] : before.neighbor[n - kNotInTile] | kElsewhere;
+        }
+        ring.x = vertex.x;
+        ring.y = vertex.y;
+        ring.valence = vertex.valence;
+        ring.fixed = vertex.fixed;
+        out.quadrics.push_back(collapser.quadrics()[v]);
+    }
+    return out;
+}
+
+// A start tile and what collapses it: from load() to store() its vertices are there.
+template <class Q>
+struct StartCollapse {
+    static_assert(4 * kStartTile * kStartTile < kNotInTile);  // a pixel has four vertices at most
+
+    TileMesh<Q> tile;
+    TileCollapser<Q> collapser;
+    std::vector<Id> all;  // of the tile's own vertices
+    bool direct = false;  // loaded from the grid: the tile has no mesh
+
+    explicit StartCollapse(const SimplifyRules& rules) : collapser(rules) {}
+
+    void fill(const GridMesh& grid, const SimplifyParams& params, const PixelRect& rect) {
+        if constexpr (std::is_same_v<Q, Quadric<3>>) {
+            direct = grid.mask.empty() && !params.rebuild_quadrics;
+            if (direct) {
+                collapser.load_grid(grid, rect, smoothed_patch(grid, params.smoothing, rect));
+                tile.own = collapser.vertices().size();
+                tile.live = static_cast<std::int64_t>(tile.own);
+                return;
+            }
+        }
+        fill_tile(grid, params, rect, tile);
+        all.resize(tile.own);
+        std::iota(all.begin(), all.end(), Id{0});
+        load();
+    }
+    auto number() const {
+        return [this](Id v) { return v < tile.own ? static_cast<TileId>(v) : kNoTileId; };
+    }
+    void load() { collapser.load(tile.mesh, all, number()); }
+    void store() { collapser.store(tile.mesh, all); }
+    QuadricMesh<Q> survivors(const GridMesh& grid, const PixelRect& rect, std::vector<Id>& numbers) {
+        if (direct) return start_tiles::survivors(collapser, grid, rect, numbers);
+        store();
+        return start_tiles::survivors(tile, numbers);
+    }
+
+    // Collapses the tile's edges below `threshold`. If requested, quadrics are rebuilt whenever its vertices
+    // have halved. Neighbours in other tiles are locked too, so their state is known then.
+    CollapseStats run(const SimplifyParams& params, float threshold, std::int64_t may_go) {
+        CollapseStats sum;
+        for (;;) {
+            std::int64_t part_may = may_go - sum.vertices;
+            if (params.rebuild_quadrics) part_may = std::min(part_may, tile.live - tile.halved);
+            const CollapseStats part =
+                collapser.run(threshold, {.vertices = part_may, .faces = kAllMayGo.faces});
+            // Edges put off while quadrics were old may be cheaper now.
+            sum.postponed = kNever;
+            sum.add(part);
+            tile.live -= part.vertices;
+            const bool halved = params.rebuild_quadrics && part.vertices > 0 && tile.live <= tile.halved;
+            if (!halved || sum.vertices >= may_go) return sum;
+            store();
+            const std::vector<Q> rebuilt = rebuilt_quadrics(tile.mesh.rings, tile.mesh.quadrics, params);
+            std::copy_n(rebuilt.begin(), tile.own, tile.mesh.quadrics.begin());  // ghosts stay as they are
+            tile.halved = tile.live / 2;
+            load();
+        }
+    }
+};
 
 template <class T>
 void append(std::vector<T>& to, const std::vector<T>& part) {
@@ -161,13 +214,13 @@ inline std::vector<int> some_tiles(const StartTiles& tiles) {
     return some;
 }
 
+// Of the first edge of each vertex that may collapse.
 template <class Q>
-float median_cost(const QuadricMesh<Q>& mesh, const SimplifyRules& rules) {
+float median_cost(const TileCollapser<Q>& collapser) {
     std::vector<float> costs;
-    const EdgeCosts<Q> edges(mesh, rules);
-    for (Id v = 0; v < mesh.rings.size(); ++v)
-        if (const Ring& ring = mesh.rings[v]; ring.live() && !ring.locked)
-            if (const float cost = edges.cost(v, ring.neighbor[0]); cost < kNever) costs.push_back(cost);
+    for (std::size_t v = 0; v < collapser.vertices().size(); ++v)
+        if (const ShortCost cost = collapser.rings()[v].cost[0]; cost < kShortNever)
+            costs.push_back(least_cost(cost));
     return costs.empty() ? 0 : median(std::move(costs));
 }
 
@@ -187,7 +240,7 @@ float start_threshold(const GridMesh& grid, const SimplifyRules& rules, double s
     };
     each([&](std::size_t n) {
         parts[n].fill(grid, rules.params, tiles.rect(some[n]));
-        medians[n] = median_cost(parts[n].tile.mesh, rules);
+        medians[n] = median_cost(parts[n].collapser);
     });
     std::int64_t all = 0, removed = 0;
     for (const StartCollapse<Q>& part : parts) all += part.tile.live - part.tile.boundary;
@@ -234,8 +287,7 @@ CollapseStats start_in_tiles(const GridMesh& grid, const SimplifyRules& rules, f
                 const auto may_go = static_cast<std::int64_t>(share_that_goes *
                                                               static_cast<double>(tile.live - tile.boundary));
                 stats[n] = part.run(rules.params, threshold, may_go);
-                part.store();
-                parts[n] = survivors(tile, number);
+                parts[n] = part.survivors(grid, tiles.rect(t), number);
                 removed += stats[n].vertices;
             }
             if (std::this_thread::get_id() == caller) progress(removed);

@@ -19,9 +19,11 @@
 
 #include "libcore/simplify/kernel/collapse_stats.h"
 #include "libcore/simplify/kernel/edge_costs.h"
+#include "libcore/simplify/kernel/grid_costs.h"
 #include "libcore/simplify/kernel/quadric_mesh.h"
 #include "libcore/simplify/kernel/tile_rings.h"
 #include "libcore/simplify/quadrics/quadric_lanes.h"
+#include "libcore/simplify/quadrics/vertex_quadrics.h"
 
 namespace imgmesh {
 
@@ -43,6 +45,36 @@ class TileCollapser {
         copy(mesh, list, number);
         evaluate_all();
     }
+
+    /// The same for the pixels of a rectangle, row by row, as fill_tile() and load() would have it, without a
+    /// mesh in between. For colours without a mask, by what a merge adds.
+    ///
+    /// gradients   reach to the neighbours of the rectangle
+    void load_grid(const GridMesh& grid, const PixelRect& rect, const FeaturePatch& gradients) {
+        const auto w = static_cast<std::size_t>(rect.width()),
+                   count = w * static_cast<std::size_t>(rect.height());
+        rings_.resize(count);
+        vertices_.resize(count);
+        quadrics_.resize(count);
+        vertex_quadrics(grid, gradients, rules_.params.geometry_weight, rect, quadrics_.data());
+        grid_costs(grid, rect, quadrics_.data(), grid_costs_);
+        TileId v = 0;
+        for (int y = rect.top; y < rect.bottom; ++y)
+            for (int x = rect.left; x < rect.right; ++x, ++v)
+                if (on_rim(rect, x, y))
+                    copy_rim(grid, rect, v, x, y);
+                else
+                    copy_inner(grid, v, static_cast<TileId>(w), x, y);
+        v = 0;
+        for (int y = rect.top; y < rect.bottom; ++y)
+            for (int x = rect.left; x < rect.right; ++x, ++v)
+                if (on_rim(rect, x, y)) evaluate_rim(v);
+    }
+
+    /// The vertices as they stand, in the order of what was loaded.
+    const std::vector<TileVertex>& vertices() const { return vertices_; }
+    const std::vector<TileRing>& rings() const { return rings_; }
+    const std::vector<Q>& quadrics() const { return quadrics_; }
 
     /// Collapses edges that cost less than `threshold` and may collapse, until there is none left or as many
     /// vertices or faces are removed as may go.
@@ -81,21 +113,24 @@ class TileCollapser {
         rings_.resize(list.size());
         vertices_.resize(list.size());
         quadrics_.resize(list.size());
-        for (std::size_t v = 0; v < list.size(); ++v) {
-            const Ring& from = mesh.rings[list[v]];
-            TileRing& ring = rings_[v];
-            fill16_from(ring.neighbor, 0, kNoTileId);
-            fill16_from(ring.cost, 0, kNoEdge);
-            bool locked = rules_.boundary != nullptr && from.border();
-            for (int k = 0; k < from.valence; ++k) {
-                const TileId n = number(from.neighbor[k]);
-                locked |= n == kNoTileId;
-                ring.neighbor[k] = n == kNoTileId ? static_cast<TileId>(kNotInTile + k) : n;
-                ring.cost[k] = kShortNever;
-            }
-            vertices_[v] = {from.x, from.y, from.valence, from.fixed, locked || from.locked};
+        for (TileId v = 0; v < list.size(); ++v) {
+            copy(v, mesh.rings[list[v]], number);
             quadrics_[v] = mesh.quadrics[list[v]];
         }
+    }
+    template <class Number>
+    void copy(TileId v, const Ring& from, const Number& number) {
+        TileRing& ring = rings_[v];
+        fill16_from(ring.neighbor, 0, kNoTileId);
+        fill16_from(ring.cost, 0, kNoEdge);
+        bool locked = rules_.boundary != nullptr && from.border();
+        for (int k = 0; k < from.valence; ++k) {
+            const TileId n = number(from.neighbor[k]);
+            locked |= n == kNoTileId;
+            ring.neighbor[k] = n == kNoTileId ? static_cast<TileId>(kNotInTile + k) : n;
+            ring.cost[k] = kShortNever;
+        }
+        vertices_[v] = {from.x, from.y, from.valence, from.fixed, locked || from.locked};
     }
 
     // Steps in two forms: with everything that they call built for AVX2, and for any processor.
@@ -135,6 +170,55 @@ class TileCollapser {
         }
     }
 
+    static bool on_rim(const PixelRect& rect, int x, int y) {
+        return x == rect.left || x + 1 == rect.right || y == rect.top || y + 1 == rect.bottom;
+    }
+    // All neighbours of pixel (x, y) are in the rectangle: in the order of inner_ring().
+    void copy_inner(const GridMesh& grid, TileId v, TileId stride, int x, int y) {
+        vertices_[v] = {grid.origin_x + static_cast<float>(x), grid.origin_y + static_cast<float>(y), 0, 0,
+                        false};
+        TileRing& ring = rings_[v];
+        fill16_from(ring.neighbor, 0, kNoTileId);
+        fill16_from(ring.cost, 0, kNoEdge);
+        const std::size_t here = v, north = here - stride, south = here + stride;
+        const GridCosts& costs = grid_costs_;
+        int k = 0;
+        // Diagonals are written wherever there might be one, and overwritten where there is none.
+        const auto push = [&](std::size_t n, ShortCost cost, bool there) {
+            ring.neighbor[k] = static_cast<TileId>(n);
+            ring.cost[k] = cost;
+            k += there;
+        };
+        push(here + 1, costs.east[here], true);
+        push(north + 1, costs.cell[north], !grid.falling_diagonal(x, y - 1));
+        push(north, costs.south[north], true);
+        push(north - 1, costs.cell[north - 1], grid.falling_diagonal(x - 1, y - 1));
+        push(here - 1, costs.east[here - 1], true);
+        push(south - 1, costs.cell[here - 1], !grid.falling_diagonal(x - 1, y));
+        push(south, costs.south[here], true);
+        push(south + 1, costs.cell[here], grid.falling_diagonal(x, y));
+        ring.neighbor[k] = kNoTileId;
+        ring.cost[k] = kNoEdge;
+        vertices_[v].valence = static_cast<std::uint8_t>(k);
+    }
+    void copy_rim(const GridMesh& grid, const PixelRect& rect, TileId v, int x, int y) {
+        const auto w = static_cast<Id>(grid.feature.width);
+        copy(v, grid_ring(grid, x, y), [&](Id n) {
+            const int nx = static_cast<int>(n % w), ny = static_cast<int>(n / w);
+            const bool here = nx >= rect.left && nx < rect.right && ny >= rect.top && ny < rect.bottom;
+            return here ? static_cast<TileId>((ny - rect.top) * rect.width() + nx - rect.left) : kNoTileId;
+        });
+    }
+    // A vertex on the rim of a rectangle: one that stays, or one on the border.
+    void evaluate_rim(TileId v) {
+        for (int k = 0; k < vertices_[v].valence; ++k) {
+            const TileId n = rings_[v].neighbor[k];
+            if (n >= kNotInTile) continue;
+            const bool may = !vertices_[v].locked && !vertices_[n].locked;
+            set_cost(v, n, may ? cost_beside(std::min(v, n), std::max(v, n)) : kShortNever);
+        }
+    }
+
     // The edges of a vertex to those of higher numbers.
     IMGMESH_INLINE void evaluate_later_edges(TileId v) {
         TileId others[kNeighborRoom];
@@ -160,12 +244,8 @@ class TileCollapser {
             fill16_from(others, count, i);
             const ColorQuadric8 own = in_every_lane(quadrics_[i]);
             for (int k = 0; k < count; k += 8) {
-                const Float8 increment =
-                    merged_minimum(own, side_by_side(quadrics_.data(), others + k)).increment;
-                const Float8 added = increment > 0 ? increment : Float8{};
-                const Int8 upper = std::bit_cast<Int8>(added) >> 16;
-                const auto shorts = __builtin_convertvector(upper, Short8);
-                std::memcpy(costs + k, &shorts, sizeof shorts);
+                short_costs(merged_minimum(own, side_by_side(quadrics_.data(), others + k)).increment,
+                            costs + k);
             }
             if (!rules_.params.total_priority && !vertices_[i].border()) {
                 for (int k = 0; k < count; ++k)
@@ -306,6 +386,7 @@ class TileCollapser {
     std::vector<TileVertex> vertices_;
     std::vector<Q> quadrics_;
     EdgeCosts<Q, std::vector<TileVertex>> costs_;
+    GridCosts grid_costs_;
     std::vector<TileId> chain_;   // each is the cheapest to merge with for the one before
     std::vector<TileId> merged_;  // vertices that have merged since they were last looked at
     ShortCost threshold_ = 0;

@@ -28,6 +28,12 @@ inline constexpr ShortCost kNoEdge = 0x7fff;
 inline constexpr ShortCost short_cost(float cost) {
     return static_cast<ShortCost>(std::bit_cast<std::uint32_t>(cost) >> 16);
 }
+/// Of eight increments, of which those below 0 count as 0.
+IMGMESH_INLINE void short_costs(const Float8& increments, ShortCost* out) {
+    const Float8 added = increments > 0 ? increments : Float8{};
+    const Short8 upper = __builtin_convertvector(std::bit_cast<Int8>(added) >> 16, Short8);
+    __builtin_memcpy(out, &upper, sizeof upper);
+}
 /// The least float of that cost.
 inline constexpr float least_cost(ShortCost cost) {
     return std::bit_cast<float>(static_cast<std::uint32_t>(cost) << 16);
