@@ -231,14 +231,17 @@ class TileCollapser {
         }
         ShortCost costs[kNeighborRoom];
         evaluate(v, others, count, costs);
+        const bool beside = all_beside(v);
         for (int k = 0; k < count; ++k) {
+            const TileId n = others[k];
+            if (beside || vertices_[n].border()) costs[k] = cost_beside(v, n);
             rings_[v].cost[place[k]] = costs[k];
-            rings_[others[k]].cost[rings_[others[k]].find(v)] = costs[k];
+            rings_[n].cost[rings_[n].find(v)] = costs[k];
         }
     }
 
-    // The costs of edges of vertex i. Both arrays have kNeighborRoom places; those behind `count` are
-    // overwritten.
+    // The costs of edges of vertex i to vertices that are not on the border, unless all_beside(i). Both
+    // arrays have kNeighborRoom places; those behind `count` are overwritten.
     IMGMESH_INLINE void evaluate(TileId i, TileId* others, int count, ShortCost* costs) const {
         if constexpr (kColor) {
             fill16_from(others, count, i);
@@ -247,13 +250,11 @@ class TileCollapser {
                 short_costs(merged_minimum(own, side_by_side(quadrics_.data(), others + k)).increment,
                             costs + k);
             }
-            if (!rules_.params.total_priority && !vertices_[i].border()) {
-                for (int k = 0; k < count; ++k)
-                    if (vertices_[others[k]].border()) costs[k] = cost_beside(i, others[k]);
-                return;
-            }
         }
-        for (int k = 0; k < count; ++k) costs[k] = cost_beside(i, others[k]);
+    }
+    // Whether evaluate() has not given the costs of vertex i's edges, but cost_beside() will.
+    bool all_beside(TileId i) const {
+        return !kColor || vertices_[i].border() || rules_.params.total_priority;
     }
     [[gnu::noinline]] ShortCost cost_beside(TileId i, TileId j) const {
         return short_cost(costs_.cost(i, j));
@@ -370,10 +371,14 @@ class TileCollapser {
         store16(others, load16(ring.neighbor));
         evaluate(i, others, ring.valence, own.cost);
         fill16_from(own.cost, ring.valence, kNoEdge);
+        const bool beside = all_beside(i);
         for (int k = 0; k < ring.valence; ++k) {
             const TileId n = others[k];
             TileVertex& vertex = vertices_[n];
-            if (vertex.locked) own.cost[k] = kShortNever;
+            if (vertex.locked)
+                own.cost[k] = kShortNever;
+            else if (beside || vertex.border())
+                own.cost[k] = cost_beside(i, n);
             vertex.valence = static_cast<std::uint8_t>(vertex.valence - rings_[n].merge(i, j, own.cost[k]));
         }
     }
