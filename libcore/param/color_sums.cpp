@@ -4,31 +4,32 @@
 #include <cstring>
 
 #include "libcore/base/parallel.h"
-#include "libcore/base/simd.h"
+#include "libcore/image/channel_count.h"
 
 namespace imgmesh {
 namespace {
 
-// Sums of one run of pixels of a row in the same face. A run is short, so floats are enough.
-struct Run {
-    using Float4 = float __attribute__((vector_size(16)));
-    Float4 weights[3] = {}, features[3] = {};
+using Float4 = float __attribute__((vector_size(16)));
 
-    // Adds a pixel with `features` in its first three lanes.
-    void add(float u, float v, Float4 pixel) {
+// Sums of one run of pixels of a row in the same face. A run is short, so floats are enough. There is room
+// for 4 G features.
+template <int G>
+struct Run {
+    Float4 weights[3] = {}, features[3][G] = {};
+
+    void add(float u, float v, const Float4 (&pixel)[G]) {
         const float w[3] = {1 - u - v, u, v};
         const Float4 all{w[0], u, v, 0};
         for (int a = 0; a < 3; ++a) {
             weights[a] += w[a] * all;
-            features[a] += w[a] * pixel;
+            for (int g = 0; g < G; ++g) features[a][g] += w[a] * pixel[g];
         }
     }
-    void add_to(double* sums) const {
-        for (int a = 0; a < 3; ++a)
-            for (int k = 0; k < 3; ++k) {
-                sums[6 * a + k] += double{weights[a][k]};
-                sums[6 * a + 3 + k] += double{features[a][k]};
-            }
+    void add_to(double* sums, int channels) const {
+        for (int a = 0; a < 3; ++a) {
+            for (int k = 0; k < 3; ++k) *sums++ += double{weights[a][k]};
+            for (int c = 0; c < channels; ++c) *sums++ += double{features[a][c / 4][c % 4]};
+        }
     }
 };
 
@@ -52,7 +53,7 @@ class Summing {
     PartialSums rows(int begin, int end) const {
         PartialSums part;
         Id least = kNone, most = 0;
-        for (std::size_t i = feature_.row_begin(0) + as_index(begin) * as_index(feature_.width),
+        for (std::size_t i = as_index(begin) * as_index(feature_.width),
                          last = as_index(end) * as_index(feature_.width);
              i < last; ++i) {
             const Id face = face_(i);
@@ -62,51 +63,43 @@ class Summing {
         if (least == kNone) return part;
         part.first = least;
         part.values.resize((most - least + 1) * stride_);
-        for (int y = begin; y < end; ++y) feature_.channels == 3 ? add_runs(y, part) : add_pixels(y, part);
+        for (int y = begin; y < end; ++y)
+            feature_.channels == 3 ? add_row<1>(y, part) : add_row<kGroups>(y, part);
         return part;
     }
 
     std::size_t stride() const { return stride_; }
 
   private:
+    static constexpr int kGroups = (kMaxFeatures + 3) / 4;
+
     double* sums(PartialSums& part, Id face) const {
         return part.values.data() + (face - part.first) * stride_;
     }
 
-    // The clear form, for any number of features.
-    void add_pixels(int y, PartialSums& part) const {
-        for (int x = 0; x < feature_.width; ++x) {
-            const std::size_t i = feature_.index(x, y);
-            const Id face = face_(i);
-            if (face == kNone) continue;
-            const PixelCoord coord = weights_(x, y, face);
-            const double w[3] = {double{1 - coord.u - coord.v}, double{coord.u}, double{coord.v}};
-            double* to = sums(part, face);
-            for (const double weight : w) {
-                for (const double other : w) *to++ += weight * other;
-                for (int c = 0; c < feature_.channels; ++c) *to++ += weight * double{feature_.pixel(i)[c]};
-            }
-        }
-    }
-
-    void add_runs(int y, PartialSums& part) const {
-        Run run;
+    template <int G>
+    void add_row(int y, PartialSums& part) const {
+        const int channels = G == 1 ? 3 : feature_.channels;  // a constant in the usual case
+        Run<G> run;
         Id current = kNone;
         for (int x = 0; x < feature_.width; ++x) {
             const std::size_t i = feature_.index(x, y);
             const Id face = face_(i);
             if (face != current) {
-                if (current != kNone) run.add_to(sums(part, current));
+                if (current != kNone) run.add_to(sums(part, current), channels);
                 run = {};
                 current = face;
             }
             if (face == kNone) continue;
             const PixelCoord coord = weights_(x, y, face);
-            Run::Float4 pixel{};  // read as a whole, except where the image ends
-            std::memcpy(&pixel, feature_.pixel(i), i < last_pixel_ ? sizeof pixel : 3 * sizeof(float));
+            Float4 pixel[G] = {};
+            if (G == 1 && i < last_pixel_)  // read as a whole, with one float of the next pixel
+                std::memcpy(pixel, feature_.pixel(i), sizeof pixel);
+            else
+                std::memcpy(pixel, feature_.pixel(i), as_index(channels) * sizeof(float));
             run.add(coord.u, coord.v, pixel);
         }
-        if (current != kNone) run.add_to(sums(part, current));
+        if (current != kNone) run.add_to(sums(part, current), channels);
     }
 
     const FeatureImage& feature_;

@@ -2,6 +2,7 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
+#include <array>
 #include <random>
 
 #include "libcore/base/error.h"
@@ -220,26 +221,26 @@ TEST_CASE("trivial map: without colour weight every pixel stays at its centre, a
     }
 }
 
-// Three features are summed in floats, run by run. Other numbers are summed pixel by pixel in doubles.
-TEST_CASE("colour sums: run by run, pixel by pixel, and of pixels that are being moved") {
+// The sums are taken in floats, run by run. Here they are taken pixel by pixel in doubles.
+TEST_CASE("colour sums: of a map, and of pixels that are being moved") {
     const FeatureImage feature = sample_feature(Kind::kNoise, 70, 45);
     const BaseMesh mesh = collapsed(feature, 60);
     PixelMap map = trivial_map(mesh, 70, 45);
     for (std::size_t i = 0; i < map.size(); i += 7) map[i] = {};  // as outside a mask
-    const ColorSums sums = color_sums(feature, map, mesh.faces.size());
-
-    FeatureImage four{70, 45, 4, {}};
+    const ColorSums sums = color_sums(feature, map, mesh.faces.size()),
+                    moved = color_sums(feature, resting_pixels(map), face_fields(mesh));
+    std::vector<double> clear(sums.values.size());
     for (std::size_t i = 0; i < map.size(); ++i) {
-        four.data.insert(four.data.end(), feature.pixel(i), feature.pixel(i) + 3);
-        four.data.push_back(0);
+        if (map[i].face == kNone) continue;
+        const double u = double{map[i].u}, v = double{map[i].v};
+        const std::array<double, 3> w = {1 - u - v, u, v};
+        for (std::size_t a = 0; a < 3; ++a)
+            for (std::size_t k = 0; k < 6; ++k)
+                clear[(map[i].face * 3 + a) * 6 + k] +=
+                    w[a] * (k < 3 ? w[k] : double{feature.pixel(i)[k - 3]});
     }
-    const ColorSums clear = color_sums(four, map, mesh.faces.size());
-    const ColorSums moved = color_sums(feature, resting_pixels(map), face_fields(mesh));
-    for (std::size_t f = 0; f < mesh.faces.size(); ++f)
-        for (std::size_t corner = 0; corner < 3; ++corner)
-            for (std::size_t k = 0; k < 6; ++k) {
-                const double wanted = clear.row(f, corner)[k];
-                CHECK(sums.row(f, corner)[k] == doctest::Approx(wanted).epsilon(1e-6).scale(100));
-                CHECK(moved.row(f, corner)[k] == doctest::Approx(wanted).epsilon(1e-4).scale(100));
-            }
+    for (std::size_t n = 0; n < clear.size(); ++n) {
+        CHECK(sums.values[n] == doctest::Approx(clear[n]).epsilon(1e-6).scale(100));
+        CHECK(moved.values[n] == doctest::Approx(clear[n]).epsilon(1e-4).scale(100));
+    }
 }
