@@ -81,7 +81,7 @@ struct ClassSystem {
 };
 
 template <int C>
-void fit(BaseMesh& mesh, const ColorSums& sums, const FeatureSpace& space, const Limit& limited) {
+void fit(BaseMesh& mesh, const ColorSums& sums, const FeatureSpace& space, const Limit& limited, int passes) {
     const int features = feature_count<C>(mesh.channels);
     constexpr int kGrain = 512;
     // Class by class: no two vertices of a class share a face, so no thread sees another's change.
@@ -97,9 +97,6 @@ void fit(BaseMesh& mesh, const ColorSums& sums, const FeatureSpace& space, const
     // A vertex that only pixels with tiny weights touch is hardly determined. Pull it weakly to its present
     // value.
     constexpr double kPull = 1e-3;
-    // The normal equations have a mass matrix: each pass shrinks an error to a third or less. More than 6
-    // passes change the RMS in the fourth digit.
-    constexpr int kPasses = 6;
     if (space.color)
         parallel_blocks(0, as_int(mesh.vertex_count()), kGrain, [&](int begin, int end) {
             for (Id v = as_id(begin); v < as_id(end); ++v)
@@ -124,7 +121,7 @@ void fit(BaseMesh& mesh, const ColorSums& sums, const FeatureSpace& space, const
         }
         for (; c < features; ++c) own[c] = static_cast<float>(rhs[c] / diagonal);
     };
-    for (int pass = 0; pass < kPasses; ++pass)
+    for (int pass = 0; pass < passes; ++pass)
         for (const std::optional<ClassSystem<C>>& system : systems)
             parallel_blocks(0, as_int(system->vertices.size()) - 1, kGrain, [&](int begin, int end) {
                 for (int n = begin; n < end; ++n) improve(*system, as_index(n));
@@ -133,20 +130,23 @@ void fit(BaseMesh& mesh, const ColorSums& sums, const FeatureSpace& space, const
 
 }  // namespace
 
-void fit_colors(BaseMesh& mesh, const ColorSums& sums, const FeatureSpace& space, const ColorLevels* levels) {
+void fit_colors(BaseMesh& mesh, const ColorSums& sums, const FeatureSpace& space, int passes,
+                const ColorLevels* levels) {
     const Limit limited{space, levels};
     if (mesh.channels == 3)
-        fit<3>(mesh, sums, space, limited);
+        fit<3>(mesh, sums, space, limited, passes);
     else
-        fit<kMaxFeatures>(mesh, sums, space, limited);
+        fit<kMaxFeatures>(mesh, sums, space, limited, passes);
 }
 
 void fit_colors(BaseMesh& mesh, const FeatureImage& feature, const std::vector<FitTerm>& terms,
                 const FeatureSpace& space, const ColorLevels* levels) {
+    // More than 6 passes change the RMS in the fourth digit.
+    constexpr int kPasses = 6;
     ColorSums sums{mesh.channels, {}};
     for (const FitTerm& term : terms)
         sums.add(color_sums(feature, *term.map, mesh.faces.size()), term.weight);
-    fit_colors(mesh, sums, space, levels);
+    fit_colors(mesh, sums, space, kPasses, levels);
 }
 
 }  // namespace imgmesh

@@ -28,8 +28,9 @@ struct FitTerm {
 ///         its neighbours', so that some of the rounding cancels out.
 void fit_colors(BaseMesh& mesh, const FeatureImage& feature, const std::vector<FitTerm>& terms,
                 const FeatureSpace& space = {}, const ColorLevels* levels = nullptr);
-/// The same from sums over the pixels, already weighted (color_sums.h).
-void fit_colors(BaseMesh& mesh, const ColorSums& sums, const FeatureSpace& space,
+/// The same from sums over the pixels, already weighted (color_sums.h). The normal equations have a mass
+/// matrix: each pass over the vertices shrinks an error to a third or less.
+void fit_colors(BaseMesh& mesh, const ColorSums& sums, const FeatureSpace& space, int passes,
                 const ColorLevels* levels = nullptr);
 
 }  // namespace imgmesh

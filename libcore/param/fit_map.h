@@ -17,11 +17,11 @@ struct FitParams {
     double color_weight = 1.0 / 20;  ///< of colour against smoothness [px^2 / feature^2]; 0: the trivial map
     std::optional<WeightPrecision> bary;  ///< none: half where the map stays a bijection with it, else float
     int steps = kUsualSteps;              ///< of the grid of positions in a pixel: 8, 16 or 32
-    double rate = 0;             ///< cost of a bit of a displacement [feature^2], for a shorter stream; >= 0
-    int rounds = 4;              ///< of relaxation, colours refitted after each
-    int sweeps = 2;              ///< of relaxation a round
-    FeatureSpace space;          ///< of the image
-    bool keep_colors = false;    ///< keep the mesh's features, but for rounding
+    double rate = 0;           ///< cost of a bit of a displacement [feature^2], for a shorter stream; >= 0
+    int rounds = 3;            ///< of relaxation, colours refitted after each
+    int sweeps = 2;            ///< of relaxation a round; the first round, and with a rate each, has one more
+    FeatureSpace space;        ///< of the image
+    bool keep_colors = false;  ///< keep the mesh's features, but for rounding
     double gouraud_share = 0.1;  ///< weight of the drawing without the map in the fit of colours, 0 to 1
 };
 

@@ -26,7 +26,7 @@ namespace {
 
 // Where a step would fold the grid, it is first turned aside from the triangle that it folds most, then made
 // shorter.
-constexpr int kTurns = 2, kHalvings = 2;
+constexpr int kTurns = 3, kHalvings = 2;
 
 // A turned step leaves its triangle so much more than the least area [px^2], as it still has to be rounded to
 // the grid.
@@ -55,7 +55,7 @@ struct Sweep {
     const std::vector<Face>& neighbors;
     const FeatureImage& feature;
     const AuxiliaryFields& auxiliary;
-    float mu, rate, steps, least;
+    float mu, rate, steps, least, stride;
 
     // The least area of triangles around a pixel of a face: the larger the face, the more weights of half
     // precision change areas.
@@ -93,7 +93,7 @@ struct Sweep {
         const float* f = auxiliary.of(pixels.face[index]);
         for (std::size_t c = 0; c < auxiliary.features; ++c, f += 3)
             step.add_features(f, f + 1, f + 2, color + 3 + c, 1, from_ax, from_ay);
-        step.solve(sx, sy);
+        step.solve(stride, sx, sy);
         if (rate > 0 && pixels.is_free(x, y)) make_cheap(step, own_x, own_y, around.dx, around.dy, sx, sy);
         const bool pinned_x = pixels.pinned_x(x, y), pinned_y = pixels.pinned_y(x, y);
         if (pinned_x) sx = 0;
@@ -219,9 +219,9 @@ struct Sweep {
     }
 
     // Does what move_pixel() does for (x, y), (x + 2, y), ... none of them on a side or a boundary, with
-    // three features. T has a lane for each.
+    // three features. T has a lane for each; the first `resting` do not move.
     template <typename T>
-    IMGMESH_INLINE void move_lanes(int x, int y) const {
+    IMGMESH_INLINE void move_lanes(int x, int y, int resting) const {
         const std::size_t index = pixels.index(x, y);
         const LaneFields<T> field(fields.data(), &pixels.face[index]);
         T color[3];
@@ -244,12 +244,13 @@ struct Sweep {
         T sx, sy;
         NewtonStep<T> step(px, py, rest_x + mean_x / 4, rest_y + mean_y / 4, mu);
         step.add_features(field.f, field.fx, field.fy, color, 3, px - field.ax, py - field.ay);
-        step.solve(sx, sy);
+        step.solve(stride, sx, sy);
         if (rate > 0) make_cheap(step, own_x, own_y, ndx, ndy, sx, sy);
         const T least_here = least_in(field.longest);
         T to_x = px, to_y = py;
         constexpr unsigned kAll = (1u << kLaneCount<T>)-1;
-        LaneMask<T> found = {};
+        const LaneMask<T> rests = every_other<T>() < T{} + static_cast<float>(2 * resting);
+        LaneMask<T> found = rests;
         for (int tries = 0;; ++tries) {
             const T qx = on_image(rest_x + on_grid(own_x + sx), pixels.width),
                     qy = on_image(rest_y + on_grid(own_y + sy), pixels.height);
@@ -270,7 +271,7 @@ struct Sweep {
         }
         const T ex = to_x - field.ax, ey = to_y - field.ay;
         const T u = field.ux * ex + field.uy * ey, v = field.vx * ex + field.vy * ey;
-        const LaneMask<T> crosses = (lesser(lesser(u, v), 1 - u - v) < T{}) & found;
+        const LaneMask<T> crosses = (lesser(lesser(u, v), 1 - u - v) < T{}) & found & ~rests;
         const LaneMask<T> stays = is_better(step, to_x - px, to_y - py) & ~crosses;
         store_every_other(&pixels.dx[index], stays ? to_x - rest_x : own_x);
         store_every_other(&pixels.dy[index], stays ? to_y - rest_y : own_y);
@@ -290,13 +291,18 @@ struct Sweep {
     template <typename T>
     IMGMESH_INLINE int move_in_lanes(int x, int y) const {
         constexpr int kColumns = 2 * kLaneCount<T>;
-        for (; x + kColumns < pixels.width; x += kColumns) {  // reads up to x + kColumns
-            if (pixels.freedom.empty() || all_free(pixels.index(x, y), kLaneCount<T>))
-                move_lanes<T>(x, y);
+        // The last lanes that there is room for: they read up to their first column + kColumns.
+        const int last = pixels.width - 1 - kColumns - (pixels.width - 1 - x) % 2;
+        if (last < x) return x;
+        for (;; x += kColumns) {
+            const int resting = std::max(0, x - last) / 2;
+            const int begin = std::min(x, last);
+            if (pixels.freedom.empty() || all_free(pixels.index(begin, y), kLaneCount<T>))
+                move_lanes<T>(begin, y, resting);
             else
-                for (int lane = 0; lane < kColumns; lane += 2) move_pixel(x + lane, y);
+                for (int lane = 2 * resting; lane < kColumns; lane += 2) move_pixel(begin + lane, y);
+            if (x >= last) return last + kColumns;
         }
-        return x;
     }
 
     template <typename T>
@@ -308,7 +314,6 @@ struct Sweep {
                 x = 2;
             }
             x = move_in_lanes<T>(x, y);
-            if constexpr (kLaneCount<T> == 16) x = move_in_lanes<Float8>(x, y);
         }
         for (; x < pixels.width; x += 2) move_pixel(x, y);
     }
@@ -386,7 +391,8 @@ void relax(PixelEmbedding& pixels, const BaseMesh& mesh, const std::vector<FaceF
                       params.smoothness,
                       params.rate,
                       static_cast<float>(params.steps),
-                      least_moving_area(params.steps)};
+                      least_moving_area(params.steps),
+                      params.stride};
     auto move_row = &Sweep::move_row_portably;
 #if defined(__x86_64__)
     if (has_avx2()) move_row = &Sweep::move_row_avx2;

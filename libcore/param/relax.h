@@ -63,6 +63,7 @@ struct RelaxParams {
     int steps = kUsualSteps;  ///< of the grid of positions in a pixel: 8, 16 or 32
     float rate = 0;           ///< what a bit of a stored displacement costs [feature^2]; 0: nothing
     int sweeps = 4;
+    float stride = 1;  ///< length of a step, in Newton's; above 1, below 2: fewer sweeps, a less even map
 };
 
 /// Takes Gauss-Newton steps on the sum of |c(P) - c|^2 + mu |P - t|^2. c(P) is the base mesh's colour at P, c

@@ -84,12 +84,13 @@ struct NewtonStep {
                                      T dy) {
         for (int c = 0; c < features; ++c) add(fx[c], fy[c], f[c] + fx[c] * dx + fy[c] * dy - color[c]);
     }
-    IMGMESH_INLINE void solve(T& sx, T& sy) const {
+    // Sets the step to `stride` times the way to the best place.
+    IMGMESH_INLINE void solve(float stride, T& sx, T& sy) const {
         // Sums of terms that are never negative. (In J'J + mu I as one matrix, with J'J steep and singular,
         // only rounding would be left.)
         T minor = gxx * gyy - gxy * gxy;
         minor = minor > T{} ? minor : T{};
-        const T inverse = 1 / (mu * (mu + gxx + gyy) + minor);
+        const T inverse = stride / (mu * (mu + gxx + gyy) + minor);
         sx = clamped(((gyy + mu) * bx - gxy * by) * inverse, -kLongestStep, kLongestStep);
         sy = clamped(((gxx + mu) * by - gxy * bx) * inverse, -kLongestStep, kLongestStep);
     }
