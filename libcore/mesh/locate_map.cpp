@@ -122,7 +122,8 @@ class Rows {
 // Finds displacements that give a map back.
 class Inverse {
   public:
-    Inverse(const BaseMesh& mesh, const PixelMap& map) : map_(map), rows_(mesh, map, map.precision) {
+    Inverse(const BaseMesh& mesh, const PixelMap& map, const Displacements* made_of)
+        : map_(map), made_of_(made_of), rows_(mesh, map, map.precision) {
         static_cast<GridSize&>(found_) = map;
         found_.dx = parallel_vector<std::int16_t>(map.size());
         found_.dy = parallel_vector<std::int16_t>(map.size());
@@ -151,6 +152,7 @@ class Inverse {
     bool find_row(Displacements& d, int y, Rows::Scratch& scratch, std::span<PixelCoord> back) {
         const auto row = map_.row(y);
         if (!set_nearest(d, y)) return false;
+        if (made_of_ && made_of_->steps == d.steps && same_row(d, *made_of_, y)) return true;
         const auto comes_back = [&] {
             return rows_.locate(d, y, scratch, back) == d.width &&
                    std::equal(back.begin(), back.end(), row.begin());
@@ -159,6 +161,12 @@ class Inverse {
         for (int x = 0; x < d.width; ++x)
             if (row[as_index(x)].face != kNone && !fits(d, x, y) && !search(d, x, y)) return false;
         return comes_back();
+    }
+
+    static bool same_row(const Displacements& a, const Displacements& b, int y) {
+        const auto begin = static_cast<std::ptrdiff_t>(a.row_begin(y)), end = begin + a.width;
+        return std::equal(a.dx.begin() + begin, a.dx.begin() + end, b.dx.begin() + begin) &&
+               std::equal(a.dy.begin() + begin, a.dy.begin() + end, b.dy.begin() + begin);
     }
 
     // Finds grid points of a map with so many steps.
@@ -265,6 +273,7 @@ class Inverse {
     static std::int32_t extent(GridPoint side) { return std::max(std::abs(side.x), std::abs(side.y)); }
 
     const PixelMap& map_;
+    const Displacements* made_of_;
     Rows rows_;
     Displacements found_;
 };
@@ -300,13 +309,14 @@ LocatedMap locate_map(const BaseMesh& mesh, const Displacements& displacements, 
     return located;
 }
 
-std::optional<Displacements> displacements_of(const BaseMesh& mesh, const PixelMap& map) {
+std::optional<Displacements> displacements_of(const BaseMesh& mesh, const PixelMap& map,
+                                              const Displacements* made_of) {
     if (map.empty() || std::any_of(map.begin(), map.end(), [&](const PixelCoord& c) {
             return c.face != kNone && c.face >= mesh.faces.size();
         }))
         return std::nullopt;
     try {
-        Inverse inverse(mesh, map);
+        Inverse inverse(mesh, map, made_of);
         for (const int steps : {8, 16, 32})
             if (inverse.find(steps)) return std::move(inverse).found();
     } catch (const Error& e) {

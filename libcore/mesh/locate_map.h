@@ -30,6 +30,11 @@ LocatedMap locate_map(const BaseMesh& mesh, const Displacements& displacements, 
 /// this map, with its precision. Nothing if there are none: positions off the grid (a map tracked, warped or
 /// made by other software), a displacement of more than 16 bits, or a mesh that locate_map() refuses. Faces
 /// must exist. Takes little time where there are none, as the first pixels tell.
-std::optional<Displacements> displacements_of(const BaseMesh& mesh, const PixelMap& map);
+///
+/// made_of  the displacements from which locate_map() has made this map, if they are known: rows in which
+/// they
+///          are found again need no check
+std::optional<Displacements> displacements_of(const BaseMesh& mesh, const PixelMap& map,
+                                              const Displacements* made_of = nullptr);
 
 }  // namespace imgmesh

@@ -53,10 +53,11 @@ bool keeps_areas(const BaseMesh& mesh, const PixelMap& map) {
 
 // Whether the map has displacements, and they fold no triangle. In halves, positions in large faces are known
 // to less than the grid, so these need not be the displacements of which the map was made.
-bool unfolds(const BaseMesh& mesh, const PixelMap& map) {
-    const std::optional<Displacements> found = displacements_of(mesh, map);
+bool unfolds(const BaseMesh& mesh, const PixelMap& map, const Displacements& made_of) {
+    const std::optional<Displacements> found = displacements_of(mesh, map, &made_of);
     if (!found) return false;
     const Displacements& d = *found;
+    if (d.steps == made_of.steps && d.dx == made_of.dx && d.dy == made_of.dy) return true;
     struct Point {
         std::int64_t x, y;
         bool inside;
@@ -92,7 +93,7 @@ PixelMap stored_map(const BaseMesh& mesh, const Displacements& places,
     };
     if (wanted != WeightPrecision::kFloat) {
         PixelMap map = with(WeightPrecision::kHalf);
-        if (keeps_areas(mesh, map) && (wanted || unfolds(mesh, map))) return map;
+        if (keeps_areas(mesh, map) && (wanted || unfolds(mesh, map, places))) return map;
         if (wanted)
             throw Error(
                 ErrorKind::kUnsupported,

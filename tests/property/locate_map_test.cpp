@@ -147,6 +147,7 @@ TEST_CASE("locate_map: the rule, on random meshes, and back") {
                     const auto back = displacements_of(mesh, map);
                     REQUIRE(back.has_value());
                     CHECK(back->steps <= steps);
+                    CHECK(displacements_of(mesh, map, &d) == back);
                     // Weights in 1/2048 leave some room for other displacements in the larger faces.
                     for (std::size_t i = 0; precision == WeightPrecision::kFloat && i < map.size(); ++i) {
                         CHECK(back->dx[i] * steps == d.dx[i] * back->steps);
