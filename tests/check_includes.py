@@ -23,7 +23,8 @@ SOURCES = {".h", ".hpp", ".cpp", ".inl"}
 # room itself.
 RANKS = {
     "libcore": [["base"], ["image"], ["mesh"],
-                ["simplify", "param", "refine", "recon", "segment", "warp", "metrics"], ["coding"], ["pipeline"]],
+                ["simplify", "param", "refine", "recon", "segment", "warp", "metrics"], ["optimize"], ["coding"],
+                ["pipeline"]],
     "formats": [["files"], ["findings"], ["exr"], ["picture", "gltf", "compact"], ["container"], ["export"]],
 }
 RANK_OF = {layer: {room: rank for rank, rooms in enumerate(ranks) for room in rooms} for layer, ranks in RANKS.items()}

@@ -7,7 +7,7 @@
 
 #include "libcore/base/index.h"
 #include "libcore/coding/integer_math.h"
-#include "libcore/coding/place.h"
+#include "libcore/optimize/place.h"
 
 namespace imgmesh::coding {
 namespace {

@@ -9,10 +9,10 @@
 #include "libcore/base/index.h"
 #include "libcore/coding/check_request.h"
 #include "libcore/coding/error_space.h"
-#include "libcore/coding/grid_optimizer.h"
-#include "libcore/coding/grid_schedule.h"
 #include "libcore/coding/mesh_trial.h"
 #include "libcore/coding/pixel_weights.h"
+#include "libcore/optimize/grid_optimizer.h"
+#include "libcore/optimize/grid_schedule.h"
 
 namespace imgmesh {
 namespace {
@@ -35,6 +35,20 @@ constexpr double kExact = 60, kFlat = 38;
 // Decibels that twice the vertices gain, before anything is known; how far a mesh may be below a PSNR and
 // above it, at first and at last, before the steps of its colours do the rest.
 constexpr double kDecibels = 1.8, kBelow = 0.04, kFirstAbove = 0.3, kAbove = 0.15;
+
+// The optimiser's places per quarter pixel.
+constexpr int kPlacesPerQuarter = kPlacesPerPixel / 4;
+
+// A mesh whose places are points of a grid.
+CodedMesh on_grid(const PlacedMesh& mesh, const CodedGrid& grid, int channels) {
+    const PlaceGrid places{grid.width, grid.height, grid.step * kPlacesPerQuarter};
+    CodedMesh out{grid, channels, {}, {}, mesh.faces};
+    for (const Spot& spot : mesh.spot) {
+        out.point.push_back({places.column(spot.place.x), places.row(spot.place.y)});
+        for (int c = 0; c < channels; ++c) out.color.push_back(static_cast<float>(spot.color[c]));
+    }
+    return out;
+}
 
 class PictureEncoder {
   public:
@@ -90,7 +104,9 @@ class PictureEncoder {
         step_ = grid_step(vertices);
         OptimizeParams params;
         params.effort = params_.effort;
-        optimizer_ = std::make_unique<GridOptimizer>(sums_, regular_mesh(sums_, step_, vertices), params);
+        params.step = step_ * kPlacesPerQuarter;
+        optimizer_ =
+            std::make_unique<GridOptimizer>(sums_, regular_mesh(sums_, params.step, vertices), params);
     }
     void optimize(const GridSchedule& schedule) {
         static const GridSchedule dense{.rounds = 1, .sweeps = 0, .last_rounds = 0};
@@ -100,7 +116,8 @@ class PictureEncoder {
 
     // The mesh as it is now, without colours.
     void take_mesh() {
-        CodedMesh mesh = optimizer_->result();
+        CodedMesh mesh =
+            on_grid(optimizer_->result(), {sums_.width(), sums_.height(), step_}, sums_.channels());
         mesh.grid.width = picture_.width;
         mesh.grid.height = picture_.height;
         trial_ = std::make_unique<MeshTrial>(

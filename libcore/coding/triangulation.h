@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "libcore/base/index.h"
-#include "libcore/coding/place.h"
+#include "libcore/optimize/place.h"
 
 namespace imgmesh::coding {
 

@@ -3,7 +3,7 @@
 //
 //     coding-bench PICTURE VERTICES STEP [EFFORT [FIELD=VALUE...]]
 //
-// STEP is that of the grid in quarter pixels. Fields are those of libcore/coding/grid_schedule.h.
+// STEP is that of the grid in quarter pixels. Fields are those of libcore/optimize/grid_schedule.h.
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -14,8 +14,8 @@
 #include <utility>
 
 #include "formats/picture/image_io.h"
-#include "libcore/coding/grid_optimizer.h"
-#include "libcore/coding/grid_schedule.h"
+#include "libcore/optimize/grid_optimizer.h"
+#include "libcore/optimize/grid_schedule.h"
 
 using namespace imgmesh;
 
@@ -62,9 +62,10 @@ int main(int argc, char** argv) try {
     GridSchedule schedule = grid_schedule(params.effort);
     for (int i = 5; i < argc; ++i) change(schedule, argv[i]);
 
+    params.step = std::atoi(argv[3]) * kPlacesPerPixel / 4;
     const double begin = cpu_seconds();
     const RowSums sums(image);
-    GridOptimizer optimizer(sums, regular_mesh(sums, std::atoi(argv[3]), vertices / 4), params);
+    GridOptimizer optimizer(sums, regular_mesh(sums, params.step, vertices / 4), params);
     optimizer.set_vertex_count(vertices);
     const auto psnr = [&] {
         const double samples = static_cast<double>(image.data.size());

@@ -10,7 +10,7 @@
 #include "libcore/coding/coded_stream.h"
 #include "libcore/coding/encode_picture.h"
 #include "libcore/coding/numbers.h"
-#include "libcore/coding/place.h"
+#include "libcore/optimize/place.h"
 #include "libcore/coding/range_coder.h"
 
 using namespace imgmesh;

@@ -7,9 +7,9 @@
 #include <set>
 
 #include "libcore/base/error.h"
-#include "libcore/coding/fan_fit.h"
-#include "libcore/coding/grid_optimizer.h"
-#include "libcore/coding/grid_schedule.h"
+#include "libcore/optimize/fan_fit.h"
+#include "libcore/optimize/grid_optimizer.h"
+#include "libcore/optimize/grid_schedule.h"
 
 using namespace imgmesh;
 
@@ -31,11 +31,8 @@ ChannelGrid test_picture(int width, int height, int channels) {
 struct Corners {
     Place a, b, c;
 };
-Corners corners_of(const CodedMesh& mesh, const Face& face) {
-    const auto place = [&](Id v) {
-        return Place{mesh.grid.x(mesh.point[v][0]), mesh.grid.y(mesh.point[v][1])};
-    };
-    return {place(face[0]), place(face[1]), place(face[2])};
+Corners corners_of(const PlacedMesh& mesh, const Face& face) {
+    return {mesh.spot[face[0]].place, mesh.spot[face[1]].place, mesh.spot[face[2]].place};
 }
 
 Moments moments_of(const RowSums& sums, const Corners& t) {
@@ -52,11 +49,11 @@ bool contains(const Corners& t, const Place& p) {
 }
 
 // The squared error of the mesh's drawing, pixel by pixel.
-double drawn_error(const CodedMesh& mesh, const ChannelGrid& image) {
+double drawn_error(const PlacedMesh& mesh, const ChannelGrid& image) {
     double sum = 0;
     for (int y = 0; y < image.height; ++y)
         for (int x = 0; x < image.width; ++x) {
-            const Place p{kQuarters * x, kQuarters * y};
+            const Place p{kPlacesPerPixel * x, kPlacesPerPixel * y};
             for (const Face& face : mesh.faces) {
                 const Corners t = corners_of(mesh, face);
                 if (!contains(t, p)) continue;
@@ -64,10 +61,9 @@ double drawn_error(const CodedMesh& mesh, const ChannelGrid& image) {
                 const double weight[3] = {static_cast<double>(area2(p, t.b, t.c)) / area,
                                           static_cast<double>(area2(t.a, p, t.c)) / area,
                                           static_cast<double>(area2(t.a, t.b, p)) / area};
-                for (int c = 0; c < mesh.channels; ++c) {
+                for (int c = 0; c < image.channels; ++c) {
                     double drawn = 0;
-                    for (std::size_t i = 0; i < 3; ++i)
-                        drawn += weight[i] * mesh.color[face[i] * as_index(mesh.channels) + as_index(c)];
+                    for (std::size_t i = 0; i < 3; ++i) drawn += weight[i] * mesh.spot[face[i]].color[c];
                     sum += std::pow(drawn - image.pixel(x, y)[c], 2);
                 }
                 break;
@@ -76,12 +72,20 @@ double drawn_error(const CodedMesh& mesh, const ChannelGrid& image) {
     return sum;
 }
 
-// Whether the faces are positive and cover the image once, and whether its corners are vertices.
-void check_legal(const CodedMesh& mesh) {
-    const std::set<GridPoint> points(mesh.point.begin(), mesh.point.end());
-    CHECK(points.size() == mesh.point.size());
-    for (const std::int32_t column : {0, mesh.grid.columns() - 1})
-        for (const std::int32_t row : {0, mesh.grid.rows() - 1}) CHECK(points.contains({column, row}));
+// Whether the faces are positive and cover the image once, whether its corners are vertices, and whether all
+// vertices are on the grid.
+void check_legal(const PlacedMesh& mesh, const ChannelGrid& image, int step) {
+    const PlaceGrid grid{image.width, image.height, step};
+    std::set<std::pair<int, int>> points;
+    for (const Spot& spot : mesh.spot) {
+        const Place& p = spot.place;
+        points.emplace(p.x, p.y);
+        CHECK(grid.x(grid.column(p.x)) == p.x);
+        CHECK(grid.y(grid.row(p.y)) == p.y);
+    }
+    CHECK(points.size() == mesh.spot.size());
+    for (const int x : {0, grid.right()})
+        for (const int y : {0, grid.bottom()}) CHECK(points.contains({x, y}));
     std::int64_t area = 0;
     std::set<std::pair<Id, Id>> edges;
     for (const Face& face : mesh.faces) {
@@ -91,12 +95,18 @@ void check_legal(const CodedMesh& mesh) {
         // No directed edge twice: with the area, no two faces overlap.
         for (std::size_t i = 0; i < 3; ++i) CHECK(edges.emplace(face[i], face[(i + 1) % 3]).second);
     }
-    CHECK(area == 2 * std::int64_t{mesh.grid.right()} * mesh.grid.bottom());
+    CHECK(area == 2 * std::int64_t{grid.right()} * grid.bottom());
 }
 
-CodedMesh optimized(const ChannelGrid& image, int step, std::size_t vertices, const GridSchedule& schedule) {
+constexpr int kQuarter = kPlacesPerPixel / 4;
+
+GridOptimizer start(const RowSums& sums, int step, std::size_t vertices) {
+    return GridOptimizer(sums, regular_mesh(sums, step, vertices), {.step = step});
+}
+
+PlacedMesh optimized(const ChannelGrid& image, int step, std::size_t vertices, const GridSchedule& schedule) {
     const RowSums sums(image);
-    GridOptimizer optimizer(sums, regular_mesh(sums, step, vertices / 3), {});
+    GridOptimizer optimizer = start(sums, step, vertices / 3);
     optimizer.set_vertex_count(vertices);
     optimizer.optimize(schedule);
     return optimizer.result();
@@ -117,8 +127,8 @@ TEST_CASE("moments of a triangle are those of the pixels inside it, as much as e
         std::mt19937 random(7);
         for (int trial = 0; trial < 300; ++trial) {
             const auto any = [&] {
-                return Place{static_cast<int>(random() % (4 * 39 + 1)),
-                             static_cast<int>(random() % (4 * 29 + 1))};
+                return Place{static_cast<int>(random() % (kPlacesPerPixel * 39 + 1)),
+                             static_cast<int>(random() % (kPlacesPerPixel * 29 + 1))};
             };
             const Corners t{any(), any(), any()};
             if (area2(t.a, t.b, t.c) <= 0) continue;
@@ -126,7 +136,7 @@ TEST_CASE("moments of a triangle are those of the pixels inside it, as much as e
             bool on_edge = false;
             for (int y = 0; y < image.height; ++y)
                 for (int x = 0; x < image.width; ++x) {
-                    const Place p{4 * x, 4 * y};
+                    const Place p{kPlacesPerPixel * x, kPlacesPerPixel * y};
                     if (!contains(t, p)) continue;
                     on_edge |= area2(t.a, t.b, p) == 0 || area2(t.b, t.c, p) == 0 || area2(t.c, t.a, p) == 0;
                     Double4 value = {};
@@ -154,16 +164,15 @@ TEST_CASE("moments of a triangle are those of the pixels inside it, as much as e
 
 TEST_CASE("the error is that of the drawing, and every mesh is legal") {
     for (const int channels : {1, 2, 3, 4})
-        for (const int step : {1, 4, 7}) {
+        for (const int step : {1, kQuarter, 4 * kQuarter, 7 * kQuarter}) {
             const ChannelGrid image = test_picture(61, 47, channels);
             const RowSums sums(image);
-            GridOptimizer optimizer(sums, regular_mesh(sums, step, 12), {});
+            GridOptimizer optimizer = start(sums, step, 12);
             optimizer.set_vertex_count(40);
             optimizer.optimize(kShort);
-            const CodedMesh mesh = optimizer.result();
-            CHECK(mesh.channels == channels);
-            CHECK(mesh.point.size() == 40);
-            check_legal(mesh);
+            const PlacedMesh mesh = optimizer.result();
+            CHECK(mesh.spot.size() == 40);
+            check_legal(mesh, image, step);
             CHECK(optimizer.squared_error() == doctest::Approx(drawn_error(mesh, image)).epsilon(1e-4));
         }
 }
@@ -172,7 +181,7 @@ TEST_CASE("every pixel is in one face, also on edges") {
     const ChannelGrid image = test_picture(50, 33, 3);
     const RowSums sums(image);
     // Vertices on pixel centres: many of these are on edges.
-    const CodedMesh mesh = optimized(image, 8, 60, kShort);
+    const PlacedMesh mesh = optimized(image, 8 * kQuarter, 60, kShort);
     Moments total;
     for (const Face& face : mesh.faces) add(total, moments_of(sums, corners_of(mesh, face)));
     CHECK(double{total.shape[0]} == 50 * 33);
@@ -183,7 +192,7 @@ TEST_CASE("every pixel is in one face, also on edges") {
 TEST_CASE("the number of vertices is met, up and down") {
     const ChannelGrid image = test_picture(80, 60, 3);
     const RowSums sums(image);
-    GridOptimizer optimizer(sums, regular_mesh(sums, 4, 4), {});
+    GridOptimizer optimizer = start(sums, 4 * kQuarter, 4);
     CHECK(optimizer.vertices() == 4);
     for (const std::size_t vertices : {100, 104, 97, 30, 4, 50}) {
         optimizer.set_vertex_count(vertices);
@@ -192,14 +201,14 @@ TEST_CASE("the number of vertices is met, up and down") {
         optimizer.optimize(touch_up_schedule());
         CHECK(optimizer.vertices() == vertices);
         CHECK(optimizer.squared_error() <= before);
-        check_legal(optimizer.result());
+        check_legal(optimizer.result(), image, 4 * kQuarter);
     }
 }
 
 TEST_CASE("optimising never raises the error, and more vertices have less") {
     const ChannelGrid image = test_picture(80, 60, 3);
     const RowSums sums(image);
-    GridOptimizer optimizer(sums, regular_mesh(sums, 4, 30), {});
+    GridOptimizer optimizer = start(sums, 4 * kQuarter, 30);
     double before = optimizer.squared_error();
     for (int times = 0; times < 3; ++times) {
         optimizer.optimize(kShort);
@@ -216,7 +225,7 @@ TEST_CASE("a picture that a mesh can draw is found") {
     for (int y = 0; y < 33; ++y)
         for (int x = 0; x < 65; ++x) *image.pixel(x, y) = static_cast<float>(x <= 24 ? 4 * x : 96 - (x - 24));
     const RowSums sums(image);
-    GridOptimizer optimizer(sums, regular_mesh(sums, 16, 4), {});
+    GridOptimizer optimizer = start(sums, 16 * kQuarter, 4);
     optimizer.set_vertex_count(6);
     optimizer.optimize(kShort);
     CHECK(optimizer.squared_error() < 65 * 33 * 1e-3);
@@ -224,20 +233,23 @@ TEST_CASE("a picture that a mesh can draw is found") {
 
 TEST_CASE("the same picture gives the same mesh") {
     const ChannelGrid image = test_picture(61, 47, 3);
-    const CodedMesh one = optimized(image, 4, 40, kShort), two = optimized(image, 4, 40, kShort);
-    CHECK(one.point == two.point);
+    const PlacedMesh one = optimized(image, 4 * kQuarter, 40, kShort),
+                     two = optimized(image, 4 * kQuarter, 40, kShort);
     CHECK(one.faces == two.faces);
-    CHECK(one.color == two.color);
+    for (Id v = 0; v < one.spot.size(); ++v) {
+        CHECK(one.spot[v].place == two.spot[v].place);
+        for (int c = 0; c < 3; ++c) CHECK(double{one.spot[v].color[c]} == double{two.spot[v].color[c]});
+    }
 }
 
 TEST_CASE("the smallest pictures have four vertices") {
     const ChannelGrid image = test_picture(2, 2, 3);
     const RowSums sums(image);
-    GridOptimizer optimizer(sums, regular_mesh(sums, 4, 100), {});
+    GridOptimizer optimizer = start(sums, 4 * kQuarter, 100);
     optimizer.set_vertex_count(100);
     optimizer.optimize();
     CHECK(optimizer.vertices() == 4);
-    check_legal(optimizer.result());
+    check_legal(optimizer.result(), image, 4 * kQuarter);
     CHECK(optimizer.squared_error() < 1e-3);
     CHECK_THROWS_AS(RowSums(test_picture(1, 5, 3)), Error);
     CHECK_THROWS_AS(RowSums(test_picture(5, 5, 5)), Error);

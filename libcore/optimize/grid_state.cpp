@@ -1,6 +1,8 @@
-#include "libcore/coding/grid_state.h"
+#include "libcore/optimize/grid_state.h"
 
 #include <algorithm>
+
+#include "libcore/mesh/fixed_axes.h"
 
 namespace imgmesh {
 namespace {
@@ -21,47 +23,78 @@ std::uint64_t along_curve(const Place& place) {
 
 }  // namespace
 
-GridState::GridState(const RowSums& sums, const CodedMesh& mesh)
+GridState::GridState(const RowSums& sums, const PlacedMesh& mesh, const PlaceGrid& grid,
+                     const FaceRules& rules)
     : sums_(&sums),
-      grid_(mesh.grid),
-      mesh_(mesh.faces, mesh.point.size()),
-      vertex_(mesh.point.size()),
-      spot_(mesh.point.size()),
-      error_(mesh.faces.size()) {
+      grid_(grid),
+      rules_(rules),
+      mesh_(mesh.faces, mesh.spot.size()),
+      vertex_(mesh.spot.size()),
+      spot_(mesh.spot),
+      cost_(mesh.faces.size()) {
+    low_ = high_ = spot_.front().place;
     for (std::size_t v = 0; v < vertex_.size(); ++v) {
-        vertex_[v].column = mesh.point[v][0];
-        vertex_[v].row = mesh.point[v][1];
-        spot_[v].place = place(vertex_[v].column, vertex_[v].row);
-        for (std::size_t c = 0; c < as_index(mesh.channels) && !mesh.color.empty(); ++c)
-            spot_[v].color[c] = mesh.color[v * as_index(mesh.channels) + c];
+        const Place& p = spot_[v].place;
+        vertex_[v].column = grid_.column(p.x);
+        vertex_[v].row = grid_.row(p.y);
+        vertex_[v].fixed = mesh.fixed[v];
+        low_ = {std::min(low_.x, p.x), std::min(low_.y, p.y)};
+        high_ = {std::max(high_.x, p.x), std::max(high_.y, p.y)};
     }
-    for (Id f = 0; f < error_.size(); ++f) error_[f] = face_error(mesh_.face(f));
+    set_rules(rules);
 }
 
-double GridState::face_error(const Face& face) const {
+void GridState::set_rules(const FaceRules& rules) {
+    rules_ = rules;
+    for (Id f = 0; f < cost_.size(); ++f)
+        if (mesh_.live_face(f)) cost_[f] = face_cost(mesh_.face(f));
+    all_changed();
+}
+
+void GridState::set_pattern(int longest, int first) {
+    longest_step_ = longest;
+    first_step_ = static_cast<std::uint8_t>(first);
+    for (Vertex& v : vertex_) v.step = first_step_;
+}
+
+double GridState::face_cost(const Face& face) const {
     const auto [a, b, c] = face;
     const FaceFit fit = face_fit(*sums_, spot_[a].place, spot_[b].place, spot_[c].place);
-    return fit.error(spot_[a].color, spot_[b].color, spot_[c].color);
+    return fit.error(spot_[a].color, spot_[b].color, spot_[c].color) +
+           rules_.shape_cost(spot_[a].place, spot_[b].place, spot_[c].place);
+}
+
+double GridState::cost() const {
+    double sum = 0;
+    for (Id f = 0; f < cost_.size(); ++f)
+        if (mesh_.live_face(f)) sum += cost_[f];
+    return sum;
 }
 
 double GridState::squared_error() const {
     double sum = 0;
-    for (Id f = 0; f < error_.size(); ++f)
-        if (mesh_.live_face(f)) sum += error_[f];
+    for (Id f = 0; f < cost_.size(); ++f)
+        if (const auto [a, b, c] = mesh_.face(f); mesh_.live_face(f))
+            sum += cost_[f] - rules_.shape_cost(spot_[a].place, spot_[b].place, spot_[c].place);
     return sum;
 }
 
-CodedMesh GridState::result() const {
-    CodedMesh out{grid_, sums_->channels(), {}, {}, {}};
+std::size_t GridState::faces() const {
+    std::size_t count = 0;
+    for (Id f = 0; f < cost_.size(); ++f) count += mesh_.live_face(f);
+    return count;
+}
+
+PlacedMesh GridState::result() const {
+    PlacedMesh out;
     std::vector<Id> id(mesh_.vertices(), kNone);
     for (Id v = 0; v < mesh_.vertices(); ++v) {
         if (!mesh_.live_vertex(v)) continue;
-        id[v] = as_id(out.point.size());
-        out.point.push_back({vertex_[v].column, vertex_[v].row});
-        for (std::size_t c = 0; c < as_index(out.channels); ++c)
-            out.color.push_back(static_cast<float>(spot_[v].color[c]));
+        id[v] = as_id(out.spot.size());
+        out.spot.push_back(spot_[v]);
+        out.fixed.push_back(vertex_[v].fixed);
     }
-    for (Id f = 0; f < error_.size(); ++f)
+    for (Id f = 0; f < cost_.size(); ++f)
         if (const auto [a, b, c] = mesh_.face(f); mesh_.live_face(f))
             out.faces.push_back({id[a], id[b], id[c]});
     return out;
@@ -82,31 +115,32 @@ void GridState::reorder() {
         vertices.back().removal_holds = false;
     }
     std::vector<std::pair<Face, double>> faces;
-    for (Id f = 0; f < error_.size(); ++f) {
+    for (Id f = 0; f < cost_.size(); ++f) {
         if (!mesh_.live_face(f)) continue;
         Face face = mesh_.face(f);
         for (Id& v : face) v = id[v];
         // The lowest corner first: so faces have one order.
         std::rotate(face.begin(), std::min_element(face.begin(), face.end()), face.end());
-        faces.emplace_back(face, error_[f]);
+        faces.emplace_back(face, cost_[f]);
     }
     std::sort(faces.begin(), faces.end());
     std::vector<Face> corners;
-    error_.clear();
+    cost_.clear();
     for (const auto& [face, error] : faces) {
         corners.push_back(face);
-        error_.push_back(error);
+        cost_.push_back(error);
     }
+    all_changed();
     vertex_ = std::move(vertices);
     spot_ = std::move(spots);
     mesh_ = EditMesh(std::move(corners), vertex_.size());
 }
 
 void GridState::fit_colors(int passes) {
-    std::vector<FaceFit> fits(error_.size());
+    std::vector<FaceFit> fits(cost_.size());
     // The faces of each vertex, one after the other: `first` is where its own begin.
     std::vector<Id> first(mesh_.vertices() + 1, 0), corners;
-    for (Id f = 0; f < error_.size(); ++f) {
+    for (Id f = 0; f < cost_.size(); ++f) {
         if (!mesh_.live_face(f)) continue;
         const auto [a, b, c] = mesh_.face(f);
         fits[f] = face_fit(*sums_, spot_[a].place, spot_[b].place, spot_[c].place);
@@ -115,7 +149,7 @@ void GridState::fit_colors(int passes) {
     for (std::size_t v = 0; v < mesh_.vertices(); ++v) first[v + 1] += first[v];
     corners.resize(first.back());
     std::vector<Id> next(first.begin(), first.end() - 1);
-    for (Id f = 0; f < error_.size(); ++f)
+    for (Id f = 0; f < cost_.size(); ++f)
         for (std::size_t i = 0; i < 3 && mesh_.live_face(f); ++i)
             corners[next[mesh_.face(f)[i]]++] = 3 * f + static_cast<Id>(i);
     for (int pass = 0; pass < passes; ++pass)
@@ -131,20 +165,30 @@ void GridState::fit_colors(int passes) {
                 rhs += fit.rhs[i] - fit.gram[i][j] * spot_[face[j]].color -
                        fit.gram[i][m] * spot_[face[m]].color;
             }
-            spot_[v].color = rhs / weight;
+            const Double4 best = rhs / weight;
+            spot_[v].color = rules_.allowed(best);
         }
-    for (Id f = 0; f < error_.size(); ++f)
+    for (Id f = 0; f < cost_.size(); ++f)
         if (const auto [a, b, c] = mesh_.face(f); mesh_.live_face(f))
-            error_[f] = fits[f].error(spot_[a].color, spot_[b].color, spot_[c].color);
+            cost_[f] = fits[f].error(spot_[a].color, spot_[b].color, spot_[c].color) +
+                       rules_.shape_cost(spot_[a].place, spot_[b].place, spot_[c].place);
     for (Vertex& v : vertex_) v.removal_holds = false;
+    all_changed();
 }
 
-bool GridState::on_side(Id v, bool column) const {
-    if (column) return vertex_[v].column == 0 || vertex_[v].column == grid_.columns() - 1;
-    return vertex_[v].row == 0 || vertex_[v].row == grid_.rows() - 1;
+std::uint8_t GridState::side_of(Id a, Id b) const {
+    const Place &p = spot_[a].place, &q = spot_[b].place;
+    if (p.x == q.x && (p.x == low_.x || p.x == high_.x)) return kFixedX;
+    if (p.y == q.y && (p.y == low_.y || p.y == high_.y)) return kFixedY;
+    return kFixedX | kFixedY;
+}
+
+void GridState::all_changed() {
+    face_.assign(cost_.size(), {++tick_, 0});
 }
 
 void GridState::changed(Id f) {
+    touch(f);
     for (const Id v : mesh_.face(f))
         if (v != kNone) vertex_[v].removal_holds = false;
 }

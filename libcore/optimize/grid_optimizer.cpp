@@ -1,15 +1,18 @@
-#include "libcore/coding/grid_optimizer.h"
+#include "libcore/optimize/grid_optimizer.h"
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
 
 #include "libcore/base/index.h"
-#include "libcore/coding/grid_schedule.h"
-#include "libcore/coding/grid_state.h"
+#include "libcore/mesh/fixed_axes.h"
+#include "libcore/optimize/grid_schedule.h"
+#include "libcore/optimize/grid_state.h"
 
 namespace imgmesh {
 namespace {
 
+constexpr std::string_view kStage = "refine";
 // Colours of a new mesh start far from their best.
 constexpr int kFirstPasses = 12;
 // Of Gauss-Seidel between other steps.
@@ -48,19 +51,31 @@ class Fall {
 
 }  // namespace
 
-GridOptimizer::GridOptimizer(const RowSums& sums, const CodedMesh& start, const OptimizeParams& params)
-    : params_(params), state_(std::make_unique<GridState>(sums, start)) {
+GridOptimizer::GridOptimizer(const RowSums& sums, const PlacedMesh& start, const OptimizeParams& params)
+    : params_(params),
+      state_(std::make_unique<GridState>(sums, start, PlaceGrid{sums.width(), sums.height(), params.step},
+                                         FaceRules(params.limits, 0))) {
+    state_->set_pattern(params.longest_step, params.first_step);
+    if (params.newton_steps) state_->use_newton_steps();
     state_->fit_colors(kFirstPasses);
+    if (params.shape_weight > 0) {
+        const double unit =
+            params.shape_weight * state_->squared_error() / static_cast<double>(state_->faces());
+        state_->set_rules(FaceRules(params.limits, unit));
+    }
 }
 GridOptimizer::~GridOptimizer() = default;
 
+double GridOptimizer::cost() const {
+    return state_->cost();
+}
 double GridOptimizer::squared_error() const {
     return state_->squared_error();
 }
 std::size_t GridOptimizer::vertices() const {
     return state_->vertices();
 }
-CodedMesh GridOptimizer::result() const {
+PlacedMesh GridOptimizer::result() const {
     return state_->result();
 }
 
@@ -87,26 +102,25 @@ void GridOptimizer::set_vertex_count(std::size_t vertices) {
         if (state_->remove_cheapest(most) == 0) break;
         state_->flip_edges();
     }
-    if (surplus) settle(1);
+    if (surplus) settle(params_.last_settles);
 }
 
-void GridOptimizer::exchange(double share, int settles) {
-    const std::size_t vertices = state_->vertices();
+void GridOptimizer::exchange(std::size_t vertices, double share, int settles) {
     state_->insert_best(static_cast<std::size_t>(std::ceil(share * static_cast<double>(vertices))));
     settle(settles);
     set_vertex_count(vertices);
 }
 
-void GridOptimizer::anneal(const GridSchedule& schedule) {
+void GridOptimizer::anneal(const GridSchedule& schedule, const Progress& progress, double begin, double end) {
     GridRandom random(1);
     const int sweeps = static_cast<int>(
         std::clamp(schedule.sweeps * kUsualVertices / static_cast<double>(state_->vertices()),
                    schedule.sweeps * kLeastSweeps, schedule.sweeps * kMostSweeps));
-    const double start =
-        schedule.temperature * squared_error() / (2 * static_cast<double>(state_->vertices()));
+    const double start = schedule.temperature * cost() / (2 * static_cast<double>(state_->vertices()));
     const Fall temperature(schedule.last_temperature, sweeps),
         spread(schedule.last_spread / schedule.spread, sweeps);
     for (int k = 0; k < sweeps; ++k) {
+        if (progress) progress(begin + (end - begin) * k / sweeps, kStage);
         state_->anneal(schedule.passes, schedule.trials, schedule.spread * spread.at(k),
                        start * temperature.at(k), random);
         state_->fit_colors(2);
@@ -118,38 +132,50 @@ void GridOptimizer::optimize() {
     optimize(grid_schedule(params_.effort));
 }
 
-void GridOptimizer::optimize(const GridSchedule& schedule) {
+void GridOptimizer::optimize(const GridSchedule& schedule, const Progress& progress) {
     const std::size_t vertices = state_->vertices();
+    // In rounds; an anneal of the usual length takes about as long as four.
+    const double anneal_rounds = 0.1 * schedule.sweeps,
+                 rounds = schedule.rounds + anneal_rounds + schedule.last_rounds;
+    double done = 0;
+    const auto share_done = [&] { return done / std::max(rounds, 1.0); };
     GridState best = *state_;
     const auto keep_if_better = [&] {
-        if (state_->vertices() <= vertices && state_->squared_error() < best.squared_error()) best = *state_;
+        if (state_->vertices() == vertices && state_->cost() < best.cost()) best = *state_;
+    };
+    const auto exchanges = [&](int count, double share) {
+        for (int k = 0; k < count; ++k, ++done) {
+            if (progress) progress(share_done(), kStage);
+            exchange(vertices, share, schedule.settles);
+            keep_if_better();
+        }
     };
     settle(schedule.settles);
     keep_if_better();
-    for (int k = 0; k < schedule.rounds; ++k) {
-        exchange(schedule.share, schedule.settles);
-        keep_if_better();
-    }
+    exchanges(schedule.rounds, schedule.share);
     if (schedule.sweeps > 0) {
-        anneal(schedule);
+        const double begin = share_done();
+        done += anneal_rounds;
+        anneal(schedule, progress, begin, share_done());
         keep_if_better();
     }
-    for (int k = 0; k < schedule.last_rounds; ++k) {
-        exchange(schedule.last_share, schedule.settles);
-        keep_if_better();
-    }
+    exchanges(schedule.last_rounds, schedule.last_share);
     *state_ = best;
 }
 
-CodedMesh regular_mesh(const RowSums& sums, int step, std::size_t vertices) {
-    CodedMesh mesh{{sums.width(), sums.height(), step}, sums.channels(), {}, {}, {}};
+PlacedMesh regular_mesh(const RowSums& sums, int step, std::size_t vertices) {
+    PlacedMesh mesh;
+    const PlaceGrid grid{sums.width(), sums.height(), step};
     const double along = std::sqrt(static_cast<double>(vertices) * sums.width() / sums.height());
-    const int last_column = mesh.grid.columns() - 1, last_row = mesh.grid.rows() - 1;
+    const int last_column = grid.columns() - 1, last_row = grid.rows() - 1;
     const int nx = std::clamp(static_cast<int>(along), 2, last_column + 1),
               ny = std::clamp(static_cast<int>(static_cast<double>(vertices) / along), 2, last_row + 1);
     for (int y = 0; y < ny; ++y)
-        for (int x = 0; x < nx; ++x)
-            mesh.point.push_back({x * last_column / (nx - 1), y * last_row / (ny - 1)});
+        for (int x = 0; x < nx; ++x) {
+            mesh.spot.push_back({{grid.x(x * last_column / (nx - 1)), grid.y(y * last_row / (ny - 1))}});
+            mesh.fixed.push_back(static_cast<std::uint8_t>((x == 0 || x == nx - 1 ? kFixedX : 0) |
+                                                           (y == 0 || y == ny - 1 ? kFixedY : 0)));
+        }
     for (int y = 0; y + 1 < ny; ++y)
         for (int x = 0; x + 1 < nx; ++x) {
             const Id a = as_id(y * nx + x), b = as_id(a + as_id(nx)), c = b + 1, d = a + 1;

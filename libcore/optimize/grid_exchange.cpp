@@ -2,7 +2,8 @@
 #include <algorithm>
 #include <limits>
 
-#include "libcore/coding/grid_state.h"
+#include "libcore/mesh/fixed_axes.h"
+#include "libcore/optimize/grid_state.h"
 
 namespace imgmesh {
 
@@ -12,17 +13,20 @@ GridState::Removal GridState::best_removal(Id v) const {
     OneRing ring;
     Fan fan;
     if (!fan_of(v, ring, fan)) return best;
-    const double before = error_of(ring);
+    const double before = cost_of(ring);
     for (std::size_t n = 0; n < ring.vertices(); ++n) {
         // A vertex on a side goes only along that side.
         if (!ring.closed && n != 0 && n != ring.faces) continue;
         const Id u = ring.vertex[n];
         bool legal = true;
-        for (std::size_t k = 0; k < ring.faces && legal; ++k)
-            legal = ring.has(k, u) || area2(spot_[u].place, fan.spot[k].place, fan.spot[k + 1].place) > 0;
+        double after = 0, shape = 0;
+        for (std::size_t k = 0; k < ring.faces && legal; ++k) {
+            if (ring.has(k, u)) continue;
+            legal = rules_.admits(spot_[u].place, fan.spot[k].place, fan.spot[k + 1].place, shape);
+            after += shape;
+        }
         if (!legal) continue;
         // The faces form a fan around u: a part of the ring, from one neighbour of u to the other.
-        double after = 0;
         Moments spoke = {}, next;
         bool known = false;
         const std::size_t start = ring.closed ? n + 1 : 0;
@@ -53,7 +57,7 @@ void GridState::remove(const Removal& removal) {
     mesh_.collapse(ring, removal.into);
     for (std::size_t k = 0; k < ring.faces; ++k) {
         const Id f = ring.face[k];
-        error_[f] = mesh_.live_face(f) ? face_error(mesh_.face(f)) : 0;
+        cost_[f] = mesh_.live_face(f) ? face_cost(mesh_.face(f)) : 0;
     }
 }
 
@@ -68,7 +72,7 @@ std::size_t GridState::remove_cheapest(std::size_t most) {
     std::sort(all.begin(), all.end(), [](const Removal& a, const Removal& b) {
         return a.cost != b.cost ? a.cost < b.cost : a.v < b.v;
     });
-    std::vector<bool> touched(error_.size(), false);
+    std::vector<bool> touched(cost_.size(), false);
     std::size_t done = 0;
     OneRing ring;
     for (const Removal& removal : all) {
@@ -86,7 +90,7 @@ std::size_t GridState::remove_cheapest(std::size_t most) {
 
 void GridState::try_insertion(Id f, int edge, std::int32_t column, std::int32_t row, Insertion& best) const {
     Fan fan;
-    double before = error_[f];
+    double before = cost_[f];
     const Face& face = mesh_.face(f);
     if (edge < 0) {
         fan.faces = 3;
@@ -101,7 +105,7 @@ void GridState::try_insertion(Id f, int edge, std::int32_t column, std::int32_t 
         fan.spot[1] = o;
         fan.spot[2] = p;
         if (g != kNone) {
-            before += error_[g];
+            before += cost_[g];
             fan.faces = 4;
             fan.closed = true;
             fan.spot[3] = spot_[mesh_.apex(g, f)];
@@ -109,10 +113,10 @@ void GridState::try_insertion(Id f, int edge, std::int32_t column, std::int32_t 
         }
     }
     const Place at = place(column, row);
-    if (!fan.is_legal(at)) return;
-    fan.measure_links(*sums_);
     FanFit fit;
-    fit_fan(*sums_, fan, at, (fan.spot[0].color + fan.spot[1].color + fan.spot[2].color) / 3, fit);
+    if (!rules_.admits(fan, at, fit)) return;
+    fan.measure_links(*sums_);
+    fit_admitted(fan, at, (fan.spot[0].color + fan.spot[1].color + fan.spot[2].color) / 3, fit);
     const double gain = before - fit.error;
     if (gain > best.gain) best = {f, edge, column, row, fit.color, gain};
 }
@@ -130,6 +134,8 @@ void GridState::best_insertion(Id f, std::vector<Insertion>& all) const {
     for (std::size_t i = 0; i < 3; ++i) {
         const Id g = mesh_.across(f, i);
         if (g != kNone && g < f) continue;
+        // Boundaries take new vertices only on the sides of the image.
+        if (g == kNone && side_of(face[(i + 1) % 3], face[(i + 2) % 3]) == (kFixedX | kFixedY)) continue;
         const Vertex &p = vertex_[face[(i + 1) % 3]], &q = vertex_[face[(i + 2) % 3]];
         try_insertion(f, static_cast<int>(i), line(p.column + q.column, 2), line(p.row + q.row, 2), best);
     }
@@ -137,20 +143,29 @@ void GridState::best_insertion(Id f, std::vector<Insertion>& all) const {
 }
 
 Id GridState::insert(const Insertion& insertion) {
-    const Id v = insertion.edge < 0 ? mesh_.split_face(insertion.face)
-                                    : mesh_.split_edge(insertion.face, as_index(insertion.edge));
+    std::uint8_t fixed = 0;
+    Id v;
+    if (insertion.edge < 0) {
+        v = mesh_.split_face(insertion.face);
+    } else {
+        const std::size_t i = as_index(insertion.edge);
+        const Face& face = mesh_.face(insertion.face);
+        if (mesh_.across(insertion.face, i) == kNone) fixed = side_of(face[(i + 1) % 3], face[(i + 2) % 3]);
+        v = mesh_.split_edge(insertion.face, i);
+    }
     if (v >= vertex_.size()) {
         vertex_.resize(v + 1);
         spot_.resize(v + 1);
     }
-    vertex_[v] = {insertion.column, insertion.row};
+    vertex_[v] = {.column = insertion.column, .row = insertion.row, .step = first_step_, .fixed = fixed};
     spot_[v] = {place(insertion.column, insertion.row), insertion.color};
-    error_.resize(mesh_.faces().size(), 0.0);
+    cost_.resize(mesh_.faces().size(), 0.0);
+    face_.resize(cost_.size());
     OneRing ring;
     mesh_.ring(v, ring);
     for (std::size_t k = 0; k < ring.faces; ++k) {
         changed(ring.face[k]);
-        error_[ring.face[k]] = face_error(mesh_.face(ring.face[k]));
+        cost_[ring.face[k]] = face_cost(mesh_.face(ring.face[k]));
     }
     move_vertex(v);
     return v;
@@ -158,12 +173,12 @@ Id GridState::insert(const Insertion& insertion) {
 
 std::size_t GridState::insert_best(std::size_t most) {
     std::vector<Insertion> all;
-    for (Id f = 0; f < error_.size(); ++f)
+    for (Id f = 0; f < cost_.size(); ++f)
         if (mesh_.live_face(f)) best_insertion(f, all);
     std::sort(all.begin(), all.end(), [](const Insertion& a, const Insertion& b) {
         return a.gain != b.gain ? a.gain > b.gain : a.face < b.face;
     });
-    std::vector<bool> touched(error_.size(), false);
+    std::vector<bool> touched(cost_.size(), false);
     std::size_t done = 0;
     OneRing ring;
     for (const Insertion& insertion : all) {

@@ -1,31 +1,41 @@
-// The state of an optimisation of a CodedMesh, and its steps.
+// The state of an optimisation of a PlacedMesh, and its steps.
 #pragma once
 
 #include <utility>
 #include <vector>
 
-#include "libcore/coding/coded_mesh.h"
-#include "libcore/coding/fan_fit.h"
-#include "libcore/coding/grid_random.h"
 #include "libcore/mesh/edit_mesh.h"
+#include "libcore/optimize/face_rules.h"
+#include "libcore/optimize/grid_random.h"
+#include "libcore/optimize/placed_mesh.h"
 
 namespace imgmesh {
 
-/// Source and steps: grid_optimizer.h. Every step keeps the error of each face up to date.
+/// Source and steps: grid_optimizer.h. Every step keeps the cost of each face up to date: its squared error
+/// and what its shape costs.
 class GridState {
   public:
-    GridState(const RowSums& sums, const CodedMesh& mesh);
+    GridState(const RowSums& sums, const PlacedMesh& mesh, const PlaceGrid& grid, const FaceRules& rules);
 
     std::size_t vertices() const { return mesh_.live_vertices(); }
+    std::size_t faces() const;
+    /// Squared error and shapes, over all faces.
+    double cost() const;
     double squared_error() const;
-    CodedMesh result() const;
+    PlacedMesh result() const;
+    /// From now on these rules hold.
+    void set_rules(const FaceRules& rules);
+    /// How far vertices go at once by their patterns, at most and at first [grid steps].
+    void set_pattern(int longest, int first);
+    /// Moves begin with a Gauss-Newton step.
+    void use_newton_steps() { newton_ = true; }
 
     /// Numbers vertices and faces by where they are, so that the next steps find in caches what they need.
     void reorder();
     /// Least squares over all pixels, by Gauss-Seidel.
     void fit_colors(int passes);
     /// Flips each edge where that lowers the cost.
-    void flip_edges() { flip_edges({0, as_id(error_.size())}); }
+    void flip_edges() { flip_edges({0, as_id(cost_.size())}); }
     /// Does so, and moves each vertex to better grid points, along patterns of eight directions.
     void flip_and_move();
     /// Adds vertices where they gain most, none next to another. Returns how many.
@@ -42,6 +52,7 @@ class GridState {
         std::int32_t column = 0, row = 0;
         std::uint8_t step = 1;       // of its pattern [grid steps]
         std::uint8_t direction = 0;  // in which it went last
+        std::uint8_t fixed = 0;      // bits of fixed_axes.h
         bool removal_holds = false;  // whether removal_ is up to date
     };
     struct Removal {
@@ -60,25 +71,30 @@ class GridState {
         Id f, g;
         std::size_t i;
         double cost = 0;               // the change
-        double first = 0, second = 0;  // errors of f and g then
+        double first = 0, second = 0;  // costs of f and g then
     };
 
     Place place(std::int32_t column, std::int32_t row) const { return {grid_.x(column), grid_.y(row)}; }
-    bool on_side(Id v, bool column) const;
-    double face_error(const Face& face) const;
+    // The coordinates that a vertex on an edge of one face keeps, as bits of fixed_axes.h.
+    std::uint8_t side_of(Id a, Id b) const;
+    double face_cost(const Face& face) const;
     // Describes the ring of v. Returns false if it has none, or is a corner of the image.
     bool fan_of(Id v, OneRing& ring, Fan& fan) const;
-    double error_of(const OneRing& ring) const;
+    double cost_of(const OneRing& ring) const;
     // Fits v at a grid point; returns false if it may not be there.
     bool try_place(const Fan& fan, Id v, std::int32_t column, std::int32_t row, FanFit& fit) const;
+    // Fits a fan that the rules admit, in its best allowed colour.
+    void fit_admitted(const Fan& fan, const Place& at, const Double4& color, FanFit& fit) const;
     void set(const OneRing& ring, std::int32_t column, std::int32_t row, const FanFit& fit);
     void move_vertex(Id v);
+    // Tries the Gauss-Newton step of v, and shorter ones. Returns the cost that a move has to beat.
+    double step_to_minimum(Id v, const OneRing& ring, const Fan& fan, double best);
     void anneal_flips(const IdRange& faces, double temperature, GridRandom& random);
     void anneal_vertex(Id v, int trials, double spread, double temperature, GridRandom& random);
     bool cost_flip(Flip& flip) const;
     bool do_flip(const Flip& flip);
-    template <class Accept>
-    void flip_where(const IdRange& faces, Accept&& accept);
+    template <class Visit>
+    void for_each_flip(Id f, Visit&& visit);
     void flip_edges(const IdRange& faces);
     template <class Work>
     void for_each_part(Work&& work);
@@ -87,14 +103,28 @@ class GridState {
     void best_insertion(Id f, std::vector<Insertion>& all) const;
     void try_insertion(Id f, int edge, std::int32_t column, std::int32_t row, Insertion& best) const;
     Id insert(const Insertion& insertion);
-    void changed(Id f);
+    void changed(Id f);  // the face and its corners
+    void all_changed();  // every face
+    void touch(Id f) { face_[f].changed = ++tick_; }
 
     const RowSums* sums_;
-    CodedGrid grid_;
+    PlaceGrid grid_;
+    FaceRules rules_;
+    Place low_, high_;               // of the box around the mesh
+    std::int32_t longest_step_ = 8;  // of a pattern [grid steps]
+    std::uint8_t first_step_ = 1;
+    bool newton_ = false;
+
     EditMesh mesh_;
     std::vector<Vertex> vertex_;
-    std::vector<Spot> spot_;        // of each vertex
-    std::vector<double> error_;     // of each face
+    std::vector<Spot> spot_;    // of each vertex
+    std::vector<double> cost_;  // of each face
+    // When each face has changed last, and when its edges to later faces were found not worth a flip.
+    struct FaceTimes {
+        std::uint64_t changed = 1, checked = 0;
+    };
+    std::vector<FaceTimes> face_;
+    std::uint64_t tick_ = 1;
     std::vector<Removal> removal_;  // of each vertex
 };
 

@@ -1,10 +1,12 @@
 // The faces around one point as a function of the point's colour: a least-squares problem with one unknown.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 
-#include "libcore/coding/row_sums.h"
 #include "libcore/mesh/one_ring.h"
+#include "libcore/optimize/row_sums.h"
 
 namespace imgmesh {
 
@@ -40,25 +42,54 @@ struct Fan {
     std::array<Spot, OneRing::kMaxFaces + 1> spot;
     std::array<Moments, OneRing::kMaxFaces> link;  ///< of the edges from spot[k] to spot[k + 1]
 
+    /// Returns the longest distance to a spot [places].
+    double reach(const Place& from) const {
+        double most = 0;
+        for (std::size_t k = 0; k <= faces; ++k) {
+            const double dx = spot[k].place.x - from.x, dy = spot[k].place.y - from.y;
+            most = std::max(most, dx * dx + dy * dy);
+        }
+        return std::sqrt(most);
+    }
     /// Computes `link`.
     void measure_links(const RowSums& sums);
-    /// Returns whether all faces are positive.
-    bool is_legal(const Place& at) const;
 };
 
 /// A fan with its point at some place, in its best colour there.
 struct FanFit {
     Place place;
     Double4 color = {};
-    double error = 0;  ///< of all faces
+    CornerFit total;   ///< of all faces
+    double error = 0;  ///< of all faces, and the cost of their shapes
     std::array<CornerFit, OneRing::kMaxFaces> face;
+    double shape_cost = 0;                              ///< the sum of `shape`
+    std::array<double, OneRing::kMaxFaces> shape = {};  ///< what the shape of each face costs
+
+    /// Sets the colour, and the error with it.
+    IMGMESH_INLINE void set_color(const Double4& c) {
+        color = c;
+        error = total.error(c) + shape_cost;
+    }
+    IMGMESH_INLINE double face_cost(std::size_t k) const { return face[k].error(color) + shape[k]; }
 };
+
+/// Returns the Gauss-Newton step of a fan's point with its best colour [places].
+struct FanStep {
+    double x = 0, y = 0;
+};
+FanStep newton_step(const Fan& fan, const FanFit& fit, std::uint8_t fixed);
 
 /// Pulls a vertex of few pixels to the colour that it has, with the weight of so many pixels.
 inline constexpr double kColorPull = 1e-3;
 
-/// Fits the colour of a fan's point at a legal place.
+/// Fits the colour of a fan's point at a legal place; `out` has the costs of shapes.
 void fit_fan(const RowSums& sums, const Fan& fan, const Place& at, const Double4& color, FanFit& out);
+
+/// The squared errors of the faces (p, a, q) and (q, b, p), in the colours of their corners.
+struct FlipFit {
+    double first = 0, second = 0;
+};
+FlipFit fit_flip(const RowSums& sums, const Spot& p, const Spot& a, const Spot& q, const Spot& b);
 
 /// The squared error of a face is energy - 2 sum rhs[i].c[i] + sum gram[i][j] c[i].c[j], for its corners'
 /// colours c.

@@ -7,11 +7,11 @@
 
 #include "libcore/base/grid.h"
 #include "libcore/base/simd.h"
-#include "libcore/coding/place.h"
+#include "libcore/optimize/place.h"
 
 namespace imgmesh {
 
-using Double4 = double __attribute__((vector_size(32)));
+using Double4 = double __attribute__((vector_size(32), aligned(32)));
 
 /// Sums over pixels (x, y) with the values I of up to four channels, one a lane. Each term counts as much as
 /// its pixel weighs.
@@ -45,6 +45,13 @@ enum class SumLayout {
     kWeighted  ///< times the weight w: I, x I, 1, x, x^2, |I|^2
 };
 
+/// What an edge needs of the sums.
+struct RowView {
+    const double* sums;
+    int width, height;
+    SumLayout layout;
+};
+
 /// Of every row the sums over its first pixels: of I, x I and |I|^2. An edge's moments are the sums over all
 /// pixels left of it, in its rows; those of a polygon are the sum over its edges (Green's theorem).
 ///
@@ -59,6 +66,7 @@ class RowSums {
     int width() const { return width_; }
     int height() const { return height_; }
     int channels() const { return channels_; }
+    RowView view() const { return {sums_.data()->value, width_, height_, layout_}; }
 
     /// Returns the moments of the edge from a to b: added up around a polygon, counter-clockwise on screen,
     /// they are the moments of its pixels. So that of b to a is the negative. A pixel centre on an edge

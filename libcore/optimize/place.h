@@ -5,10 +5,11 @@
 
 namespace imgmesh {
 
-/// Quarter pixels are the unit of places.
-inline constexpr int kQuarters = 4;
+/// The optimiser's unit of places is the finest step of positions, kPositionStep. Coded meshes have places in
+/// quarter pixels outside it.
+inline constexpr int kPlacesPerPixel = 32;
 
-/// x to the right, y down [quarter pixels], each below 2^18.
+/// x to the right, y down, each below 2^21 units.
 struct Place {
     std::int32_t x = 0, y = 0;
 

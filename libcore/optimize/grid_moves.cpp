@@ -1,21 +1,22 @@
 // Moves of vertices on the grid: pattern search, and random moves.
 #include <algorithm>
+#include <cmath>
 
-#include "libcore/coding/grid_state.h"
+#include "libcore/mesh/fixed_axes.h"
+#include "libcore/optimize/grid_state.h"
 
 namespace imgmesh {
 namespace {
 
 constexpr std::int32_t kDirections[8][2] = {{1, 0},  {1, 1},   {0, 1},  {-1, 1},
                                             {-1, 0}, {-1, -1}, {0, -1}, {1, -1}};
-constexpr int kLongestStep = 8;
 // Gains within the rounding of the sums do not count.
 constexpr double kSlack = 1e-9;
 
 }  // namespace
 
 bool GridState::fan_of(Id v, OneRing& ring, Fan& fan) const {
-    if (!mesh_.live_vertex(v) || (on_side(v, true) && on_side(v, false)) || !mesh_.ring(v, ring))
+    if (!mesh_.live_vertex(v) || vertex_[v].fixed == (kFixedX | kFixedY) || !mesh_.ring(v, ring))
         return false;
     fan.faces = ring.faces;
     fan.closed = ring.closed;
@@ -24,20 +25,26 @@ bool GridState::fan_of(Id v, OneRing& ring, Fan& fan) const {
     return true;
 }
 
-double GridState::error_of(const OneRing& ring) const {
-    double error = 0;
-    for (std::size_t k = 0; k < ring.faces; ++k) error += error_[ring.face[k]];
-    return error;
+double GridState::cost_of(const OneRing& ring) const {
+    double cost = 0;
+    for (std::size_t k = 0; k < ring.faces; ++k) cost += cost_[ring.face[k]];
+    return cost;
 }
 
 bool GridState::try_place(const Fan& fan, Id v, std::int32_t column, std::int32_t row, FanFit& fit) const {
     if (column < 0 || row < 0 || column >= grid_.columns() || row >= grid_.rows()) return false;
-    if ((column != vertex_[v].column && on_side(v, true)) || (row != vertex_[v].row && on_side(v, false)))
+    const std::uint8_t fixed = vertex_[v].fixed;
+    if ((column != vertex_[v].column && (fixed & kFixedX)) || (row != vertex_[v].row && (fixed & kFixedY)))
         return false;
     const Place at = place(column, row);
-    if (!fan.is_legal(at)) return false;
-    fit_fan(*sums_, fan, at, spot_[v].color, fit);
+    if (!rules_.admits(fan, at, fit)) return false;
+    fit_admitted(fan, at, spot_[v].color, fit);
     return true;
+}
+
+void GridState::fit_admitted(const Fan& fan, const Place& at, const Double4& color, FanFit& fit) const {
+    fit_fan(*sums_, fan, at, color, fit);
+    if (rules_.limits_colors()) fit.set_color(rules_.allowed(fit.color));
 }
 
 void GridState::set(const OneRing& ring, std::int32_t column, std::int32_t row, const FanFit& fit) {
@@ -47,10 +54,35 @@ void GridState::set(const OneRing& ring, std::int32_t column, std::int32_t row, 
     spot_[ring.center] = {fit.place, fit.color};
     vertex.removal_holds = false;
     for (std::size_t k = 0; k < ring.faces; ++k) {
-        error_[ring.face[k]] = fit.face[k].error(fit.color);
+        cost_[ring.face[k]] = fit.face_cost(k);
+        touch(ring.face[k]);
         vertex_[ring.vertex[k]].removal_holds = false;
     }
     vertex_[ring.vertex[ring.faces]].removal_holds = false;
+}
+
+double GridState::step_to_minimum(Id v, const OneRing& ring, const Fan& fan, double best) {
+    constexpr int kHalvings = 2;
+    const std::int32_t column = vertex_[v].column, row = vertex_[v].row;
+    FanFit fit;
+    const auto take_if_better = [&](std::int32_t dx, std::int32_t dy) {
+        if (!try_place(fan, v, column + dx, row + dy, fit) || !(fit.error < best)) return false;
+        set(ring, column + dx, row + dy, fit);
+        best = fit.error - kSlack * fit.error;
+        return true;
+    };
+    // In its best colour here; a vertex off the grid stays on its place for that.
+    if (!rules_.admits(fan, spot_[v].place, fit)) return best;
+    fit_admitted(fan, spot_[v].place, spot_[v].color, fit);
+    const FanStep step = newton_step(fan, fit, vertex_[v].fixed);
+    const double length = std::sqrt(step.x * step.x + step.y * step.y), longest = 0.5 * fan.reach(fit.place);
+    if (!(length > 0 && length < 1e9)) return best;
+    double scale = std::min(1.0, longest / length) / grid_.step;
+    for (int half = 0; half <= kHalvings; ++half, scale *= 0.5)
+        if (take_if_better(static_cast<std::int32_t>(std::lround(scale * step.x)),
+                           static_cast<std::int32_t>(std::lround(scale * step.y))))
+            break;
+    return best;
 }
 
 void GridState::move_vertex(Id v) {
@@ -58,8 +90,9 @@ void GridState::move_vertex(Id v) {
     Fan fan;
     if (!fan_of(v, ring, fan)) return;
     FanFit fit;
-    double best = error_of(ring);
+    double best = cost_of(ring);
     best -= kSlack * best;
+    if (newton_) best = step_to_minimum(v, ring, fan, best);
     bool moved = false;
     const std::uint8_t first = vertex_[v].direction;
     const std::int32_t step = vertex_[v].step;
@@ -75,7 +108,7 @@ void GridState::move_vertex(Id v) {
         }
     }
     vertex_[v].step =
-        static_cast<std::uint8_t>(moved ? std::min(2 * step, kLongestStep) : std::max(step / 2, 1));
+        static_cast<std::uint8_t>(moved ? std::min(2 * step, longest_step_) : std::max(step / 2, 1));
 }
 
 void GridState::anneal_vertex(Id v, int trials, double spread, double temperature, GridRandom& random) {
@@ -83,7 +116,7 @@ void GridState::anneal_vertex(Id v, int trials, double spread, double temperatur
     Fan fan;
     if (!fan_of(v, ring, fan)) return;
     FanFit fit;
-    double now = error_of(ring);
+    double now = cost_of(ring);
     for (int trial = 0; trial < trials; ++trial) {
         std::int32_t dx = static_cast<std::int32_t>(std::lround(spread * random.gaussian())),
                      dy = static_cast<std::int32_t>(std::lround(spread * random.gaussian()));
@@ -104,7 +137,7 @@ void GridState::anneal_vertex(Id v, int trials, double spread, double temperatur
 template <class Work>
 void GridState::for_each_part(Work&& work) {
     constexpr std::size_t kPartVertices = 24;
-    const std::size_t vertices = vertex_.size(), faces = error_.size();
+    const std::size_t vertices = vertex_.size(), faces = cost_.size();
     const std::size_t parts = (vertices + kPartVertices - 1) / kPartVertices;
     for (std::size_t part = 0; part < parts; ++part)
         work(IdRange{as_id(vertices * part / parts), as_id(vertices * (part + 1) / parts)},

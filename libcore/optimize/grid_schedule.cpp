@@ -1,4 +1,4 @@
-#include "libcore/coding/grid_schedule.h"
+#include "libcore/optimize/grid_schedule.h"
 
 #include <algorithm>
 #include <array>

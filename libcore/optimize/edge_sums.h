@@ -1,22 +1,16 @@
-#include "libcore/coding/row_sums.h"
+// The sums of an edge, to be compiled into what needs many of them.
+#pragma once
 
-#include <cassert>
-#include <cmath>
 #include <cstring>
 
-#include "libcore/base/error.h"
+#include "libcore/base/index.h"
+#include "libcore/optimize/row_sums.h"
 
-namespace imgmesh {
-namespace {
+namespace imgmesh::edge_sums {
 
 using Double2 = double __attribute__((vector_size(16)));
 
-constexpr double kSampleUnit = 1.0 / 64;
-constexpr std::size_t kEnergy = 11;  // where |I|^2 is, in twelve sums
-
-double rounded(double value, double unit) {
-    return std::round(value / unit) * unit;
-}
+inline constexpr std::size_t kEnergy = 11;  // where |I|^2 is, in twelve sums
 
 IMGMESH_INLINE Double4 load4(const double* p) {
     Double4 v;
@@ -33,8 +27,8 @@ class FirstPixel {
   public:
     IMGMESH_INLINE FirstPixel(const Place& top, const Place& bottom, int row) {
         const auto dx = static_cast<double>(bottom.x - top.x), dy = static_cast<double>(bottom.y - top.y);
-        const double inverse = 1 / (kQuarters * dy), slope = kQuarters * dx * inverse;
-        const double x = (top.x * dy + (kQuarters * row - top.y) * dx) * inverse;
+        const double inverse = 1 / (kPlacesPerPixel * dy), slope = kPlacesPerPixel * dx * inverse;
+        const double x = (top.x * dy + (kPlacesPerPixel * row - top.y) * dx) * inverse;
         at_ = static_cast<std::int64_t>((x + 1 - 0.5 * inverse) * kOne);
         step_ = static_cast<std::int64_t>(slope * kOne);
     }
@@ -118,21 +112,14 @@ struct WeightedEdgeSums {
     }
 };
 
-// What an edge needs of the image.
-struct Rows {
-    const double* sums;
-    int width, height;
-    SumLayout layout;
-};
-
 template <class Sums>
-IMGMESH_INLINE void edge_of(const Rows& image, const Place& a, const Place& b, Moments& out) {
+IMGMESH_INLINE void edge_of(const RowView& image, const Place& a, const Place& b, Moments& out) {
     const bool up = a.y > b.y;
     const Place &top = up ? b : a, &bottom = up ? a : b;
-    const int lowest = kQuarters * (image.height - 1), rightmost = kQuarters * (image.width - 1);
+    const int lowest = kPlacesPerPixel * (image.height - 1), rightmost = kPlacesPerPixel * (image.width - 1);
     // The last row belongs to what lies above.
     const auto first_row = [&](int y) {
-        return y == lowest ? image.height : (y + kQuarters - 1) / kQuarters;
+        return y == lowest ? image.height : (y + kPlacesPerPixel - 1) / kPlacesPerPixel;
     };
     const int begin = first_row(top.y), end = first_row(bottom.y);
     if (begin >= end) {
@@ -156,7 +143,7 @@ IMGMESH_INLINE void edge_of(const Rows& image, const Place& a, const Place& b, M
     total.finish(up ? 1 : -1, end, out);
 }
 
-IMGMESH_INLINE void edge_of(const Rows& image, const Place& a, const Place& b, Moments& out) {
+IMGMESH_INLINE void edge_of(const RowView& image, const Place& a, const Place& b, Moments& out) {
     if (image.layout == SumLayout::kThree)
         edge_of<EdgeSums<false>>(image, a, b, out);
     else if (image.layout == SumLayout::kFour)
@@ -165,59 +152,4 @@ IMGMESH_INLINE void edge_of(const Rows& image, const Place& a, const Place& b, M
         edge_of<WeightedEdgeSums>(image, a, b, out);
 }
 
-#if defined(__x86_64__)
-__attribute__((target("avx2"))) void edge_avx2(const Rows& image, const Place& a, const Place& b,
-                                               Moments& out) {
-    edge_of(image, a, b, out);
-}
-const bool kAvx2 = has_avx2();
-#endif
-
-}  // namespace
-
-RowSums::RowSums(const ChannelGrid& image, std::span<const float> weights)
-    : width_(image.width),
-      height_(image.height),
-      channels_(image.channels),
-      layout_(!weights.empty()      ? SumLayout::kWeighted
-              : image.channels == 4 ? SumLayout::kFour
-                                    : SumLayout::kThree) {
-    assert(weights.empty() || weights.size() == image.pixel_count());
-    if (channels_ < 1 || channels_ > 4 || width_ < 2 || height_ < 2)
-        throw Error(ErrorKind::kBadArgument, cat("a picture to code has 1 to 4 channels and at least 2 x 2 "
-                                                 "pixels, not ",
-                                                 channels_, " and ", width_, " x ", height_));
-    const std::size_t stride = layout_ == SumLayout::kThree ? 8 : 12;
-    sums_.resize((as_index(height_) * as_index(width_ + 1) * stride + 7) / 8);
-    const std::size_t energy = layout_ == SumLayout::kThree ? 3 : kEnergy;
-    double* out = sums_.data()->value;
-    for (int y = 0; y < height_; ++y, out += stride)
-        for (int x = 0; x < width_; ++x, out += stride) {
-            std::memcpy(out + stride, out, stride * sizeof(double));
-            const float* pixel = image.pixel(x, y);
-            const double weight = weights.empty() ? 1 : rounded(weights[image.index(x, y)], kSampleUnit);
-            if (!weights.empty()) {
-                out[stride + 8] += weight;
-                out[stride + 9] += x * weight;
-                out[stride + 10] += x * (x * weight);
-            }
-            for (std::size_t c = 0; c < as_index(channels_); ++c) {
-                const double value = rounded(pixel[c], kSampleUnit);
-                // As exact as without weights; a constant error of the energy changes no choice.
-                const double weighed = rounded(weight * value, kSampleUnit);
-                out[stride + c] += weighed;
-                out[stride + 4 + c] += x * weighed;
-                out[stride + energy] += rounded(weight * value * value, kSampleUnit * kSampleUnit);
-            }
-        }
-}
-
-void RowSums::edge(const Place& a, const Place& b, Moments& out) const {
-    const Rows rows{sums_.data()->value, width_, height_, layout_};
-#if defined(__x86_64__)
-    if (kAvx2) return edge_avx2(rows, a, b, out);
-#endif
-    edge_of(rows, a, b, out);
-}
-
-}  // namespace imgmesh
+}  // namespace imgmesh::edge_sums
