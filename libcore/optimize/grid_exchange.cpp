@@ -61,7 +61,7 @@ void GridState::remove(const Removal& removal) {
     }
 }
 
-std::size_t GridState::remove_cheapest(std::size_t most) {
+std::size_t GridState::remove_cheapest(std::size_t most, std::size_t border, std::size_t inner) {
     removal_.resize(vertex_.size());
     std::vector<Removal> all;
     for (Id v = 0; v < vertex_.size(); ++v) {
@@ -80,7 +80,9 @@ std::size_t GridState::remove_cheapest(std::size_t most) {
         mesh_.ring(removal.v, ring);
         bool free = mesh_.may_collapse(ring, removal.into);
         for (std::size_t k = 0; k < ring.faces; ++k) free = free && !touched[ring.face[k]];
-        if (!free) continue;
+        std::size_t& left = vertex_[removal.v].fixed != 0 ? border : inner;
+        if (!free || left == 0) continue;
+        --left;
         for (std::size_t k = 0; k < ring.faces; ++k) touched[ring.face[k]] = true;
         remove(removal);
         ++done;

@@ -58,6 +58,7 @@ GridOptimizer::GridOptimizer(const RowSums& sums, const PlacedMesh& start, const
     state_->set_pattern(params.longest_step, params.first_step);
     if (params.newton_steps) state_->use_newton_steps();
     state_->fit_colors(kFirstPasses);
+    border_ = state_->border_vertices();
     if (params.shape_weight > 0) {
         const double unit =
             params.shape_weight * state_->squared_error() / static_cast<double>(state_->faces());
@@ -95,14 +96,19 @@ void GridOptimizer::set_vertex_count(std::size_t vertices) {
         if (state_->insert_best(std::min(vertices - now, most)) == 0) break;
         settle(2);
     }
-    const bool surplus = state_->vertices() > vertices;
+    if (state_->vertices() > vertices) remove_surplus(vertices);
+}
+
+void GridOptimizer::remove_surplus(std::size_t vertices) {
     while (state_->vertices() > vertices) {
-        const auto most = static_cast<std::size_t>(
-            std::ceil(kRemoved * static_cast<double>(state_->vertices() - vertices)));
-        if (state_->remove_cheapest(most) == 0) break;
+        const std::size_t surplus = state_->vertices() - vertices;
+        const auto most = static_cast<std::size_t>(std::ceil(kRemoved * static_cast<double>(surplus)));
+        const std::size_t border = params_.keep_faces ? state_->border_vertices() - border_ : most,
+                          inner = params_.keep_faces ? surplus - border : most;
+        if (state_->remove_cheapest(most, border, inner) == 0) break;
         state_->flip_edges();
     }
-    if (surplus) settle(params_.last_settles);
+    settle(params_.last_settles);
 }
 
 void GridOptimizer::exchange(std::size_t vertices, double share, int settles) {

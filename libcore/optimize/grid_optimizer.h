@@ -16,8 +16,9 @@ struct GridSchedule;
 class GridState;
 
 struct OptimizeParams {
-    int effort = 3;                        ///< 1 to 5; each takes up to four times as long as the one before
-    int step = kPlacesPerPixel;            ///< of the grid of places
+    int effort = 3;              ///< 1 to 5; each takes up to four times as long as the one before
+    int step = kPlacesPerPixel;  ///< of the grid of places
+    bool keep_faces = false;  ///< boundaries keep their number of vertices, so that the number of faces stays
     bool newton_steps = false;             ///< moves begin with a Gauss-Newton step
     int last_settles = 1;                  ///< flips, moves and colours after vertices were removed
     int longest_step = 8, first_step = 1;  ///< of a vertex by its pattern [grid steps]; at most 255
@@ -52,10 +53,12 @@ class GridOptimizer {
 
   private:
     void settle(int times);
+    void remove_surplus(std::size_t vertices);
     void exchange(std::size_t vertices, double share, int settles);
     void anneal(const GridSchedule& schedule, const Progress& progress, double begin, double end);
 
     OptimizeParams params_;
+    std::size_t border_ = 0;  // vertices of the boundary, with keep_faces
     std::unique_ptr<GridState> state_;
 };
 

@@ -85,6 +85,12 @@ std::size_t GridState::faces() const {
     return count;
 }
 
+std::size_t GridState::border_vertices() const {
+    std::size_t count = 0;
+    for (Id v = 0; v < vertex_.size(); ++v) count += mesh_.live_vertex(v) && vertex_[v].fixed != 0;
+    return count;
+}
+
 PlacedMesh GridState::result() const {
     PlacedMesh out;
     std::vector<Id> id(mesh_.vertices(), kNone);

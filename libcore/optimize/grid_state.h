@@ -19,6 +19,7 @@ class GridState {
 
     std::size_t vertices() const { return mesh_.live_vertices(); }
     std::size_t faces() const;
+    std::size_t border_vertices() const;
     /// Squared error and shapes, over all faces.
     double cost() const;
     double squared_error() const;
@@ -40,8 +41,9 @@ class GridState {
     void flip_and_move();
     /// Adds vertices where they gain most, none next to another. Returns how many.
     std::size_t insert_best(std::size_t most);
-    /// Removes vertices where they cost least, none next to another. Returns how many.
-    std::size_t remove_cheapest(std::size_t most);
+    /// Removes vertices where they cost least, none next to another. Returns how many. Of these at most
+    /// `border` are on the boundary and at most `inner` are not.
+    std::size_t remove_cheapest(std::size_t most, std::size_t border, std::size_t inner);
     /// Tries random moves of each vertex, with a spread in grid steps, and then all flips; `passes` times in
     /// each part of the mesh. Some that raise the cost are taken, by `temperature` on average.
     void anneal(int passes, int trials, double spread, double temperature, GridRandom& random);

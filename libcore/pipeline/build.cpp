@@ -128,6 +128,7 @@ struct Pipeline {
         refinement.rounds = static_cast<int>(refine_rounds(params));
         refinement.shape_weight = params.shape_weight;
         refinement.exchange = params.exchange;
+        refinement.keep_faces = params.stop.faces || params.levels.count > 1 || !params.levels.faces.empty();
         refinement.min_quality = params.min_quality;
         refinement.max_face_area = limits.max_face_area;
         const double unit = static_cast<double>(space.unit);
@@ -144,7 +145,6 @@ struct Pipeline {
                 // One round on the grid makes good what the rounding has cost.
                 refinement.rounds = 1;
                 refinement.relocations = 0;
-                refinement.exchange = 0;
                 refine_level(level.mesh, feature, mask, params.objective, refinement, {});
             }
         }

@@ -16,8 +16,8 @@ BuildParams best() {
     BuildParams params;
     params.geometry_weight = 0.1;
     params.rebuild_quadrics = true;
-    params.refine = 6;
-    params.exchange = 0.2;
+    params.refine = 7;
+    params.exchange = 0.3;
     params.shape_weight = 0;
     return params;
 }
@@ -34,8 +34,8 @@ BuildParams fem() {
     BuildParams params;
     params.geometry_weight = 1;
     params.rebuild_quadrics = true;
-    params.refine = 10;
-    params.exchange = 0.2;
+    params.refine = 6;
+    params.exchange = 0.3;
     params.shape_weight = 0.3;
     params.min_quality = 0.28;
     params.objective = Objective::kRgb;  // a simulation uses only the mesh

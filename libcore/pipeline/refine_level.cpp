@@ -5,6 +5,8 @@
 #include "libcore/base/parallel.h"
 #include "libcore/image/color.h"
 #include "libcore/image/luv_encoder.h"
+#include "libcore/optimize/optimize_mesh.h"
+#include "libcore/refine/refine.h"
 
 namespace imgmesh {
 namespace {
@@ -33,18 +35,30 @@ void convert_colors(BaseMesh& mesh, Convert convert) {
     }
 }
 
+// Strips one pixel wide have no rows to sum up.
+bool is_strip(const FeatureImage& image) {
+    return image.width < 2 || image.height < 2;
+}
+
+void run_rounds(BaseMesh& mesh, const FeatureImage& image, const RefineParams& params,
+                const Progress& progress, const Mask& mask) {
+    if (params.exchange > 0 && !is_strip(image))
+        optimize_mesh(mesh, image, params, progress, mask);
+    else
+        refine(mesh, image, params, progress, mask);
+}
+
 }  // namespace
 
-RefineReport refine_level(BaseMesh& mesh, const FeatureImage& feature, const Mask& mask, Objective objective,
-                          RefineParams params, const Progress& progress) {
+void refine_level(BaseMesh& mesh, const FeatureImage& feature, const Mask& mask, Objective objective,
+                  RefineParams params, const Progress& progress) {
     params.range = objective == Objective::kRgb ? ColorRange::kUnit : ColorRange::kLuv;
-    if (objective == Objective::kLuv) return refine(mesh, feature, params, progress, mask);
+    if (objective == Objective::kLuv) return run_rounds(mesh, feature, params, progress, mask);
     convert_colors(mesh, [](const Vec3f& luv) { return encoded_from_luv(ColorSpace::kSrgb, luv); });
-    RefineReport report = refine(mesh, encoded_image(feature), params, progress, mask);
+    run_rounds(mesh, encoded_image(feature), params, progress, mask);
     convert_colors(mesh, [](const Vec3f& encoded) {
         return luv_from_linear(linear_from_encoded(ColorSpace::kSrgb, encoded));
     });
-    return report;
 }
 
 }  // namespace imgmesh
