@@ -147,6 +147,11 @@ Vec3f encoded_from_linear(ColorSpace space, const Vec3f& linear) {
     return encoded;
 }
 
+float encoded_grey(ColorSpace space, float linear) {
+    const double x = linear;
+    return static_cast<float>(std::copysign(encode_curve(space, std::abs(x)), x));
+}
+
 Eigen::Matrix3d rgb_from_xyz(ColorSpace space) {
     const Matrices& m = matrices();
     if (space == ColorSpace::kAdobeRgb) return times(m.srgb_to_adobe, m.xyz_to_srgb);

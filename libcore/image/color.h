@@ -20,6 +20,8 @@ std::optional<ColorSpace> parse_color_space(std::string_view name);
 Vec3f linear_from_encoded(ColorSpace space, const Vec3f& encoded);
 /// The inverse of linear_from_encoded().
 Vec3f encoded_from_linear(ColorSpace space, const Vec3f& linear);
+/// The same of a grey: white is white in every space, so only its curve matters.
+float encoded_grey(ColorSpace space, float linear);
 
 /// The matrix from XYZ under D65 (white has Y = 1) to linear RGB of the space's own primaries.
 Eigen::Matrix3d rgb_from_xyz(ColorSpace space);

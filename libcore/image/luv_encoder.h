@@ -23,8 +23,13 @@ class LuvEncoder {
     void encode_row(std::span<const float> luv, int count, float* out, int stride) const;
 
   private:
-    Eigen::Matrix3f rgb_from_xyz_;  ///< linear RGB of the space's own primaries
-    std::vector<float> curve_;      ///< encoded value of (i / kCurveSteps)^2; empty for linear
+    struct Block;
+    struct Entry {
+        float value, rise;  ///< to the next entry
+    };
+
+    float row_[3][3];           ///< of the matrix from XYZ to linear RGB of the space's own primaries
+    std::vector<Entry> curve_;  ///< encoded value of (i / kCurveSteps)^2; empty for linear
 };
 
 }  // namespace imgmesh

@@ -7,6 +7,7 @@
 
 #include "libcore/base/error.h"
 #include "libcore/base/parallel.h"
+#include "libcore/base/parallel_vector.h"
 #include "libcore/image/luv_encoder.h"
 #include "libcore/mesh/bounded_raster.h"
 #include "libcore/recon/draw_smooth.h"
@@ -17,7 +18,7 @@
 namespace imgmesh {
 namespace {
 
-constexpr int kGrainRows = 16;
+constexpr int kGrainRows = 4, kChunkRows = 8 * kGrainRows;
 
 // Larger drawings are surely a mistake; one of this size takes 8 GB.
 constexpr double kMaxPixels = 1 << 28;
@@ -36,22 +37,38 @@ float at_coord(const BaseMesh& mesh, const PixelCoord& at, int feature) {
            at.v * mesh.feature_of(c)[feature];
 }
 
+using Float4 = float __attribute__((vector_size(16)));
+
+// The colour of each vertex, in one register.
+std::vector<Float4> vertex_colors(const BaseMesh& mesh) {
+    std::vector<Float4> colors;
+    colors.reserve(mesh.vertex_count());
+    for (Id v = 0; v < mesh.vertex_count(); ++v) {
+        const float* const f = mesh.feature_of(v);
+        colors.push_back(Float4{f[0], f[1], f[2], 0});
+    }
+    return colors;
+}
+
 // Fills a row through the map. The map is read from memory once and the rows stay in cache; only the corners'
 // colours are gathered. Face ids are known to be valid or kNone.
-void interpolate_row(const BaseMesh& mesh, const PixelMap& map, int y, float* planes) {
+void interpolate_row(const BaseMesh& mesh, const std::vector<Float4>& colors, const PixelMap& map, int y,
+                     float* planes) {
     const std::span<const PixelCoord> row = map.row(y);
+    const Face* const faces = mesh.faces.data();
+    const Float4* const of_vertex = colors.data();
     float *l = planes, *u = l + map.width, *v = u + map.width;
     for (std::size_t x = 0; x < row.size(); ++x) {
         if (row[x].face == kNone) {
             l[x] = u[x] = v[x] = 0;
             continue;
         }
-        const auto [ia, ib, ic] = mesh.faces[row[x].face];
-        const float *a = mesh.feature_of(ia), *b = mesh.feature_of(ib), *c = mesh.feature_of(ic);
+        const Face& face = faces[row[x].face];
         const float wb = row[x].u, wc = row[x].v, wa = 1 - wb - wc;
-        l[x] = wa * a[0] + wb * b[0] + wc * c[0];
-        u[x] = wa * a[1] + wb * b[1] + wc * c[1];
-        v[x] = wa * a[2] + wb * b[2] + wc * c[2];
+        const Float4 color = wa * of_vertex[face[0]] + wb * of_vertex[face[1]] + wc * of_vertex[face[2]];
+        l[x] = color[0];
+        u[x] = color[1];
+        v[x] = color[2];
     }
 }
 
@@ -79,21 +96,29 @@ using AlphaFunction = std::function<float(const PixelCoord&)>;
 Image encode_rows(const SourceInfo& source, const PixelMap& map, const RowFunction& row_function,
                   const AlphaFunction& alpha = {}) {
     const bool clear = source.has_mask || alpha;
-    Image image = drawing_canvas(source, map.width, map.height, clear);
+    Image image = drawing_canvas(source, map.width, 0, clear);
+    image.height = map.height;
+    image.data.reserve(image.sample_count());
+    touch_pages(image.data.data(), image.sample_count() * sizeof(float));
     const LuvEncoder encoder(image.color_space);
-    parallel_blocks(0, map.height, kGrainRows, [&](int first, int last) {
-        std::vector<float> planes(as_index(map.width) * 3);
-        for (int y = first; y < last; ++y) {
-            row_function(y, planes.data());
-            float* out = image.row(y).data();
-            encoder.encode_row(planes, map.width, out, image.channels);
-            if (!clear) continue;
-            for (const PixelCoord& c : map.row(y)) {
-                out[3] = c.face == kNone ? 0.0f : alpha ? std::clamp(alpha(c), 0.0f, 1.0f) : 1.0f;
-                out += image.channels;
+    // Memory is set to zero a little before it is drawn on, so that it is in the processor's cache.
+    for (int top = 0; top < map.height; top += kChunkRows) {
+        const int bottom = std::min(map.height, top + kChunkRows);
+        image.data.resize(image.row_size() * as_index(bottom));
+        parallel_blocks(top, bottom, kGrainRows, [&](int first, int last) {
+            std::vector<float> planes(as_index(map.width) * 3);
+            for (int y = first; y < last; ++y) {
+                row_function(y, planes.data());
+                float* out = image.row(y).data();
+                encoder.encode_row(planes, map.width, out, image.channels);
+                if (!clear) continue;
+                for (const PixelCoord& c : map.row(y)) {
+                    out[3] = c.face == kNone ? 0.0f : alpha ? std::clamp(alpha(c), 0.0f, 1.0f) : 1.0f;
+                    out += image.channels;
+                }
             }
-        }
-    });
+        });
+    }
     return image;
 }
 
@@ -130,10 +155,12 @@ Image draw(const MeshImage& mesh_image, int level_index, const DrawParams& param
     const int a = alpha_feature(source);
     switch (params.mode) {
         case DrawMode::kMap:
-        case DrawMode::kGouraud:
+        case DrawMode::kGouraud: {
+            const std::vector<Float4> colors = vertex_colors(mesh);
             return encode_rows(
-                source, map, [&](int y, float* planes) { interpolate_row(mesh, map, y, planes); },
+                source, map, [&](int y, float* planes) { interpolate_row(mesh, colors, map, y, planes); },
                 a < 0 ? AlphaFunction() : [&mesh, a](const PixelCoord& c) { return at_coord(mesh, c, a); });
+        }
         case DrawMode::kPatches: {
             const std::vector<Vec3f> colors = patch_colors(mesh, map);
             return encode_rows(source, map, [&](int y, float* planes) {
