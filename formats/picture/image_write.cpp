@@ -25,7 +25,7 @@ using enum SampleType;
 
 struct Format {
     std::string_view extension;
-    const char* writer;  ///< OpenImageIO's name; empty for EXR, PNG and WebP
+    const char* writer;  ///< OpenImageIO's name; empty for EXR, JPEG, PNG and WebP
     std::vector<SampleType> types;
     bool alpha;
     bool icc;           ///< holds ICC profiles, and so integers of any colour space; without, they are sRGB
@@ -36,8 +36,8 @@ struct Format {
 const std::vector<Format>& formats() {
     static const std::vector<Format> kFormats = {
         {".png", "", {kUint8, kUint16}, true, true, false},
-        {".jpg", "jpeg", {kUint8}, false, true, false, 65500},
-        {".jpeg", "jpeg", {kUint8}, false, true, false, 65500},
+        {".jpg", "", {kUint8}, false, true, false, 65500},
+        {".jpeg", "", {kUint8}, false, true, false, 65500},
         {".tif", "tiff", {kUint8, kUint16, kFloat}, true, true, true},
         {".tiff", "tiff", {kUint8, kUint16, kFloat}, true, true, true},
         {".webp", "", {kUint8}, true, false, false, 16383},
@@ -228,6 +228,7 @@ std::vector<std::uint8_t> encode_image(const std::string& path, const Image& ima
     convert(stored, choose_space(*format, type, image));
     if (format->extension == ".webp") return encode_webp(stored);
     if (format->extension == ".png") return encode_png(stored, type);
+    if (format->extension == ".jpg" || format->extension == ".jpeg") return encode_jpeg(stored);
     if (format->extension != ".exr") return encode_with_oiio(path, *format, stored, type);
     multiply_alpha_in(stored);
     return encode_exr(std::move(stored), type, metadata);

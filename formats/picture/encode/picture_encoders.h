@@ -12,9 +12,11 @@ namespace imgmesh {
 /// Each returns the bytes of a file of an image that is ready for it. EXR: `image` is linear with associated
 /// alpha, `type` kHalf or kFloat, and becomes what WriteImageOptions::metadata says. WebP: sRGB, 8 bit,
 /// lossless, at most 16383 pixels a side. PNG: one to four channels, RGB in any colour space, `type` kUint8
-/// or kUint16.
+/// or kUint16. JPEG: grey, or RGB in any colour space, at most 65500 pixels a side; 8 bit, quality 95, and
+/// colour at each pixel.
 std::vector<std::uint8_t> encode_exr(Image image, SampleType type, const ExrMetadata& metadata);
 std::vector<std::uint8_t> encode_webp(const Image& image);
+std::vector<std::uint8_t> encode_jpeg(const Image& image);
 std::vector<std::uint8_t> encode_png(const Image& image, SampleType type);
 
 /// Data without a colour as a float TIFF, grey or in bands, with deflate. Where alpha is 0 the numbers are

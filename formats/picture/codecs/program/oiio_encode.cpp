@@ -49,10 +49,6 @@ std::vector<std::uint8_t> encode_by_oiio(const EncodeTask& task, std::span<const
     spec.alpha_channel = task.alpha_channel;
     spec.attribute("oiio:UnassociatedAlpha", 1);
     spec.attribute("DateTime", "");  // TIFF's writer would write the time, so bytes would differ
-    if (task.writer == "jpeg") {
-        spec.attribute("Compression", "jpeg:95");
-        spec.attribute("jpeg:subsampling", "4:4:4");
-    }
     // Not in TIFF, where it needs an EXIF directory, for which OpenImageIO cannot read its own memory back.
     if (task.say_srgb && task.writer != "tiff") spec.attribute("oiio:ColorSpace", "sRGB");
     if (!task.icc.empty())
