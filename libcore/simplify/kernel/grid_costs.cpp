@@ -117,6 +117,10 @@ __attribute__((target("avx2"), flatten)) void all_costs_avx2(const GridMesh& gri
                                                              const ColorQuadric* quadrics, GridCosts& out) {
     all_costs(grid, rect, quadrics, out);
 }
+IMGMESH_AVX512 __attribute__((flatten)) void all_costs_avx512(const GridMesh& grid, const PixelRect& rect,
+                                                              const ColorQuadric* quadrics, GridCosts& out) {
+    all_costs(grid, rect, quadrics, out);
+}
 #endif
 
 }  // namespace
@@ -127,6 +131,7 @@ void grid_costs(const GridMesh& grid, const PixelRect& rect, const ColorQuadric*
     out.south.resize(pixels);
     out.cell.resize(pixels);
 #if defined(__x86_64__)
+    if (has_avx512()) return all_costs_avx512(grid, rect, quadrics, out);
     if (has_avx2()) return all_costs_avx2(grid, rect, quadrics, out);
 #endif
     all_costs(grid, rect, quadrics, out);

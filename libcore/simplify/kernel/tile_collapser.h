@@ -133,20 +133,29 @@ class TileCollapser {
         vertices_[v] = {from.x, from.y, from.valence, from.fixed, locked || from.locked};
     }
 
-    // Steps in two forms: with everything that they call built for AVX2, and for any processor.
+    // Steps in three forms: with everything that they call built for AVX-512 (for its registers: vectors stay
+    // as long), for AVX2, and for any processor.
     void evaluate_all() {
 #if defined(__x86_64__)
+        if (kColor && has_avx512()) return evaluate_avx512();
         if (kColor && has_avx2()) return evaluate_avx2();
 #endif
         evaluate_here();
     }
     void collapse_all() {
 #if defined(__x86_64__)
+        if (kColor && has_avx512()) return collapse_avx512();
         if (kColor && has_avx2()) return collapse_avx2();
 #endif
         collapse_here();
     }
 #if defined(__x86_64__)
+    IMGMESH_AVX512 __attribute__((flatten)) void evaluate_avx512() {
+        evaluate_here();
+    }
+    IMGMESH_AVX512 __attribute__((flatten)) void collapse_avx512() {
+        collapse_here();
+    }
     __attribute__((target("avx2"), flatten)) void evaluate_avx2() {
         evaluate_here();
     }
