@@ -29,7 +29,7 @@ struct alignas(64) Ring {
     std::uint8_t valence = 0;   ///< 0 if the vertex is removed
     std::uint8_t fixed = 0;     ///< FixedAxis bits; nonzero exactly for border vertices
     std::uint16_t version = 0;  ///< rises whenever the vertex merges or is removed
-    std::uint8_t locked = 0;    ///< nonzero: must stay unchanged for now, with its edges (edge_collapser.h)
+    std::uint8_t locked = 0;    ///< nonzero: must stay unchanged for now, with its edges (tile_collapser.h)
 
     bool border() const { return fixed != 0; }
     bool live() const { return valence != 0; }

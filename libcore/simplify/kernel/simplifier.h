@@ -1,9 +1,10 @@
-// The engine of simplify: the schedule by which its inner loop (edge_collapser.h) gets to the goal.
+// The engine of simplify: the schedule by which its inner loops (tile_collapser.h, edge_collapser.h) get to
+// the goal.
 //
 // Steps: (1) the dense mesh tile by tile, until about an eighth of it is left (start_in_tiles.h); (2) rounds
 // of larger tiles while the goal is far (round_in_tiles.h); (3) the whole mesh at once. Each step works in
 // windows: only edges below a threshold are looked at, and the threshold rises from one to the next. Figures
-// for what is chosen here are in docs/decisions/0019-collapse-in-tiles.md.
+// for what is chosen here are in docs/decisions/0019-collapse-in-tiles.md and 0046-tiles-without-a-queue.md.
 #pragma once
 
 #include <algorithm>

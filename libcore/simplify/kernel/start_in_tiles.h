@@ -26,7 +26,7 @@ namespace imgmesh {
 // (docs/decisions/0019-collapse-in-tiles.md).
 inline constexpr float kTileWindow = 2.0f;
 
-// Tiles that one thread takes at a time, with one queue for all of them: enough to make its memory serve
+// Tiles that one thread takes at a time, in the same memory: enough to make its memory serve
 // again, few enough to keep all threads busy to the end of an image of 1000 x 1000, which has 256.
 inline constexpr int kStartTilesPerBlock = 4;
 // Tiles whose survivors are kept one by one before they are put together. Recheck by the peak memory of
