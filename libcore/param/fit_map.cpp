@@ -16,7 +16,7 @@ namespace {
 
 // Over-relaxation: pixels go farther than is best for each alone, as their neighbours will follow. The last
 // round evens out what that leaves. With a rate, places beyond the best one would cost bits.
-constexpr float kLongStride = 1.6f;
+constexpr float kLongStride = 1.8f;
 
 void round_colors(BaseMesh& mesh, const FeatureSpace& space) {
     const float weight = space.color_weight;
