@@ -25,7 +25,7 @@ BuildParams best() {
 BuildParams small() {
     BuildParams params;
     params.map_steps = 8;
-    params.map_rate = 0.45;
+    params.map_rate = 0.5;
     params.mesh_precision = MeshPrecision::kCompact;
     return params;
 }
