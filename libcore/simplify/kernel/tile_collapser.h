@@ -259,11 +259,16 @@ class TileCollapser {
                 short_costs(merged_minimum(own, side_by_side(quadrics_.data(), others + k)).increment,
                             costs + k);
             }
+        } else if constexpr (kCanonical<Q>) {
+            for (int k = 0; k < count; ++k) {
+                const float increment = merged_minimum(quadrics_[i], quadrics_[others[k]]).increment;
+                costs[k] = short_cost(costs_.cost(i, others[k], increment));
+            }
         }
     }
     // Whether evaluate() has not given the costs of vertex i's edges, but cost_beside() will.
     bool all_beside(TileId i) const {
-        return !kColor || vertices_[i].border() || rules_.params.total_priority;
+        return !kCanonical<Q> || vertices_[i].border() || rules_.params.total_priority;
     }
     [[gnu::noinline]] ShortCost cost_beside(TileId i, TileId j) const {
         return short_cost(costs_.cost(i, j));

@@ -92,7 +92,7 @@ IMGMESH_INLINE ColorQuadric8 in_every_lane(const ColorQuadric& quadric) {
     return q;
 }
 
-/// merged() but for rounding, with the channels side by side.
+/// merged(), to the bit, with the channels side by side.
 IMGMESH_INLINE void merge_colors(const ColorQuadric& i, const ColorQuadric& j, ColorQuadric& sum) {
     // Three channels and the member behind them, whose results are not used.
     const Float4 gx_i = load4(i.gx), gx_j = load4(j.gx), gy_i = load4(i.gy), gy_j = load4(j.gy);
@@ -129,9 +129,15 @@ IMGMESH_INLINE void merge_colors(const ColorQuadric& i, const ColorQuadric& j, C
     store4(sum.s, s);
     store4(sum.gx, wi * gx_i + wj * gx_j);
     store4(sum.gy, wi * gy_i + wj * gy_j);
-    sum.sxx = i.sxx + j.sxx + t.h * t.txx;
-    sum.sxy = i.sxy + j.sxy + t.h * t.txy;
-    sum.syy = i.syy + j.syy + t.h * t.tyy;
+    // S and the member behind it, channel by channel.
+    const Float4 hx = wi * j.weight * ex, hy = wi * j.weight * ey;
+    const Float4 xx = hx * ex, xy = hx * ey, yy = hy * ey;
+    const Float4 xx_xy = __builtin_shufflevector(xx, xy, 0, 4, 1, 5);
+    Float4 spread = load4(&i.sxx) + load4(&j.sxx);
+    spread += __builtin_shufflevector(xx_xy, yy, 0, 1, 4, 4);
+    spread += __builtin_shufflevector(xx_xy, yy, 2, 3, 5, 5);
+    spread += __builtin_shufflevector(__builtin_shufflevector(xx, xy, 2, 6, 2, 6), yy, 0, 1, 6, 6);
+    store4(&sum.sxx, spread);
     sum.weight = weight;
     sum.error = i.error + j.error + m.increment;
 }
