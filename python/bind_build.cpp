@@ -180,7 +180,8 @@ Builds a mesh with a pixel map from an image, as imgmesh-build does: the same pa
 
 image            a path, an Image, or an array as Image takes it. An array is converted once to float32; uint8
                  and uint16 are sRGB, floats are linear.
-preset           fast, default, best or fem: values for many parameters, over which those that are given count
+preset           fast, default, best, max, small or fem: values for many parameters, over which those that are
+                 given count
 mask             a path, an Image or an array (bool too), height x width: only pixels whose alpha, or else
                  brightness, reaches the threshold are meshed
 alpha            keep it as a channel of the mesh, cut the image where it is below the threshold, ignore it; auto

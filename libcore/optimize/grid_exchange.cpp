@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "libcore/base/for_each_id.h"
 #include "libcore/mesh/fixed_axes.h"
 #include "libcore/optimize/grid_state.h"
 
@@ -63,12 +64,13 @@ void GridState::remove(const Removal& removal) {
 
 std::size_t GridState::remove_cheapest(std::size_t most, std::size_t border, std::size_t inner) {
     removal_.resize(vertex_.size());
-    std::vector<Removal> all;
-    for (Id v = 0; v < vertex_.size(); ++v) {
+    for_each_id(vertex_.size(), [&](Id v) {
         if (!vertex_[v].removal_holds) removal_[v] = best_removal(v);
         vertex_[v].removal_holds = true;
-        if (removal_[v].into != kNone) all.push_back(removal_[v]);
-    }
+    });
+    std::vector<Removal> all;
+    for (const Removal& removal : removal_)
+        if (removal.into != kNone) all.push_back(removal);
     std::sort(all.begin(), all.end(), [](const Removal& a, const Removal& b) {
         return a.cost != b.cost ? a.cost < b.cost : a.v < b.v;
     });
@@ -123,8 +125,9 @@ void GridState::try_insertion(Id f, int edge, std::int32_t column, std::int32_t 
     if (gain > best.gain) best = {f, edge, column, row, fit.color, gain};
 }
 
-void GridState::best_insertion(Id f, std::vector<Insertion>& all) const {
+GridState::Insertion GridState::best_insertion(Id f) const {
     Insertion best{f, -1, 0, 0, {}, 0};
+    if (!mesh_.live_face(f)) return best;
     const Face& face = mesh_.face(f);
     // Nearest grid point of a mean of the corners with these weights, in fifths.
     constexpr std::int32_t kInside[6][3] = {{3, 1, 1}, {1, 3, 1}, {1, 1, 3}, {1, 2, 2}, {2, 1, 2}, {2, 2, 1}};
@@ -141,7 +144,7 @@ void GridState::best_insertion(Id f, std::vector<Insertion>& all) const {
         const Vertex &p = vertex_[face[(i + 1) % 3]], &q = vertex_[face[(i + 2) % 3]];
         try_insertion(f, static_cast<int>(i), line(p.column + q.column, 2), line(p.row + q.row, 2), best);
     }
-    if (best.gain > 0) all.push_back(best);
+    return best;
 }
 
 Id GridState::insert(const Insertion& insertion) {
@@ -174,9 +177,9 @@ Id GridState::insert(const Insertion& insertion) {
 }
 
 std::size_t GridState::insert_best(std::size_t most) {
-    std::vector<Insertion> all;
-    for (Id f = 0; f < cost_.size(); ++f)
-        if (mesh_.live_face(f)) best_insertion(f, all);
+    std::vector<Insertion> all(cost_.size());
+    for_each_id(all.size(), [&](Id f) { all[f] = best_insertion(f); });
+    std::erase_if(all, [](const Insertion& insertion) { return !(insertion.gain > 0); });
     std::sort(all.begin(), all.end(), [](const Insertion& a, const Insertion& b) {
         return a.gain != b.gain ? a.gain > b.gain : a.face < b.face;
     });

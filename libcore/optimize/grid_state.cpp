@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "libcore/base/for_each_id.h"
 #include "libcore/mesh/fixed_axes.h"
 
 namespace imgmesh {
@@ -146,12 +147,14 @@ void GridState::fit_colors(int passes) {
     std::vector<FaceFit> fits(cost_.size());
     // The faces of each vertex, one after the other: `first` is where its own begin.
     std::vector<Id> first(mesh_.vertices() + 1, 0), corners;
-    for (Id f = 0; f < cost_.size(); ++f) {
-        if (!mesh_.live_face(f)) continue;
-        const auto [a, b, c] = mesh_.face(f);
+    for_each_id(cost_.size(), [&](Id f) {
+        if (!mesh_.live_face(f)) return;
+        const auto& [a, b, c] = mesh_.face(f);
         fits[f] = face_fit(*sums_, spot_[a].place, spot_[b].place, spot_[c].place);
-        for (const Id v : mesh_.face(f)) ++first[v + 1];
-    }
+    });
+    for (Id f = 0; f < cost_.size(); ++f)
+        for (const Id v : mesh_.face(f))
+            if (v != kNone) ++first[v + 1];
     for (std::size_t v = 0; v < mesh_.vertices(); ++v) first[v + 1] += first[v];
     corners.resize(first.back());
     std::vector<Id> next(first.begin(), first.end() - 1);
@@ -174,10 +177,12 @@ void GridState::fit_colors(int passes) {
             const Double4 best = rhs / weight;
             spot_[v].color = rules_.allowed(best);
         }
-    for (Id f = 0; f < cost_.size(); ++f)
-        if (const auto [a, b, c] = mesh_.face(f); mesh_.live_face(f))
-            cost_[f] = fits[f].error(spot_[a].color, spot_[b].color, spot_[c].color) +
-                       rules_.shape_cost(spot_[a].place, spot_[b].place, spot_[c].place);
+    for_each_id(cost_.size(), [&](Id f) {
+        if (!mesh_.live_face(f)) return;
+        const auto& [a, b, c] = mesh_.face(f);
+        cost_[f] = fits[f].error(spot_[a].color, spot_[b].color, spot_[c].color) +
+                   rules_.shape_cost(spot_[a].place, spot_[b].place, spot_[c].place);
+    });
     for (Vertex& v : vertex_) v.removal_holds = false;
     all_changed();
 }

@@ -102,7 +102,7 @@ class GridState {
     void for_each_part(Work&& work);
     Removal best_removal(Id v) const;
     void remove(const Removal& removal);
-    void best_insertion(Id f, std::vector<Insertion>& all) const;
+    Insertion best_insertion(Id f) const;
     void try_insertion(Id f, int edge, std::int32_t column, std::int32_t row, Insertion& best) const;
     Id insert(const Insertion& insertion);
     void changed(Id f);  // the face and its corners

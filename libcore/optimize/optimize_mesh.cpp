@@ -48,7 +48,16 @@ RowSums sums_of(const FeatureImage& image, float levels, const Mask& mask) {
 }
 
 GridSchedule schedule_of(const RefineParams& params) {
-    return {.rounds = params.rounds, .share = params.exchange, .sweeps = 0, .last_rounds = 0};
+    // Figures: docs/decisions/0048-optimised-meshes.md.
+    return {.rounds = params.rounds,
+            .share = params.exchange,
+            .sweeps = params.anneal,
+            .temperature = 0.3,
+            .last_temperature = 0.03,
+            .spread = 0.6 * kPlacesPerPixel * static_cast<double>(kPositionStep / params.position_step),
+            .last_spread = 0.1 * kPlacesPerPixel * static_cast<double>(kPositionStep / params.position_step),
+            .last_rounds = params.anneal > 0 ? 2 * params.rounds : 0,
+            .last_share = 0.3 * params.exchange};
 }
 
 }  // namespace

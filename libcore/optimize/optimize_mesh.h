@@ -17,8 +17,9 @@ struct OptimizeReport {
 
 /// Lowers the squared error of the mesh drawn with colours interpolated linearly over its faces, plus
 /// weighted shape. Each of `params.rounds` adds the share `params.exchange` of the vertices where they gain
-/// most, lets the mesh settle, and removes as many where they cost least; the best mesh is kept. The number
-/// of vertices stays, and with `params.keep_faces` that of faces. Lower errors than refine()
+/// most, lets the mesh settle, and removes as many where they cost least; the best mesh is kept. Sweeps of
+/// annealing and twice as many rounds of fewer vertices follow if `params.anneal` is above 0. The number of
+/// vertices stays, and with `params.keep_faces` that of faces. Lower errors than refine()
 /// (libcore/refine/refine.h), and thinner triangles: a hundredth of the longest edge is the least height.
 ///
 /// mesh   any boundary, three channels, positions on kPositionStep; corners and boundaries stay, except that

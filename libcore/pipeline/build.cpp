@@ -128,6 +128,7 @@ struct Pipeline {
         refinement.rounds = static_cast<int>(refine_rounds(params));
         refinement.shape_weight = params.shape_weight;
         refinement.exchange = params.exchange;
+        refinement.anneal = static_cast<int>(params.anneal);
         refinement.keep_faces = params.stop.faces || params.levels.count > 1 || !params.levels.faces.empty();
         refinement.min_quality = params.min_quality;
         refinement.max_face_area = limits.max_face_area;
@@ -145,6 +146,7 @@ struct Pipeline {
                 // One round on the grid makes good what the rounding has cost.
                 refinement.rounds = 1;
                 refinement.relocations = 0;
+                refinement.anneal = 0;
                 refine_level(level.mesh, feature, mask, params.objective, refinement, {});
             }
         }
@@ -340,10 +342,11 @@ BuildResult build(const Image& image, Image* own, const BuildParams& asked, cons
     BuildParams params = asked;
     if (!params.refine) params.refine = refinable ? refine_rounds(asked) : 0;
     if ((*params.refine > 0 || params.objective == Objective::kRgb) && !refinable)
-        throw Error(ErrorKind::kUnsupported,
-                    "refinement, which the presets best and fem include, is only for colours without HDR, "
-                    "and not for "
-                    "auxiliary channels");
+        throw Error(
+            ErrorKind::kUnsupported,
+            "refinement, which the presets best, max and fem include, is only for colours without HDR, "
+            "and not for "
+            "auxiliary channels");
     if (params.color_levels && (!space.color || space.gamut != Gamut::kDisplay))
         throw Error(ErrorKind::kUnsupported,
                     cat("color-levels is only for colours without HDR; this image has ",

@@ -57,6 +57,7 @@ enum class MeshPrecision {
 };
 
 inline constexpr int kMaxRefine = 1000;
+inline constexpr int kMaxAnneal = 100000;
 
 /// All of it. Defaults are those of the preset "default".
 struct BuildParams {
@@ -95,6 +96,7 @@ struct BuildParams {
     std::optional<std::int64_t> refine;
     double shape_weight = RefineParams().shape_weight;
     double exchange = RefineParams().exchange;
+    std::int64_t anneal = RefineParams().anneal;  ///< only with exchange; 0 to kMaxAnneal
     Objective objective = Objective::kLuv;
     double min_quality = RefineParams().min_quality;  ///< of every triangle, collapsed or refined; 0 to 0.8
     MeshPrecision mesh_precision = MeshPrecision::kExact;

@@ -20,6 +20,7 @@ constexpr ParamListing kWhereGiven = {.when = "where given"};
 constexpr ParamListing kWhereItStops = {"where it counts", stops};
 constexpr ParamListing kRefined = {"with refinement",
                                    [](const BuildParams& p) { return p.refine.value_or(0) > 0; }};
+constexpr ParamListing kAnnealed = {"where above 0", [](const BuildParams& p) { return p.anneal > 0; }};
 constexpr ParamListing kDensity = {"where it counts", [](const BuildParams& p) {
                                        return stops(p) && !p.stop.faces && !p.stop.vertices && !p.stop.error;
                                    }};
@@ -189,8 +190,15 @@ std::vector<Param> make_table() {
         {.name = "exchange",
          .group = refinement,
          .kind = number({0, 1}, &B::exchange),
-         .help = "Share of the vertices that each round adds, and removes elsewhere; slow",
+         .help =
+             "Share of the vertices that each round adds, and removes elsewhere; slow, and for triangles as "
+             "thin as a hundredth of their length",
          .listed = kRefined},
+        {.name = "anneal",
+         .group = refinement,
+         .kind = count({0, kMaxAnneal}, &B::anneal),
+         .help = "Sweeps of random moves after the exchanges, and then more exchanges; very slow",
+         .listed = kAnnealed},
         {.name = "objective",
          .group = refinement,
          .kind =

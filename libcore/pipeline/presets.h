@@ -15,7 +15,7 @@ struct Preset {
     BuildParams params;
 };
 
-/// Returns all presets: fast, default (what BuildParams holds), best, fem.
+/// Returns all presets: fast, default (what BuildParams holds), best, max, small, fem.
 const std::vector<Preset>& presets();
 
 /// Returns the parameters of the preset of that name. Throws Error(kBadArgument) for an unknown name.

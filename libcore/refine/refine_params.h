@@ -17,6 +17,7 @@ struct RefineParams {
     /// Share of the vertices that a round adds, then removes elsewhere; 0 to 1. Above 0, libcore/optimize
     /// does all rounds.
     double exchange = 0;
+    int anneal = 0;          ///< sweeps of random moves between the exchanges, and then twice as many rounds
     bool keep_faces = true;  ///< exchanges keep the number of faces too, by that of boundary vertices
     float position_step = 1.0f / 32;  ///< new positions are multiples of this power of two [pixels]
     ColorRange range = ColorRange::kLuv;

@@ -282,7 +282,7 @@ class Comparison:
 def build(
     image: _ImageLike,
     *,
-    preset: Literal["fast", "default", "best", "small", "fem"] | None = None,
+    preset: Literal["fast", "default", "best", "max", "small", "fem"] | None = None,
     mask: _ImageLike | None = None,
     alpha: Literal["auto", "keep", "cut", "ignore"] | None = "auto",
     alpha_threshold: float | None = None,
@@ -319,6 +319,7 @@ def build(
     refine: int | None = None,
     shape_weight: float | None = None,
     exchange: float | None = None,
+    anneal: int | None = None,
     objective: Literal["luv", "rgb"] | None = None,
     map: Literal["relaxed", "tracked", "trivial"] | None = None,
     projection_color_weight: float | None = None,

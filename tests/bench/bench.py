@@ -43,7 +43,7 @@ def options(arguments):
     parser.add_argument("--densities", type=numbers(float, 0.01, 100), default=[1.0],
                         help="vertices in percent of the pixels (default 1)")
     parser.add_argument("--threads", type=numbers(int, 1, 1024), default=[1, 2], help="default 1,2")
-    parser.add_argument("--preset", default="default", choices=["fast", "default", "best", "fem"])
+    parser.add_argument("--preset", default="default", choices=["fast", "default", "best", "max", "fem"])
     parser.add_argument("--repeats", type=int, default=3, help="runs of everything; the least time counts (default 3)")
     parser.add_argument("--only", default="process,stage,peer",
                         help="kinds of rows: process, stage, peer (default all)")

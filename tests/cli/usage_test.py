@@ -181,7 +181,7 @@ class Usage(CliCase):
     def test_names_are_those_listed(self):
         for option, value, listed in (("--bary", "double", "half, float"),
                                       ("--objective", "lab", "luv, rgb"),
-                                      ("--preset", "good", "fast, default, best, small, fem"),
+                                      ("--preset", "good", "fast, default, best, max, small, fem"),
                                       ("--draco", "zip", "edgebreaker, sequential, none"),
                                       ("--metric", "qem", "flattened, hoppe, garland"),
                                       ("--solver", "qr", "svd, lu, closed"),

@@ -43,7 +43,7 @@ class Errors(unittest.TestCase):
                                   (("threads is 0", "1 to 1024"), {"threads": 0}),
                                   (("alpha 'x'", "auto, keep, cut, ignore"), {"alpha": "x"}),
                                   (("alpha_threshold is 2",), {"alpha_threshold": 2}),
-                                  (("preset 'nope': expected one of fast, default, best, small, fem",), {"preset": "nope"}),
+                                  (("preset 'nope': expected one of fast, default, best, max, small, fem",), {"preset": "nope"}),
                                   (("max_pixels is 0",), {"max_pixels": 0}), (("max_pixels is -1",), {"max_pixels": -1}),
                                   (("24x16", "max_pixels=383"), {"max_pixels": 383}),
                                   (("level_faces is 1",), {"level_faces": [9, 1]}),

@@ -9,7 +9,7 @@ export interface Pixels {
 
 /** What a build may be told: `preset`, and every parameter of docs/parameters.md by its name. */
 export interface BuildParameters {
-  preset?: "fast" | "default" | "best" | "small" | "fem";
+  preset?: "fast" | "default" | "best" | "max" | "small" | "fem";
   vertices?: number;
   density?: number;
   faces?: number;
