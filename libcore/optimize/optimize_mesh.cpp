@@ -39,11 +39,12 @@ BaseMesh unplaced(const PlacedMesh& mesh, float levels) {
 }
 
 RowSums sums_of(const FeatureImage& image, float levels, const Mask& mask) {
-    FeatureImage scaled = image;
-    for (float& sample : scaled.data) sample *= levels;
     std::vector<float> inside;
     for (std::size_t i = 0; i < image.pixel_count() && !mask.empty(); ++i)
         inside.push_back(mask.contains(i) ? 1.0f : 0.0f);
+    if (levels == 1) return RowSums(image, inside);
+    FeatureImage scaled = image;
+    for (float& sample : scaled.data) sample *= levels;
     return RowSums(scaled, inside);
 }
 

@@ -52,7 +52,7 @@ class Config(CliCase):
             self.config(text)
             self.build("in.png", "--config", "c.toml")
             built = self.report("imgmesh-info", "out.glb")["build"]
-            self.assertEqual((built["density"], built["refine"]), (5, 6))
+            self.assertEqual((built["density"], built["refine"]), (5, 7))
         self.config("refine = 2\n")
         self.build("in.png", "--config", "c.toml", "--preset", "fast")
         built = self.report("imgmesh-info", "out.glb")["build"]
@@ -108,7 +108,7 @@ class Config(CliCase):
             less = {"build": ["--level-faces", "300,80"], "segment": ["--segments", "4"]}.get(tool, [])
             self.report(f"imgmesh-{tool}", *args, "--config", "c.toml", *less)
         built = self.report("imgmesh-info", "out.glb")
-        self.assertEqual((built["build"]["refine"], len(built["levels"])), (6, 2))
+        self.assertEqual((built["build"]["refine"], len(built["levels"])), (7, 2))
         self.assertEqual(picture_files.read(self.folder / "flat.png").shape[:2], (32, 48))
 
     def test_unknown_keys(self):
