@@ -41,6 +41,9 @@ void check_contradictions(const CLI::App& app, const BuildParams& p) {
                "a tracked map follows the collapse to where its vertices are");
     if (map_kind(p) == MapKind::kTracked && given(app, "--map-step"))
         refuse(map, "--map-step", "a tracked map puts pixels anywhere");
+    if (map_kind(p) != MapKind::kRelaxed && given(app, "--map-rounds"))
+        refuse(typed(app, {"--map", "--projection-color-weight"}), "--map-rounds",
+               "only the relaxed map is made in rounds");
     if (map_kind(p) != MapKind::kRelaxed && given(app, "--map-rate"))
         refuse(typed(app, {"--map", "--projection-color-weight"}), "--map-rate",
                "only the relaxed map weighs bits against colour");
@@ -82,7 +85,7 @@ void check_no_map(const CLI::App& app, const BuildParams& p) {
     if (p.max_cluster)
         refuse(typed(app, {"--max-cluster"}), map, "the pixels of a face are those of the pixel map");
     for (const char* option : {"--map", "--projection-color-weight", "--map-smoothness", "--map-step",
-                               "--map-rate", "--bary", "--visits"})
+                               "--map-rounds", "--map-rate", "--bary", "--visits"})
         if (given(app, option)) refuse(typed(app, {option}), map, "it is about the pixel map");
 }
 

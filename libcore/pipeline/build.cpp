@@ -155,6 +155,7 @@ struct Pipeline {
         fit.color_weight = map_color_weight(params);
         fit.bary = params.bary;
         fit.steps = params.map_steps;
+        fit.rounds = static_cast<int>(params.map_rounds);
         fit.rate = params.map_rate;
         fit.space = space;
         fit.keep_colors = params.quadric_colors || params.objective == Objective::kRgb;

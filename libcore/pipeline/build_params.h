@@ -8,6 +8,7 @@
 #include "libcore/image/feature_space.h"
 #include "libcore/mesh/displacements.h"
 #include "libcore/mesh/pixel_map.h"
+#include "libcore/param/fit_map.h"
 #include "libcore/refine/refine_params.h"
 #include "libcore/simplify/simplify_params.h"
 
@@ -58,6 +59,7 @@ enum class MeshPrecision {
 
 inline constexpr int kMaxRefine = 1000;
 inline constexpr int kMaxAnneal = 100000;
+inline constexpr int kMaxMapRounds = 1000;
 
 /// All of it. Defaults are those of the preset "default".
 struct BuildParams {
@@ -86,7 +88,8 @@ struct BuildParams {
     /// FitParams or TrackParams have.
     std::optional<double> projection_color_weight;
     int map_steps = kUsualSteps;  ///< of the grid of a relaxed or trivial map in a pixel: 8, 16 or 32
-    double map_rate = 0;          ///< relaxed: what a bit of a displacement costs [feature^2]; >= 0
+    std::int64_t map_rounds = FitParams().rounds;  ///< relaxed; 1 to kMaxMapRounds
+    double map_rate = 0;  ///< relaxed: what a bit of a displacement costs [feature^2]; >= 0
     bool visits = false;  ///< count how often the collapse down to the finest level touches each pixel
     std::optional<WeightPrecision> bary;      ///< none: half where the map stays a bijection, else float
     std::optional<std::int64_t> max_cluster;  ///< no face with more pixels than this; >= 3

@@ -36,6 +36,8 @@ constexpr ParamListing kVisits = {"where given", [](const BuildParams& p) { retu
 
 constexpr ParamListing kOnGrid = {"unless the map is tracked",
                                   [](const BuildParams& p) { return map_kind(p) != MapKind::kTracked; }};
+constexpr ParamListing kInRounds = {"if the map is relaxed",
+                                    [](const BuildParams& p) { return map_kind(p) == MapKind::kRelaxed; }};
 constexpr ParamListing kRate = {"where above 0", [](const BuildParams& p) { return p.map_rate > 0; }};
 
 constexpr ParamListing kAsWeight = {"as projection-color-weight", [](const BuildParams&) { return false; }};
@@ -231,6 +233,11 @@ std::vector<Param> make_table() {
          .kind = words<int, int>(&B::map_steps, {{"1/32", 32}, {"1/16", 16}, {"1/8", 8}}),
          .help = "Grid on which pixels lie on the mesh, in pixels; a coarser one takes fewer bytes",
          .listed = kOnGrid},
+        {.name = "map-rounds",
+         .group = map,
+         .kind = count({1, kMaxMapRounds}, &B::map_rounds),
+         .help = "Rounds that move pixels and fit colours to lower the error through the map",
+         .listed = kInRounds},
         {.name = "map-rate",
          .group = map,
          .kind = number({0, 1e30}, &B::map_rate),  // far below the largest float, by which it is weighed

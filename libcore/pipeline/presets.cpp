@@ -9,6 +9,7 @@ BuildParams fast() {
     BuildParams params;
     params.geometry_weight = 1;
     params.refine = 0;
+    params.map_rounds = 2;
     return params;
 }
 

@@ -325,6 +325,7 @@ def build(
     projection_color_weight: float | None = None,
     map_smoothness: float | None = None,
     map_step: Literal["1/32", "1/16", "1/8"] | None = None,
+    map_rounds: int | None = None,
     map_rate: float | None = None,
     bary: Literal["half", "float"] | None = None,
     visits: bool | None = None,

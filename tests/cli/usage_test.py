@@ -166,6 +166,7 @@ class Usage(CliCase):
             "--shape-weight": ["-1", "nan"],
             "--exchange": ["1.5", "-0.1"],
             "--map-smoothness": ["0", "-1", "1e13", "inf"],
+            "--map-rounds": ["0", "1001", "1.5"],
             "--map-rate": ["-1", "nan", "1e31"],
             "--threads": ["0", "1025", "all"],
         }

@@ -126,6 +126,7 @@ TEST_CASE("parameters: a container lists what shaped it, and only that") {
                                                            {"exchange", "0"},
                                                            {"geometry-weight", "0.3"},
                                                            {"map", "relaxed"},
+                                                           {"map-rounds", "3"},
                                                            {"map-step", "1/16"},
                                                            {"metric", "flattened"},
                                                            {"objective", "luv"},
