@@ -8,6 +8,8 @@
 
 #if defined(__SSE2__)
 #include <emmintrin.h>
+#elif defined(__wasm_simd128__)
+#include <wasm_simd128.h>
 #endif
 
 namespace imgmesh {
@@ -77,6 +79,12 @@ inline unsigned match12(const std::uint32_t* values, std::uint32_t wanted) {
     };
     const __m128i eight = _mm_packs_epi32(four(0), four(4)), last = _mm_packs_epi32(four(8), __m128i{});
     return static_cast<unsigned>(_mm_movemask_epi8(_mm_packs_epi16(eight, last)));
+#elif defined(__wasm_simd128__)
+    const v128_t w = wasm_i32x4_splat(static_cast<int>(wanted));
+    const auto four = [&](int k) { return wasm_i32x4_eq(wasm_v128_load(values + k), w); };
+    const v128_t eight = wasm_i16x8_narrow_i32x4(four(0), four(4)),
+                 last = wasm_i16x8_narrow_i32x4(four(8), wasm_i32x4_splat(0));
+    return wasm_i8x16_bitmask(wasm_i8x16_narrow_i16x8(eight, last));
 #else
     unsigned found = 0;
     for (unsigned k = 0; k < 12; ++k) found |= static_cast<unsigned>(values[k] == wanted) << k;

@@ -29,6 +29,10 @@ IMGMESH_INLINE unsigned mask16(const Short16& holds) {
     __m128i half[2];
     std::memcpy(half, &holds, sizeof half);
     return static_cast<unsigned>(_mm_movemask_epi8(_mm_packs_epi16(half[0], half[1])));
+#elif defined(__wasm_simd128__)
+    v128_t half[2];
+    std::memcpy(half, &holds, sizeof half);
+    return wasm_i8x16_bitmask(wasm_i8x16_narrow_i16x8(half[0], half[1]));
 #else
     unsigned mask = 0;
     for (unsigned k = 0; k < 16; ++k) mask |= static_cast<unsigned>(holds[k] != 0) << k;
@@ -55,6 +59,12 @@ IMGMESH_INLINE std::uint16_t least16(const std::uint16_t* values) {
     v = _mm_min_epi16(v, _mm_shuffle_epi32(v, 0xb1));
     v = _mm_min_epi16(v, _mm_shufflelo_epi16(v, 0xb1));
     return static_cast<std::uint16_t>(_mm_cvtsi128_si32(v));
+#elif defined(__wasm_simd128__)
+    v128_t v = wasm_i16x8_min(wasm_v128_load(values), wasm_v128_load(values + 8));
+    v = wasm_i16x8_min(v, wasm_i32x4_shuffle(v, v, 2, 3, 0, 1));
+    v = wasm_i16x8_min(v, wasm_i32x4_shuffle(v, v, 1, 0, 3, 2));
+    v = wasm_i16x8_min(v, wasm_i16x8_shuffle(v, v, 1, 0, 3, 2, 5, 4, 7, 6));
+    return static_cast<std::uint16_t>(wasm_i16x8_extract_lane(v, 0));
 #else
     return *std::min_element(values, values + 16);
 #endif
