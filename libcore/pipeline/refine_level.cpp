@@ -35,7 +35,8 @@ void convert_colors(BaseMesh& mesh, Convert convert) {
     }
 }
 
-// Strips one pixel wide have no rows to sum up.
+// A strip one pixel wide has no rows to sum up. It needs no exchanges: all its vertices are on two lines, and
+// relocations take them wherever exchanges would.
 bool is_strip(const FeatureImage& image) {
     return image.width < 2 || image.height < 2;
 }

@@ -123,7 +123,6 @@ bool Refiner::move_vertex(Id v) {
 }
 
 std::int64_t Refiner::move_vertices() {
-    forget();
     std::vector<std::uint8_t> moved(mesh_.vertices(), false);
     tiles().for_each([&](Id v) { moved[v] = move_vertex(v); });
     return std::count(moved.begin(), moved.end(), true);

@@ -30,7 +30,6 @@ RefineReport refine(BaseMesh& mesh, const FeatureImage& image, const RefineParam
         }
         report.moves += refiner.move_vertices();
         refiner.fit_colors();
-        if (params.exchange > 0) refiner.exchange(params.exchange);
         // A step may raise the error for a better shape; a round may not.
         const double error = refiner.total_error();
         if (!(error < report.error.back())) break;
@@ -39,9 +38,8 @@ RefineReport refine(BaseMesh& mesh, const FeatureImage& image, const RefineParam
         const double before = report.error[report.error.size() - 2];
         if (before - error < kLeastGain * before) break;
     }
-    // A vertex that was added has the number of a removed one, somewhere else.
-    if (report.error.size() > 1 && (params.relocations > 0 || params.exchange > 0))
-        mesh = numbered_downwards(mesh);
+    // A relocated vertex has the number of the removed one, somewhere else.
+    if (report.error.size() > 1 && params.relocations > 0) mesh = numbered_downwards(mesh);
     return report;
 }
 

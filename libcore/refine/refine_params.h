@@ -14,8 +14,8 @@ struct RefineParams {
     double max_face_area = std::numeric_limits<double>::infinity();  ///< no new triangle is larger [px^2]
     double shape_weight = 0.22;  ///< of sum (1/q - 1) over faces, in mean squared errors of a face; >= 0
     double relocations = 0.05;   ///< share of the vertices that a round may relocate; 0 to 1
-    /// Share of the vertices that a round adds, then removes elsewhere; 0 to 1. Above 0, libcore/optimize
-    /// does all rounds.
+    /// Share of the vertices that a round adds, then removes elsewhere; 0 to 1. Exchanges and annealing are
+    /// optimize_mesh()'s; refine() has none.
     double exchange = 0;
     int anneal = 0;          ///< sweeps of random moves between the exchanges, and then twice as many rounds
     bool keep_faces = true;  ///< exchanges keep the number of faces too, by that of boundary vertices

@@ -104,7 +104,6 @@ const VertexTiles& Refiner::tiles() {
 // Least squares over all pixels by projected Gauss-Seidel, as in param/fit_colors.cpp, on changes of the
 // colours.
 void Refiner::fit_colors() {
-    forget();
     const std::vector<Vec3f> before = vertex_.color;
     std::vector<Vec3d> change(mesh_.vertices(), Vec3d::Zero());
     constexpr int kPasses = 3;
@@ -140,11 +139,6 @@ void Refiner::changed(const OneRing& ring) {
 void Refiner::changed(Id f) {
     unmeasured_.push_back(f);
     tiles_.reset();
-    for (const Id v : mesh_.face(f))
-        if (v < removal_.size()) removal_[v].estimated = removal_[v].found = false;
-}
-void Refiner::forget() {
-    removal_.clear();
 }
 
 }  // namespace imgmesh

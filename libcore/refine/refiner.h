@@ -31,24 +31,6 @@ class Refiner {
     };
     /// Flips edges, then relocates vertices where no edge has flipped: the pixels are read once for both.
     Rewired flip_and_relocate();
-    /// Adds vertices where they gain most, runs all steps, removes as many where they cost least, and runs
-    /// all steps again. All of it is undone unless the error has fallen.
-    bool exchange(double share);
-    /// Exchanges vertices inside the mesh: at most `most`, none next to another. Returns how many.
-    std::int64_t insert_best(std::int64_t most);
-    /// Looks at `some` vertices only.
-    std::int64_t remove_cheapest(std::int64_t most, std::size_t some);
-
-    struct Removal {
-        Id v, into;
-        double cost;
-        bool border;  ///< v is one of a side
-        bool operator==(const Removal&) const = default;
-    };
-    /// Finds the best removal of each of `some` vertices that seem to cost least, in order of cost. Results
-    /// are remembered while nothing near them has changed, until forget().
-    std::vector<Removal> removals(std::size_t some);
-    void forget();
 
   private:
     // The cost of some faces: squared error, and the summed and the worst shape.
@@ -90,8 +72,7 @@ class Refiner {
     void measure_changed();
     double face_error(const Face& face) const;
     const VertexTiles& tiles();
-    // What was remembered of its vertices no longer holds. It is measured later, by all threads.
-    void changed(Id f);
+    void changed(Id f);  // it is measured later, by all threads
     void changed(const OneRing& ring);
 
     // moves.cpp
@@ -138,6 +119,13 @@ class Refiner {
     Id insert(const Insertion& insertion);
 
     // removals.cpp
+    struct Removal {
+        Id v, into;
+        double cost;
+        bool border;  // v is one of a side
+    };
+    // The best removal of each of `some` vertices that seem to cost least, in order of cost.
+    std::vector<Removal> removals(std::size_t some) const;
     bool may_become(const OneRing& ring, std::size_t n) const;
     void add_fan(Cost& cost, const OneRing& ring, Id u) const;
     // A neighbour and what it seems to cost in error, in any order; returns how many.
@@ -163,14 +151,7 @@ class Refiner {
     std::vector<double> inverse_q_;     // of each face, 1/q
     std::vector<Id> unmeasured_;        // perhaps removed, or several times the same
     std::optional<VertexTiles> tiles_;  // of the present faces
-    // Of each vertex, whether nothing that it depends on has changed since then.
-    struct Remembered {
-        double estimate;
-        Removal removal;
-        bool estimated = false, found = false;
-    };
-    std::vector<Remembered> removal_;
-    double shape_unit_ = 0;  // the squared error that weighs as much as a shape cost of 1
+    double shape_unit_ = 0;             // the squared error that weighs as much as a shape cost of 1
 };
 
 }  // namespace imgmesh

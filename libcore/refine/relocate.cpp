@@ -25,80 +25,11 @@ std::vector<Id> Refiner::faces_around(const std::vector<Id>& vertices) const {
     return faces;
 }
 
-// Remembered results for a face or a vertex hold only until something near it changes.
-std::int64_t Refiner::insert_best(std::int64_t most) {
-    TouchedFaces touched(mesh_.faces().size());
-    std::vector<Id> fresh;
-    OneRing ring;
-    for (const Insertion& insertion : insertions(trials(), touched)) {
-        if (static_cast<std::int64_t>(fresh.size()) == most) break;
-        if (insertion.border || touched.has(insertion.face) || touched.has(across(insertion))) continue;
-        fresh.push_back(insert(insertion));
-        mesh_.ring(fresh.back(), ring);
-        touched.add(ring);
-    }
-    measure_changed();
-    move(fresh);
-    return static_cast<std::int64_t>(fresh.size());
-}
-
-std::int64_t Refiner::remove_cheapest(std::int64_t most, std::size_t some) {
-    TouchedFaces touched(mesh_.faces().size());
-    std::vector<Id> grown;
-    OneRing ring;
-    for (const Removal& removal : removals(some)) {
-        if (static_cast<std::int64_t>(grown.size()) == most) break;
-        if (removal.border) continue;
-        mesh_.ring(removal.v, ring);
-        if (touched.has_any(ring) || !mesh_.may_collapse(ring, removal.into)) continue;
-        touched.add(ring);
-        remove(removal);
-        grown.push_back(removal.into);
-    }
-    measure_changed();
-    flip_near(faces_around(grown));
-    return static_cast<std::int64_t>(grown.size());
-}
-
-bool Refiner::exchange(double share) {
-    const EditMesh mesh = mesh_;
-    const RefineVertices vertices = vertex_;
-    const std::vector<FaceSums> sums = sums_;
-    const std::vector<double> inverse_q = inverse_q_;
-    const double before = total_error();
-    const auto settle = [&] {
-        flip_edges();
-        move_vertices();
-        fit_colors();
-    };
-    const std::int64_t extra =
-        insert_best(static_cast<std::int64_t>(std::ceil(share * static_cast<double>(mesh_.live_vertices()))));
-    settle();
-    settle();
-    const std::size_t some = kLookedAt * static_cast<std::size_t>(extra);
-    std::int64_t left = extra;
-    // In parts, because each removal changes the costs of the next ones.
-    while (left > 0) {
-        const std::int64_t done = remove_cheapest(std::max<std::int64_t>(1, (left + 1) / 2), some);
-        if (done == 0) break;
-        left -= done;
-    }
-    settle();
-    if (left == 0 && total_error() < before) return true;
-    mesh_ = mesh;
-    vertex_ = vertices;
-    sums_ = sums;
-    inverse_q_ = inverse_q;
-    tiles_.reset();
-    forget();
-    return false;
-}
-
 Refiner::Rewired Refiner::flip_and_relocate() {
     const auto most =
         static_cast<std::size_t>(std::ceil(params_.relocations * static_cast<double>(mesh_.live_vertices())));
     const std::vector<FaceTrial> trials = this->trials();
-    // Remembered results for a face or a vertex hold only until something near it changes.
+    // What was found for a face or a vertex holds only until something near it changes.
     TouchedFaces touched(trials.size());
     Rewired done;
     done.flips = flip_edges(trials, touched);

@@ -110,31 +110,21 @@ Refiner::Removal Refiner::best_removal(Id v) const {
     return best;
 }
 
-std::vector<Refiner::Removal> Refiner::removals(std::size_t some) {
-    removal_.resize(mesh_.vertices());
-    for_each_id(removal_.size(), [&](Id v) {
-        if (!removal_[v].estimated) removal_[v].estimate = estimated_removal(v);
-        removal_[v].estimated = true;
-    });
+std::vector<Refiner::Removal> Refiner::removals(std::size_t some) const {
+    std::vector<double> estimate(mesh_.vertices());
+    for_each_id(estimate.size(), [&](Id v) { estimate[v] = estimated_removal(v); });
     std::vector<Id> candidates;
-    for (Id v = 0; v < removal_.size(); ++v)
-        if (removal_[v].estimate < std::numeric_limits<double>::infinity()) candidates.push_back(v);
+    for (Id v = 0; v < estimate.size(); ++v)
+        if (estimate[v] < std::numeric_limits<double>::infinity()) candidates.push_back(v);
     if (some < candidates.size()) {
-        std::nth_element(candidates.begin(), candidates.begin() + static_cast<std::ptrdiff_t>(some),
-                         candidates.end(), [&](Id a, Id b) {
-                             const double first = removal_[a].estimate, second = removal_[b].estimate;
-                             return first != second ? first < second : a < b;
-                         });
+        std::nth_element(
+            candidates.begin(), candidates.begin() + static_cast<std::ptrdiff_t>(some), candidates.end(),
+            [&](Id a, Id b) { return estimate[a] != estimate[b] ? estimate[a] < estimate[b] : a < b; });
         candidates.resize(some);
     }
-    for_each_id(candidates.size(), [&](Id k) {
-        Remembered& remembered = removal_[candidates[k]];
-        if (!remembered.found) remembered.removal = best_removal(candidates[k]);
-        remembered.found = true;
-    });
-    std::vector<Removal> all;
-    for (const Id v : candidates)
-        if (removal_[v].removal.into != kNone) all.push_back(removal_[v].removal);
+    std::vector<Removal> all(candidates.size());
+    for_each_id(all.size(), [&](Id k) { all[k] = best_removal(candidates[k]); });
+    std::erase_if(all, [](const Removal& removal) { return removal.into == kNone; });
     std::sort(all.begin(), all.end(), [](const Removal& a, const Removal& b) {
         return a.cost != b.cost ? a.cost < b.cost : a.v < b.v;
     });
