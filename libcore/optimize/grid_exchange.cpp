@@ -4,6 +4,7 @@
 
 #include "libcore/base/for_each_id.h"
 #include "libcore/mesh/fixed_axes.h"
+#include "libcore/mesh/touched_faces.h"
 #include "libcore/optimize/grid_state.h"
 
 namespace imgmesh {
@@ -74,18 +75,16 @@ std::size_t GridState::remove_cheapest(std::size_t most, std::size_t border, std
     std::sort(all.begin(), all.end(), [](const Removal& a, const Removal& b) {
         return a.cost != b.cost ? a.cost < b.cost : a.v < b.v;
     });
-    std::vector<bool> touched(cost_.size(), false);
+    TouchedFaces touched(cost_.size());
     std::size_t done = 0;
     OneRing ring;
     for (const Removal& removal : all) {
         if (done == most) break;
         mesh_.ring(removal.v, ring);
-        bool free = mesh_.may_collapse(ring, removal.into);
-        for (std::size_t k = 0; k < ring.faces; ++k) free = free && !touched[ring.face[k]];
         std::size_t& left = vertex_[removal.v].fixed != 0 ? border : inner;
-        if (!free || left == 0) continue;
+        if (left == 0 || touched.has_any(ring) || !mesh_.may_collapse(ring, removal.into)) continue;
         --left;
-        for (std::size_t k = 0; k < ring.faces; ++k) touched[ring.face[k]] = true;
+        touched.add(ring);
         remove(removal);
         ++done;
     }
@@ -183,19 +182,18 @@ std::size_t GridState::insert_best(std::size_t most) {
     std::sort(all.begin(), all.end(), [](const Insertion& a, const Insertion& b) {
         return a.gain != b.gain ? a.gain > b.gain : a.face < b.face;
     });
-    std::vector<bool> touched(cost_.size(), false);
+    TouchedFaces touched(cost_.size());
     std::size_t done = 0;
     OneRing ring;
     for (const Insertion& insertion : all) {
         if (done == most) break;
         const Id f = insertion.face,
                  g = insertion.edge < 0 ? kNone : mesh_.across(f, as_index(insertion.edge));
-        if (touched[f] || (g != kNone && touched[g])) continue;
+        if (touched.has(f) || touched.has(g)) continue;
         const Id v = insert(insertion);
         // New faces may have the ids of removed ones.
-        touched.resize(mesh_.faces().size(), true);
         mesh_.ring(v, ring);
-        for (std::size_t k = 0; k < ring.faces; ++k) touched[ring.face[k]] = true;
+        touched.add(ring);
         ++done;
     }
     return done;
