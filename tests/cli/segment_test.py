@@ -106,7 +106,9 @@ class Segment(CliCase):
 
     def test_quality(self):
         disc = self.picture[..., 2] > 0.5
-        found = [self.segment("--quality", quality, "--segments", "2")[1] for quality in ("fast", "default")]
+        self.build("in.png", "--faces", "700", output="fine.glb")
+        found = [self.segment("--quality", quality, "--segments", "2", container="fine.glb")[1]
+                 for quality in ("fast", "default")]
         for labels in found:
             self.assertGreater(((labels == labels[16, 30]) == disc).mean(), 0.97)
         self.assertTrue((found[0] != found[1]).any())  # outlines are smoothed

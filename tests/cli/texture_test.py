@@ -118,7 +118,7 @@ class Texture(CliCase):
 
     def test_a_warped_mesh_keeps_its_places_in_the_texture(self):
         self.run_ok("imgmesh-convert", "plain.glb", "-o", "t.glb", "--texture", "--draco", "none", "-q")
-        self.run_ok("imgmesh-warp", "t.glb", "--handle", "24,16:1,0", "-o", "w.glb", "-q")
+        self.run_ok("imgmesh-warp", "t.glb", "--handle", "36,20:1,0", "-o", "w.glb", "-q")
         self.assert_valid("w.glb")
         self.assertEqual(texture_file(self.folder / "w.glb"), texture_file(self.folder / "t.glb"))
         self.assertTrue((self.attribute("w.glb", "TEXCOORD_0") == self.attribute("t.glb", "TEXCOORD_0")).all())

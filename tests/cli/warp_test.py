@@ -125,14 +125,14 @@ class Warp(CliCase):
 
     def test_injective(self):
         """A pull that folds the mesh by one solver is a container by the other; one that no mesh allows is told of."""
-        pull = ["--handle", "24,16:17,0", "--pin-border"]
+        pull = ["--handle", "24,12:-14,0", "--pin-border"]
         self.assert_error(TOOL, ["c.glb", "-o", "x.glb", *pull], 5, "turn over")
         report = self.report(TOOL, "c.glb", "-o", "w.glb", *pull, "--solver", "injective")
         self.assertEqual(report["unreached"], 0)
         self.assertNotIn("warnings", report)
         self.assertTrue(self.report("imgmesh-info", "w.glb", "--validate")["valid"])
         image = self.warp(*pull, "--solver", "injective")[1]
-        self.edits({"solver": "injective", "handles": [{"near": [24, 16], "move": [17, 0]}], "pins": [{"border": True}]})
+        self.edits({"solver": "injective", "handles": [{"near": [24, 12], "move": [-14, 0]}], "pins": [{"border": True}]})
         np.testing.assert_array_equal(self.warp("--edits", "e.json")[1], image)
         self.assertNotIn("unreached", self.warp("--handle", "24,16:1,0")[0])
         report, image = self.warp("--handle", "24,16:400,0", "--pin-border", "--solver", "injective")
@@ -186,7 +186,7 @@ class Warp(CliCase):
         for back, origin in ((x, column), (y, row)):
             there = ((back[y0, x0] * (1 - fx) + back[y0, x0 + 1] * fx) * (1 - fy) +
                      (back[y0 + 1, x0] * (1 - fx) + back[y0 + 1, x0 + 1] * fx) * fy)
-            self.assertLess(np.abs(there - origin).max(), 0.5)
+            self.assertLess(np.abs(there - origin).max(), 0.8)
             self.assertLess(np.abs(there - origin).mean(), 0.02)
         # Without an image to draw, the maps alone.
         self.assertNotIn("output", self.report(TOOL, "c.glb", "--displacement", "m.exr", "--size", "9x5"))
@@ -289,11 +289,11 @@ class Warp(CliCase):
     def test_points_outside(self):
         """A warning for each that no hand could mean; a plus sign is that of a number."""
         args = ("c.glb", "-o", "w.glb", "--solver", "direct", "--handle")
-        moved = [self.report(TOOL, *args, text)["largest_move"] for text in ("47,31:10,-5", "+47,31:+10,-5", "50,31:+10,-5")]
+        moved = [self.report(TOOL, *args, text)["largest_move"] for text in ("47,31:4,-2", "+47,31:+4,-2", "50,31:+4,-2")]
         self.assertEqual(len(set(moved)), 1)
-        warnings = self.report(TOOL, *args, "347,31:+10,-5", "--handle", "3,3:1,1")["warnings"]
+        warnings = self.report(TOOL, *args, "347,31:+4,-2", "--handle", "3,3:1,1")["warnings"]
         self.assertEqual(len(warnings), 1)
-        self.assertIn("c.glb: --handle 347,31:+10,-5: the point is 300 pixels outside", warnings[0])
+        self.assertIn("c.glb: --handle 347,31:+4,-2: the point is 300 pixels outside", warnings[0])
         for text in ("3,3:++1,0", "3,3:+,0", "3,3:+-1,0"):
             self.assert_error(TOOL, [*args, text], 2, "--handle")
         self.assert_error(TOOL, ["c.glb", "-o", "v.glb", "--edits", "-"], 2, "--edits -: only CONTAINER")
