@@ -24,9 +24,9 @@ void check_lanes() {
     T by_three[3];
     gather3(&from[2], 6, by_three);
     for (int l = 0; l < n; ++l) {
-        CHECK(loaded[l] == from[as_index(1 + 2 * l)]);
-        CHECK(every_other<T>()[l] == static_cast<float>(2 * l));
-        for (int c = 0; c < 3; ++c) CHECK(by_three[c][l] == from[as_index(2 + 6 * l + c)]);
+        CHECK((loaded[l] == from[as_index(1 + 2 * l)]));
+        CHECK((every_other<T>()[l] == static_cast<float>(2 * l)));
+        for (int c = 0; c < 3; ++c) CHECK((by_three[c][l] == from[as_index(2 + 6 * l + c)]));
     }
     std::vector<float> to = from;
     store_every_other(&to[1], T{} - loaded);
@@ -50,7 +50,7 @@ void check_transpose(Transpose transpose) {
         for (int j = 0; j < n; ++j) rows[i][j] = static_cast<float>(100 * i + j);
     transpose(rows);
     for (int i = 0; i < n; ++i)
-        for (int j = 0; j < n; ++j) CHECK(rows[i][j] == static_cast<float>(100 * j + i));
+        for (int j = 0; j < n; ++j) CHECK((rows[i][j] == static_cast<float>(100 * j + i)));
 }
 
 }  // namespace
