@@ -14,7 +14,8 @@ GridState::Removal GridState::best_removal(Id v) const {
     Removal best{v, kNone, std::numeric_limits<double>::infinity()};
     OneRing ring;
     Fan fan;
-    if (!fan_of(v, ring, fan)) return best;
+    if (!may_move(v, ring, {})) return best;
+    fan_of(ring, fan);
     const double before = cost_of(ring);
     for (std::size_t n = 0; n < ring.vertices(); ++n) {
         // A vertex on a side goes only along that side.
@@ -164,14 +165,16 @@ Id GridState::insert(const Insertion& insertion) {
     vertex_[v] = {.column = insertion.column, .row = insertion.row, .step = first_step_, .fixed = fixed};
     spot_[v] = {place(insertion.column, insertion.row), insertion.color};
     cost_.resize(mesh_.faces().size(), 0.0);
-    face_.resize(cost_.size());
+    changed_.resize(cost_.size());
     OneRing ring;
     mesh_.ring(v, ring);
     for (std::size_t k = 0; k < ring.faces; ++k) {
         changed(ring.face[k]);
         cost_[ring.face[k]] = face_cost(mesh_.face(ring.face[k]));
     }
-    move_vertex(v);
+    Worker worker{.tick = tick_};
+    move_vertex(v, worker);
+    tick_ = worker.tick;
     return v;
 }
 

@@ -1,13 +1,11 @@
 // Flips of edges.
+#include "libcore/base/index.h"
 #include "libcore/optimize/grid_state.h"
 
 namespace imgmesh {
 
 bool GridState::cost_flip(Flip& flip) const {
-    const Face& face = mesh_.face(flip.f);
-    const Id p = face[flip.i], a = face[(flip.i + 1) % 3], b = face[(flip.i + 2) % 3];
-    const Id q = mesh_.apex(flip.g, flip.f);
-    const Spot &sp = spot_[p], &sa = spot_[a], &sb = spot_[b], &sq = spot_[q];
+    const Spot &sp = spot_[flip.p], &sa = spot_[flip.a], &sb = spot_[flip.b], &sq = spot_[flip.q];
     double first_shape = 0, second_shape = 0;
     if (!rules_.admits(sp.place, sa.place, sq.place, first_shape) ||
         !rules_.admits(sq.place, sb.place, sp.place, second_shape))
@@ -19,44 +17,62 @@ bool GridState::cost_flip(Flip& flip) const {
     return true;
 }
 
-bool GridState::do_flip(const Flip& flip) {
+bool GridState::do_flip(const Flip& flip, Worker& worker) {
     if (!mesh_.may_flip(flip.f, flip.i)) return false;
-    changed(flip.f);
-    changed(flip.g);
+    changed(flip.f, worker.tick);
+    changed(flip.g, worker.tick);
     mesh_.flip(flip.f, flip.i);
     cost_[flip.f] = flip.first;
     cost_[flip.g] = flip.second;
     return true;
 }
 
-// Visits the edges of a face with later faces, once.
 template <class Visit>
-void GridState::for_each_flip(Id f, Visit&& visit) {
-    for (std::size_t i = 0; i < 3 && mesh_.live_face(f); ++i) {
-        Flip flip{f, mesh_.across(f, i), i};
-        if (flip.g != kNone && flip.g > f) visit(flip);
+bool GridState::for_each_flip(Id v, const Worker& worker, Visit&& visit) {
+    OneRing ring;
+    if (!mesh_.live_vertex(v) || !mesh_.ring(v, ring)) return true;
+    bool complete = true;
+    std::size_t k = ring.closed ? 0 : 1;
+    for (std::size_t left = ring.faces - k; left > 0; --left) {
+        const std::size_t before = k > 0 ? k - 1 : ring.faces - 1;
+        Flip flip{.f = ring.face[k],
+                  .g = ring.face[before],
+                  .i = (ring.corner[k] + std::size_t{2}) % 3,
+                  .p = ring.vertex[k + 1],
+                  .a = v,
+                  .b = ring.vertex[k],
+                  .q = ring.vertex[before]};
+        k = ring.closed && k + 1 == ring.faces ? 0 : k + 1;
+        if (flip.b < v) continue;
+        if (!worker.claims(flip.b) || !worker.claims(flip.p) || !worker.claims(flip.q)) {
+            complete = false;
+        } else if (visit(flip)) {
+            mesh_.ring(v, ring);
+            k = as_index(ring.find(flip.p));
+        }
     }
+    return complete;
 }
 
-void GridState::flip_edges(const IdRange& faces) {
-    for (Id f = faces.first; f < faces.second; ++f) {
-        // Two faces that have not changed since then give the same answer.
-        const std::uint64_t checked = face_[f].checked, now = tick_;
-        bool refused = false;
-        for_each_flip(f, [&](Flip& flip) {
-            if (face_[f].changed <= checked && face_[flip.g].changed <= checked) return;
-            if (cost_flip(flip) && flip.cost < -1e-9 * (flip.first + flip.second) && !do_flip(flip))
-                refused = true;
-        });
-        face_[f].checked = refused ? 0 : now;
-    }
+void GridState::flip_edges(Id v, Worker& worker) {
+    // Two faces that have not changed since then give the same answer.
+    const std::uint64_t checked = vertex_[v].checked, now = worker.tick;
+    bool refused = false;
+    const bool complete = for_each_flip(v, worker, [&](Flip& flip) {
+        if (changed_[flip.f] <= checked && changed_[flip.g] <= checked) return false;
+        if (!cost_flip(flip) || !(flip.cost < -1e-9 * (flip.first + flip.second))) return false;
+        if (do_flip(flip, worker)) return true;
+        refused = true;
+        return false;
+    });
+    vertex_[v].checked = refused || !complete ? 0 : now;
 }
 
-void GridState::anneal_flips(const IdRange& faces, double temperature, GridRandom& random) {
-    for (Id f = faces.first; f < faces.second; ++f)
-        for_each_flip(f, [&](Flip& flip) {
-            if (cost_flip(flip) && flip.cost < temperature * random.exponential()) do_flip(flip);
-        });
+void GridState::anneal_flips(Id v, double temperature, Worker& worker) {
+    for_each_flip(v, worker, [&](Flip& flip) {
+        return cost_flip(flip) && flip.cost < temperature * worker.random.exponential() &&
+               do_flip(flip, worker);
+    });
 }
 
 }  // namespace imgmesh

@@ -15,14 +15,18 @@ constexpr double kSlack = 1e-9;
 
 }  // namespace
 
-bool GridState::fan_of(Id v, OneRing& ring, Fan& fan) const {
+bool GridState::may_move(Id v, OneRing& ring, const Worker& worker) const {
     if (!mesh_.live_vertex(v) || vertex_[v].fixed == (kFixedX | kFixedY) || !mesh_.ring(v, ring))
         return false;
+    return std::all_of(ring.vertex.begin(), ring.vertex.begin() + static_cast<std::ptrdiff_t>(ring.faces + 1),
+                       [&](Id u) { return worker.claims(u); });
+}
+
+void GridState::fan_of(const OneRing& ring, Fan& fan) const {
     fan.faces = ring.faces;
     fan.closed = ring.closed;
     for (std::size_t k = 0; k <= ring.faces; ++k) fan.spot[k] = spot_[ring.vertex[k]];
     fan.measure_links(*sums_);
-    return true;
 }
 
 double GridState::cost_of(const OneRing& ring) const {
@@ -47,7 +51,8 @@ void GridState::fit_admitted(const Fan& fan, const Place& at, const Double4& col
     if (rules_.limits_colors()) fit.set_color(rules_.allowed(fit.color));
 }
 
-void GridState::set(const OneRing& ring, std::int32_t column, std::int32_t row, const FanFit& fit) {
+void GridState::set(const OneRing& ring, std::int32_t column, std::int32_t row, const FanFit& fit,
+                    Worker& worker) {
     Vertex& vertex = vertex_[ring.center];
     vertex.column = column;
     vertex.row = row;
@@ -55,19 +60,19 @@ void GridState::set(const OneRing& ring, std::int32_t column, std::int32_t row, 
     vertex.removal_holds = false;
     for (std::size_t k = 0; k < ring.faces; ++k) {
         cost_[ring.face[k]] = fit.face_cost(k);
-        touch(ring.face[k]);
+        changed_[ring.face[k]] = ++worker.tick;
         vertex_[ring.vertex[k]].removal_holds = false;
     }
     vertex_[ring.vertex[ring.faces]].removal_holds = false;
 }
 
-double GridState::step_to_minimum(Id v, const OneRing& ring, const Fan& fan, double best) {
+double GridState::step_to_minimum(Id v, const OneRing& ring, const Fan& fan, double best, Worker& worker) {
     constexpr int kHalvings = 2;
     const std::int32_t column = vertex_[v].column, row = vertex_[v].row;
     FanFit fit;
     const auto take_if_better = [&](std::int32_t dx, std::int32_t dy) {
         if (!try_place(fan, v, column + dx, row + dy, fit) || !(fit.error < best)) return false;
-        set(ring, column + dx, row + dy, fit);
+        set(ring, column + dx, row + dy, fit, worker);
         best = fit.error - kSlack * fit.error;
         return true;
     };
@@ -85,14 +90,15 @@ double GridState::step_to_minimum(Id v, const OneRing& ring, const Fan& fan, dou
     return best;
 }
 
-void GridState::move_vertex(Id v) {
+void GridState::move_vertex(Id v, Worker& worker) {
     OneRing ring;
     Fan fan;
-    if (!fan_of(v, ring, fan)) return;
+    if (!may_move(v, ring, worker)) return;
+    fan_of(ring, fan);
     FanFit fit;
     double best = cost_of(ring);
     best -= kSlack * best;
-    if (newton_) best = step_to_minimum(v, ring, fan, best);
+    if (newton_) best = step_to_minimum(v, ring, fan, best, worker);
     bool moved = false;
     const std::uint8_t first = vertex_[v].direction;
     const std::int32_t step = vertex_[v].step;
@@ -101,7 +107,7 @@ void GridState::move_vertex(Id v) {
         const std::int32_t dx = step * kDirections[direction][0], dy = step * kDirections[direction][1];
         // A step that succeeds is repeated.
         while (try_place(fan, v, vertex_[v].column + dx, vertex_[v].row + dy, fit) && fit.error < best) {
-            set(ring, vertex_[v].column + dx, vertex_[v].row + dy, fit);
+            set(ring, vertex_[v].column + dx, vertex_[v].row + dy, fit, worker);
             vertex_[v].direction = direction;
             best = fit.error - kSlack * fit.error;
             moved = true;
@@ -111,10 +117,12 @@ void GridState::move_vertex(Id v) {
         static_cast<std::uint8_t>(moved ? std::min(2 * step, longest_step_) : std::max(step / 2, 1));
 }
 
-void GridState::anneal_vertex(Id v, int trials, double spread, double temperature, GridRandom& random) {
+void GridState::anneal_vertex(Id v, int trials, double spread, double temperature, Worker& worker) {
     OneRing ring;
     Fan fan;
-    if (!fan_of(v, ring, fan)) return;
+    if (!may_move(v, ring, worker)) return;
+    fan_of(ring, fan);
+    GridRandom& random = worker.random;
     FanFit fit;
     double now = cost_of(ring);
     for (int trial = 0; trial < trials; ++trial) {
@@ -128,35 +136,45 @@ void GridState::anneal_vertex(Id v, int trials, double spread, double temperatur
         const double allowed = temperature * random.exponential();
         const std::int32_t column = vertex_[v].column + dx, row = vertex_[v].row + dy;
         if (!try_place(fan, v, column, row, fit) || !(fit.error - now < allowed)) continue;
-        set(ring, column, row, fit);
+        set(ring, column, row, fit, worker);
         now = fit.error;
     }
 }
 
-// Parts of the mesh that lie together, one after the other, are worked on while caches hold their pixels.
+// Parts that lie together, one after the other, are worked on while caches hold their pixels.
 template <class Work>
-void GridState::for_each_part(Work&& work) {
-    constexpr std::size_t kPartVertices = 24;
-    const std::size_t vertices = vertex_.size(), faces = cost_.size();
-    const std::size_t parts = (vertices + kPartVertices - 1) / kPartVertices;
-    for (std::size_t part = 0; part < parts; ++part)
-        work(IdRange{as_id(vertices * part / parts), as_id(vertices * (part + 1) / parts)},
-             IdRange{as_id(faces * part / parts), as_id(faces * (part + 1) / parts)});
+void GridState::for_each_part(std::uint64_t seed, Work&& work) {
+    constexpr Id kPartVertices = 24;
+    const GridTiles tiles(mesh_.faces(), vertex_.size());
+    std::vector<std::uint64_t> ticks(tiles.size(), 0);
+    tiles.for_each(
+        [&](const Turn& turn) {
+            Worker worker{&turn, tick_, GridRandom(GridRandom(seed + turn.tile).next())};
+            for (Id first = turn.first; first < turn.last; first += kPartVertices)
+                work(first, std::min(first + kPartVertices, turn.last), worker);
+            ticks[turn.tile] = worker.tick;
+        },
+        [&] { tick_ = std::max(tick_, *std::max_element(ticks.begin(), ticks.end())); });
 }
 
-void GridState::flip_and_move() {
-    for_each_part([&](const IdRange& vertices, const IdRange& faces) {
-        flip_edges(faces);
-        for (Id v = vertices.first; v < vertices.second; ++v) move_vertex(v);
+void GridState::flip_edges() {
+    for_each_part(0, [&](Id first, Id last, Worker& worker) {
+        for (Id v = first; v < last; ++v) flip_edges(v, worker);
     });
 }
 
-void GridState::anneal(int passes, int trials, double spread, double temperature, GridRandom& random) {
-    for_each_part([&](const IdRange& vertices, const IdRange& faces) {
+void GridState::flip_and_move() {
+    for_each_part(0, [&](Id first, Id last, Worker& worker) {
+        for (Id v = first; v < last; ++v) flip_edges(v, worker);
+        for (Id v = first; v < last; ++v) move_vertex(v, worker);
+    });
+}
+
+void GridState::anneal(int passes, int trials, double spread, double temperature, std::uint64_t seed) {
+    for_each_part(seed, [&](Id first, Id last, Worker& worker) {
         for (int pass = 0; pass < passes; ++pass) {
-            for (Id v = vertices.first; v < vertices.second; ++v)
-                anneal_vertex(v, trials, spread, temperature, random);
-            anneal_flips(faces, temperature, random);
+            for (Id v = first; v < last; ++v) anneal_vertex(v, trials, spread, temperature, worker);
+            for (Id v = first; v < last; ++v) anneal_flips(v, temperature, worker);
         }
     });
 }

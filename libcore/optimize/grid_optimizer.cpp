@@ -57,6 +57,7 @@ GridOptimizer::GridOptimizer(const RowSums& sums, const PlacedMesh& start, const
                                          FaceRules(params.limits, 0))) {
     state_->set_pattern(params.longest_step, params.first_step);
     if (params.newton_steps) state_->use_newton_steps();
+    state_->reorder();
     state_->fit_colors(kFirstPasses);
     border_ = state_->border_vertices();
     if (params.shape_weight > 0) {
@@ -128,7 +129,7 @@ void GridOptimizer::anneal(const GridSchedule& schedule, const Progress& progres
     for (int k = 0; k < sweeps; ++k) {
         if (progress) progress(begin + (end - begin) * k / sweeps, kStage);
         state_->anneal(schedule.passes, schedule.trials, schedule.spread * spread.at(k),
-                       start * temperature.at(k), random);
+                       start * temperature.at(k), random.next());
         state_->fit_colors(2);
     }
     settle(1);

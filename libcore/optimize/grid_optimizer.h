@@ -27,7 +27,7 @@ struct OptimizeParams {
 };
 
 /// Keeps the mesh, so that the number of vertices can change between one optimisation and the next. Works on
-/// one thread; the result has the same bits on every machine.
+/// all threads; the result has the same bits for any number of them and on every machine.
 ///
 /// Steps: moves of vertices, each with its colour solved; flips; all colours by least squares; exchanges:
 /// vertices inserted where they gain most, and as many removed where they cost least; annealing.

@@ -161,22 +161,26 @@ void GridState::fit_colors(int passes) {
     for (Id f = 0; f < cost_.size(); ++f)
         for (std::size_t i = 0; i < 3 && mesh_.live_face(f); ++i)
             corners[next[mesh_.face(f)[i]]++] = 3 * f + static_cast<Id>(i);
-    for (int pass = 0; pass < passes; ++pass)
-        for (std::size_t v = 0; v < mesh_.vertices(); ++v) {
-            if (first[v] == first[v + 1]) continue;
-            double weight = kColorPull;
-            Double4 rhs = kColorPull * spot_[v].color;
-            for (Id k = first[v]; k < first[v + 1]; ++k) {
-                const FaceFit& fit = fits[corners[k] / 3];
-                const Face& face = mesh_.face(corners[k] / 3);
-                const std::size_t i = corners[k] % 3, j = (i + 1) % 3, m = (i + 2) % 3;
-                weight += fit.gram[i][i];
-                rhs += fit.rhs[i] - fit.gram[i][j] * spot_[face[j]].color -
-                       fit.gram[i][m] * spot_[face[m]].color;
-            }
-            const Double4 best = rhs / weight;
-            spot_[v].color = rules_.allowed(best);
+    const auto fit = [&](Id v) {
+        if (first[v] == first[v + 1]) return;
+        double weight = kColorPull;
+        Double4 rhs = kColorPull * spot_[v].color;
+        for (Id k = first[v]; k < first[v + 1]; ++k) {
+            const FaceFit& of_face = fits[corners[k] / 3];
+            const Face& face = mesh_.face(corners[k] / 3);
+            const std::size_t i = corners[k] % 3, j = (i + 1) % 3, m = (i + 2) % 3;
+            weight += of_face.gram[i][i];
+            rhs += of_face.rhs[i] - of_face.gram[i][j] * spot_[face[j]].color -
+                   of_face.gram[i][m] * spot_[face[m]].color;
         }
+        const Double4 best = rhs / weight;
+        spot_[v].color = rules_.allowed(best);
+    };
+    const GridTiles tiles(mesh_.faces(), mesh_.vertices());
+    for (int pass = 0; pass < passes; ++pass)
+        tiles.for_each([&](const Turn& turn) {
+            for (Id v = turn.first; v < turn.last; ++v) fit(v);
+        });
     for_each_id(cost_.size(), [&](Id f) {
         if (!mesh_.live_face(f)) return;
         const auto& [a, b, c] = mesh_.face(f);
@@ -195,11 +199,11 @@ std::uint8_t GridState::side_of(Id a, Id b) const {
 }
 
 void GridState::all_changed() {
-    face_.assign(cost_.size(), {++tick_, 0});
+    changed_.assign(cost_.size(), ++tick_);
 }
 
-void GridState::changed(Id f) {
-    touch(f);
+void GridState::changed(Id f, std::uint64_t& tick) {
+    changed_[f] = ++tick;
     for (const Id v : mesh_.face(f))
         if (v != kNone) vertex_[v].removal_holds = false;
 }
