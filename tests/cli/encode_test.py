@@ -60,7 +60,7 @@ class Encode(CliCase):
                         self.encode("in.png", "--quality", "60")["vertices"])
 
     def test_numbers_that_are_missed(self):
-        picture_files.png(self.folder / "noise.png", picture_files.noise(12, 9))
+        picture_files.png(self.folder / "noise.png", picture_files.noise(31, 23))
         result = self.run_tool("imgmesh-encode", "noise.png", "-o", "x.imgm", "--psnr", "99", "--effort", "1")
         self.assertEqual(result.returncode, 0)
         self.assertRegex(result.stderr, r"^imgmesh-encode: warning: noise.png: a PSNR of 99 dB was wanted, .*\n$")
