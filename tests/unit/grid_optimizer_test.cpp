@@ -2,14 +2,18 @@
 // laws that a decoder relies on.
 #include <doctest/doctest.h>
 
+#include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <random>
 #include <set>
 
 #include "libcore/base/error.h"
+#include "libcore/base/parallel.h"
 #include "libcore/optimize/fan_fit.h"
 #include "libcore/optimize/grid_optimizer.h"
 #include "libcore/optimize/grid_schedule.h"
+#include "libcore/optimize/grid_tiles.h"
 
 using namespace imgmesh;
 
@@ -253,4 +257,47 @@ TEST_CASE("the smallest pictures have four vertices") {
     CHECK(optimizer.squared_error() < 1e-3);
     CHECK_THROWS_AS(RowSums(test_picture(1, 5, 3)), Error);
     CHECK_THROWS_AS(RowSums(test_picture(5, 5, 5)), Error);
+}
+
+TEST_CASE("grid tiles: each vertex has one turn, with all that it touches, and no two claim the same") {
+    // Two triangles for each cell of a grid, numbered row by row.
+    constexpr Id kSide = 40;
+    std::vector<Face> faces;
+    for (Id y = 0; y + 1 < kSide; ++y)
+        for (Id x = 0; x + 1 < kSide; ++x) {
+            const Id v = y * kSide + x;
+            faces.push_back({v, v + kSide, v + 1});
+            faces.push_back({v + 1, v + kSide, v + kSide + 1});
+        }
+    const GridTiles tiles(faces, kSide * kSide);
+    REQUIRE(tiles.size() == (kSide * kSide + GridTiles::kTileVertices - 1) / GridTiles::kTileVertices);
+    std::vector<std::atomic<int>> turns(kSide * kSide);
+    std::atomic<int> unclaimed{0};
+    tiles.for_each([&](const GridTiles::Turn& turn) {
+        for (Id v = turn.first; v < turn.last; ++v) ++turns[v];
+        for (const Face& face : faces)
+            for (const Id v : face)
+                if (v >= turn.first && v < turn.last)
+                    for (const Id u : face) unclaimed += !turn.claims_vertex(u);
+    });
+    CHECK(std::all_of(turns.begin(), turns.end(), [](const auto& n) { return n == 1; }));
+    CHECK(unclaimed == 0);
+}
+
+TEST_CASE("grid optimiser: the same mesh from any number of threads") {
+    const ChannelGrid image = test_picture(160, 120, 3);
+    const RowSums sums(image);
+    std::vector<PlacedMesh> meshes;
+    for (const int threads : {1, 5}) {
+        const ThreadLimit limit(threads);
+        GridOptimizer optimizer = start(sums, kQuarter, 900);
+        optimizer.optimize(touch_up_schedule());
+        meshes.push_back(optimizer.result());
+    }
+    CHECK(meshes[0].faces == meshes[1].faces);
+    REQUIRE(meshes[0].spot.size() == meshes[1].spot.size());
+    const auto same = [](const Spot& a, const Spot& b) {
+        return a.place.x == b.place.x && a.place.y == b.place.y;
+    };
+    CHECK(std::equal(meshes[0].spot.begin(), meshes[0].spot.end(), meshes[1].spot.begin(), same));
 }
