@@ -10,8 +10,8 @@
 #include "libcore/coding/coded_stream.h"
 #include "libcore/coding/encode_picture.h"
 #include "libcore/coding/numbers.h"
-#include "libcore/optimize/place.h"
 #include "libcore/coding/range_coder.h"
+#include "libcore/optimize/place.h"
 
 using namespace imgmesh;
 using namespace imgmesh::coding;
