@@ -1,4 +1,4 @@
-// Loads and stores of pixels that move side by side: every other one of a row. Internal to relax.cpp.
+// Loads and stores of pixels that move side by side: every other one of a row. Internal to relax_row.cpp.
 #pragma once
 
 #include <cstddef>

@@ -1,5 +1,5 @@
 // Where a pixel of the relaxed map wants to go: formulas for one pixel (T = float) or for several side by
-// side (T = Float8 or Float16). Internal to relax.cpp.
+// side (T = Float8 or Float16). Internal to relax().
 #pragma once
 
 #include <cmath>
