@@ -20,4 +20,7 @@ class InterruptCheck {
     const std::function<void()>* outer_;
 };
 
+/// Calls the check of this thread's InterruptCheck, if there is one. For those who begin pieces of work.
+void check_interrupt();
+
 }  // namespace imgmesh

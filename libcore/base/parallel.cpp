@@ -6,8 +6,6 @@
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
-#include <utility>
-
 #include "libcore/base/interrupt.h"
 
 #if defined(__SANITIZE_THREAD__)
@@ -27,23 +25,6 @@ ThreadLimit::ThreadLimit(int threads)
     : control_(new Control{tbb::global_control(tbb::global_control::max_allowed_parallelism,
                                                static_cast<std::size_t>(std::max(1, threads)))}) {}
 ThreadLimit::~ThreadLimit() = default;
-
-namespace {
-
-// That of this thread's InterruptCheck; null on threads that only help.
-thread_local const std::function<void()>* interrupt_check = nullptr;
-
-void check_interrupt() {
-    if (interrupt_check) (*interrupt_check)();
-}
-
-}  // namespace
-
-InterruptCheck::InterruptCheck(std::function<void()> check)
-    : check_(std::move(check)), outer_(std::exchange(interrupt_check, &check_)) {}
-InterruptCheck::~InterruptCheck() {
-    interrupt_check = outer_;
-}
 
 int hardware_threads() {
     return std::max(1, tbb::info::default_concurrency());

@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "libcore/base/interrupt.h"
 #include "libcore/base/parallel.h"
 
 namespace imgmesh {
@@ -38,9 +37,6 @@ Recorder recorder;
 struct ThreadLimit::Control {};
 ThreadLimit::ThreadLimit(int /*threads*/) {}
 ThreadLimit::~ThreadLimit() = default;
-
-InterruptCheck::InterruptCheck(std::function<void()> check) : check_(std::move(check)), outer_(nullptr) {}
-InterruptCheck::~InterruptCheck() = default;
 
 int hardware_threads() {
     return 1;
