@@ -3,14 +3,6 @@
 
 namespace imgmesh {
 
-bool has_avx2() {
-#if defined(__x86_64__)
-    return __builtin_cpu_supports("avx2");
-#else
-    return false;
-#endif
-}
-
 bool has_avx512() {
     return false;
 }
