@@ -49,7 +49,6 @@ void sum_taps(const std::array<const std::int16_t*, kTaps - 2>& from, const std:
 using Short8 = std::int16_t __attribute__((vector_size(16)));
 using UShort8 = std::uint16_t __attribute__((vector_size(16)));
 using Int4 = std::int32_t __attribute__((vector_size(16)));
-using Float4 = float __attribute__((vector_size(16)));
 
 template <typename V, typename T>
 V load(const T* from) {

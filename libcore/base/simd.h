@@ -14,6 +14,7 @@
 
 namespace imgmesh {
 
+using Float4 = float __attribute__((vector_size(16)));
 using Float8 = float __attribute__((vector_size(32)));
 using Int8 = std::int32_t __attribute__((vector_size(32)));
 using Float16 = float __attribute__((vector_size(64)));  // sixteen of them, not half precision

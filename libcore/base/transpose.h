@@ -65,7 +65,6 @@ IMGMESH_INLINE void transpose16(Float16 (&rows)[16]) {
     }
 }
 
-using Float4 = float __attribute__((vector_size(16)));
 IMGMESH_INLINE Float4 load4(const float* p) {
     Float4 v;
     std::memcpy(&v, p, sizeof v);

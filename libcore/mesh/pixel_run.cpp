@@ -4,7 +4,6 @@ namespace imgmesh {
 namespace {
 
 using Double4 = double __attribute__((vector_size(32)));
-using Float4 = float __attribute__((vector_size(16)));
 using Int4 = std::int32_t __attribute__((vector_size(16)));
 
 IMGMESH_INLINE Double4 load4(const double* p) {

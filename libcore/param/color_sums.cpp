@@ -4,12 +4,12 @@
 #include <cstring>
 
 #include "libcore/base/parallel.h"
+#include "libcore/base/simd.h"
 #include "libcore/image/channel_count.h"
 
 namespace imgmesh {
 namespace {
 
-using Float4 = float __attribute__((vector_size(16)));
 
 // Sums of one run of pixels of a row in the same face. A run is short, so floats are enough. There is room
 // for 4 G features.

@@ -8,6 +8,7 @@
 #include "libcore/base/error.h"
 #include "libcore/base/parallel.h"
 #include "libcore/base/parallel_vector.h"
+#include "libcore/base/simd.h"
 #include "libcore/image/luv_encoder.h"
 #include "libcore/mesh/bounded_raster.h"
 #include "libcore/recon/draw_smooth.h"
@@ -37,7 +38,6 @@ float at_coord(const BaseMesh& mesh, const PixelCoord& at, int feature) {
            at.v * mesh.feature_of(c)[feature];
 }
 
-using Float4 = float __attribute__((vector_size(16)));
 
 // The colour of each vertex, in one register.
 std::vector<Float4> vertex_colors(const BaseMesh& mesh) {
