@@ -10,7 +10,7 @@
 namespace imgmesh {
 namespace {
 
-constexpr int kMembers = sizeof(ColorQuadric) / sizeof(float);
+constexpr int kMembers = kQuadricMembers;
 
 // Pixels of a row in groups of eight: member m of pixel x is at [x / 8][m][x % 8]. One group more is read.
 struct Row {
@@ -21,7 +21,7 @@ struct Row {
 
 // Quadrics of the pixels from x on, with all members of each in one vector.
 struct Eight {
-    Float8 member[kMembers];
+    QuadricMembers member;
 
     IMGMESH_INLINE void read(const float* group) {
         for (int m = 0; m < kMembers; ++m) member[m] = load8(group + 8 * m);
@@ -32,43 +32,16 @@ struct Eight {
             member[m] = __builtin_shufflevector(load8(group + 8 * m), load8(group + 8 * (kMembers + m)), 1, 2,
                                                 3, 4, 5, 6, 7, 8);
     }
-    IMGMESH_INLINE ColorQuadric8 quadric() const {
-        ColorQuadric8 q;
-        q.px = member[0];
-        q.py = member[1];
-        for (int c = 0; c < 3; ++c) {
-            q.s[c] = member[2 + c];
-            q.gx[c] = member[5 + c];
-            q.gy[c] = member[8 + c];
-        }
-        q.sxx = member[11];
-        q.sxy = member[12];
-        q.syy = member[13];
-        q.weight = member[14];
-        q.error = member[15];
-        return q;
-    }
+    IMGMESH_INLINE ColorQuadric8 quadric() const { return quadric_of(member); }
 };
 
 IMGMESH_INLINE void transpose_row(const ColorQuadric* quadrics, int width, Row& row) {
     for (int x = 0; x < width; x += 8) {
         Id which[8];
         for (int lane = 0; lane < 8; ++lane) which[lane] = static_cast<Id>(std::min(x + lane, width - 1));
-        const ColorQuadric8 q = side_by_side(quadrics, which);
-        float* out = row.of(x);
-        const auto put = [&](int m, const Float8& v) { std::memcpy(out + 8 * m, &v, sizeof v); };
-        put(0, q.px);
-        put(1, q.py);
-        for (int c = 0; c < 3; ++c) {
-            put(2 + c, q.s[c]);
-            put(5 + c, q.gx[c]);
-            put(8 + c, q.gy[c]);
-        }
-        put(11, q.sxx);
-        put(12, q.sxy);
-        put(13, q.syy);
-        put(14, q.weight);
-        put(15, q.error);
+        QuadricMembers member;
+        read_members(quadrics, which, member);
+        std::memcpy(row.of(x), member, sizeof member);
     }
 }
 

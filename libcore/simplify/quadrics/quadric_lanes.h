@@ -34,9 +34,30 @@ IMGMESH_INLINE Float8 half_of(const ColorQuadric& quadric, std::size_t half) {
     return v;
 }
 
-/// The quadrics of these eight numbers, one in each lane.
+/// One vector for each member of eight quadrics, in the order of the members of a record.
+inline constexpr int kQuadricMembers = sizeof(ColorQuadric) / sizeof(float);
+using QuadricMembers = Float8[kQuadricMembers];
+
+IMGMESH_INLINE ColorQuadric8 quadric_of(const QuadricMembers& member) {
+    ColorQuadric8 q;
+    q.px = member[0];
+    q.py = member[1];
+    for (int c = 0; c < 3; ++c) {
+        q.s[c] = member[2 + c];
+        q.gx[c] = member[5 + c];
+        q.gy[c] = member[8 + c];
+    }
+    q.sxx = member[11];
+    q.sxy = member[12];
+    q.syy = member[13];
+    q.weight = member[14];
+    q.error = member[15];
+    return q;
+}
+
+/// Reads the quadrics of these eight numbers, one into each lane.
 template <class Number>
-IMGMESH_INLINE ColorQuadric8 side_by_side(const ColorQuadric* quadrics, const Number* which) {
+IMGMESH_INLINE void read_members(const ColorQuadric* quadrics, const Number* which, QuadricMembers& member) {
     Float8 low[8], high[8];
     for (int lane = 0; lane < 8; ++lane) {
         low[lane] = half_of(quadrics[which[lane]], 0);
@@ -44,20 +65,18 @@ IMGMESH_INLINE ColorQuadric8 side_by_side(const ColorQuadric* quadrics, const Nu
     }
     transpose8(low);
     transpose8(high);
-    ColorQuadric8 q;
-    q.px = low[0];
-    q.py = low[1];
-    for (int c = 0; c < 3; ++c) {
-        q.s[c] = low[2 + c];
-        q.gx[c] = low[5 + c];
-        q.gy[c] = high[c];
+    for (int m = 0; m < 8; ++m) {
+        member[m] = low[m];
+        member[8 + m] = high[m];
     }
-    q.sxx = high[3];
-    q.sxy = high[4];
-    q.syy = high[5];
-    q.weight = high[6];
-    q.error = high[7];
-    return q;
+}
+
+/// The quadrics of these eight numbers, one in each lane.
+template <class Number>
+IMGMESH_INLINE ColorQuadric8 side_by_side(const ColorQuadric* quadrics, const Number* which) {
+    QuadricMembers member;
+    read_members(quadrics, which, member);
+    return quadric_of(member);
 }
 
 /// The way back, to eight quadrics that follow each other.
