@@ -19,11 +19,9 @@
 
 #include "libcore/simplify/kernel/collapse_stats.h"
 #include "libcore/simplify/kernel/edge_costs.h"
-#include "libcore/simplify/kernel/grid_costs.h"
 #include "libcore/simplify/kernel/quadric_mesh.h"
-#include "libcore/simplify/kernel/tile_rings.h"
+#include "libcore/simplify/kernel/tile_content.h"
 #include "libcore/simplify/quadrics/quadric_lanes.h"
-#include "libcore/simplify/quadrics/vertex_quadrics.h"
 
 namespace imgmesh {
 
@@ -31,7 +29,8 @@ namespace imgmesh {
 template <class Q>
 class TileCollapser {
   public:
-    explicit TileCollapser(const SimplifyRules& rules) : rules_(rules), costs_(vertices_, quadrics_, rules) {}
+    explicit TileCollapser(const SimplifyRules& rules)
+        : rules_(rules), costs_(tile_.vertices, tile_.quadrics, rules) {}
 
     /// Copies the vertices of `list`. They must stay as they are until store(), while the mesh may change
     /// elsewhere. Vertices with a neighbour elsewhere are locked, and so are those on the boundary of a
@@ -42,7 +41,7 @@ class TileCollapser {
     template <class Number>
     void load(const QuadricMesh<Q>& mesh, std::span<const Id> list, const Number& number) {
         assert(list.size() < kNotInTile);
-        copy(mesh, list, number);
+        tile_.copy(mesh, list, number, rules_.boundary != nullptr);
         evaluate_all();
     }
 
@@ -51,30 +50,17 @@ class TileCollapser {
     ///
     /// gradients   reach to the neighbours of the rectangle
     void load_grid(const GridMesh& grid, const PixelRect& rect, const FeaturePatch& gradients) {
-        const auto w = static_cast<std::size_t>(rect.width()),
-                   count = w * static_cast<std::size_t>(rect.height());
-        rings_.resize(count);
-        vertices_.resize(count);
-        quadrics_.resize(count);
-        vertex_quadrics(grid, gradients, rules_.params.geometry_weight, rect, quadrics_.data());
-        grid_costs(grid, rect, quadrics_.data(), grid_costs_);
+        tile_.copy(grid, rect, gradients, rules_.params.geometry_weight);
         TileId v = 0;
-        for (int y = rect.top; y < rect.bottom; ++y)
-            for (int x = rect.left; x < rect.right; ++x, ++v)
-                if (on_rim(rect, x, y))
-                    copy_rim(grid, rect, v, x, y);
-                else
-                    copy_inner(grid, v, static_cast<TileId>(w), x, y);
-        v = 0;
         for (int y = rect.top; y < rect.bottom; ++y)
             for (int x = rect.left; x < rect.right; ++x, ++v)
                 if (on_rim(rect, x, y)) evaluate_rim(v);
     }
 
     /// The vertices as they stand, in the order of what was loaded.
-    const std::vector<TileVertex>& vertices() const { return vertices_; }
-    const std::vector<TileRing>& rings() const { return rings_; }
-    const std::vector<Q>& quadrics() const { return quadrics_; }
+    const std::vector<TileVertex>& vertices() const { return tile_.vertices; }
+    const std::vector<TileRing>& rings() const { return tile_.rings; }
+    const std::vector<Q>& quadrics() const { return tile_.quadrics; }
 
     /// Collapses edges that cost less than `threshold` and may collapse, until there is none left or as many
     /// vertices or faces are removed as may go.
@@ -88,51 +74,9 @@ class TileCollapser {
     }
 
     /// Writes the vertices back to where they come from.
-    void store(QuadricMesh<Q>& mesh, std::span<const Id> list) const {
-        for (std::size_t v = 0; v < list.size(); ++v) {
-            Ring& to = mesh.rings[list[v]];
-            const TileVertex& vertex = vertices_[v];
-            if (vertex.live()) {
-                const Ring before = to;
-                to.x = vertex.x;
-                to.y = vertex.y;
-                to.fixed = vertex.fixed;
-                for (int k = 0; k < vertex.valence; ++k) {
-                    const TileId n = rings_[v].neighbor[k];
-                    to.neighbor[k] = n < kNotInTile ? list[n] : before.neighbor[n - kNotInTile];
-                }
-                mesh.quadrics[list[v]] = quadrics_[v];
-            }
-            to.valence = vertex.valence;
-        }
-    }
+    void store(QuadricMesh<Q>& mesh, std::span<const Id> list) const { tile_.store(mesh, list); }
 
   private:
-    template <class Number>
-    void copy(const QuadricMesh<Q>& mesh, std::span<const Id> list, const Number& number) {
-        rings_.resize(list.size());
-        vertices_.resize(list.size());
-        quadrics_.resize(list.size());
-        for (TileId v = 0; v < list.size(); ++v) {
-            copy(v, mesh.rings[list[v]], number);
-            quadrics_[v] = mesh.quadrics[list[v]];
-        }
-    }
-    template <class Number>
-    void copy(TileId v, const Ring& from, const Number& number) {
-        TileRing& ring = rings_[v];
-        fill16_from(ring.neighbor, 0, kNoTileId);
-        fill16_from(ring.cost, 0, kNoEdge);
-        bool locked = rules_.boundary != nullptr && from.border();
-        for (int k = 0; k < from.valence; ++k) {
-            const TileId n = number(from.neighbor[k]);
-            locked |= n == kNoTileId;
-            ring.neighbor[k] = n == kNoTileId ? static_cast<TileId>(kNotInTile + k) : n;
-            ring.cost[k] = kShortNever;
-        }
-        vertices_[v] = {from.x, from.y, from.valence, from.fixed, locked || from.locked};
-    }
-
     // Steps in three forms: with everything that they call built for AVX-512 (for its registers: vectors stay
     // as long), for AVX2, and for any processor.
     void evaluate_all() {
@@ -164,12 +108,12 @@ class TileCollapser {
     }
 #endif
     IMGMESH_INLINE void evaluate_here() {
-        for (TileId v = 0; v < vertices_.size(); ++v)
-            if (vertices_[v].live() && !vertices_[v].locked) evaluate_later_edges(v);
+        for (TileId v = 0; v < tile_.vertices.size(); ++v)
+            if (tile_.vertices[v].live() && !tile_.vertices[v].locked) evaluate_later_edges(v);
     }
     IMGMESH_INLINE void collapse_here() {
         chain_.resize(kFirstChain);
-        for (TileId v = 0; v < vertices_.size() && !stats_.reached(may_go_); ++v) {
+        for (TileId v = 0; v < tile_.vertices.size() && !stats_.reached(may_go_); ++v) {
             follow(v);
             while (!merged_.empty()) {
                 const TileId start = merged_.back();
@@ -179,51 +123,12 @@ class TileCollapser {
         }
     }
 
-    static bool on_rim(const PixelRect& rect, int x, int y) {
-        return x == rect.left || x + 1 == rect.right || y == rect.top || y + 1 == rect.bottom;
-    }
-    // All neighbours of pixel (x, y) are in the rectangle: in the order of inner_ring().
-    void copy_inner(const GridMesh& grid, TileId v, TileId stride, int x, int y) {
-        vertices_[v] = {grid.origin_x + static_cast<float>(x), grid.origin_y + static_cast<float>(y), 0, 0,
-                        false};
-        TileRing& ring = rings_[v];
-        fill16_from(ring.neighbor, 0, kNoTileId);
-        fill16_from(ring.cost, 0, kNoEdge);
-        const std::size_t here = v, north = here - stride, south = here + stride;
-        const GridCosts& costs = grid_costs_;
-        int k = 0;
-        // Diagonals are written wherever there might be one, and overwritten where there is none.
-        const auto push = [&](std::size_t n, ShortCost cost, bool there) {
-            ring.neighbor[k] = static_cast<TileId>(n);
-            ring.cost[k] = cost;
-            k += there;
-        };
-        push(here + 1, costs.east[here], true);
-        push(north + 1, costs.cell[north], !grid.falling_diagonal(x, y - 1));
-        push(north, costs.south[north], true);
-        push(north - 1, costs.cell[north - 1], grid.falling_diagonal(x - 1, y - 1));
-        push(here - 1, costs.east[here - 1], true);
-        push(south - 1, costs.cell[here - 1], !grid.falling_diagonal(x - 1, y));
-        push(south, costs.south[here], true);
-        push(south + 1, costs.cell[here], grid.falling_diagonal(x, y));
-        ring.neighbor[k] = kNoTileId;
-        ring.cost[k] = kNoEdge;
-        vertices_[v].valence = static_cast<std::uint8_t>(k);
-    }
-    void copy_rim(const GridMesh& grid, const PixelRect& rect, TileId v, int x, int y) {
-        const auto w = static_cast<Id>(grid.feature.width);
-        copy(v, grid_ring(grid, x, y), [&](Id n) {
-            const int nx = static_cast<int>(n % w), ny = static_cast<int>(n / w);
-            const bool here = nx >= rect.left && nx < rect.right && ny >= rect.top && ny < rect.bottom;
-            return here ? static_cast<TileId>((ny - rect.top) * rect.width() + nx - rect.left) : kNoTileId;
-        });
-    }
     // A vertex on the rim of a rectangle: one that stays, or one on the border.
     void evaluate_rim(TileId v) {
-        for (int k = 0; k < vertices_[v].valence; ++k) {
-            const TileId n = rings_[v].neighbor[k];
+        for (int k = 0; k < tile_.vertices[v].valence; ++k) {
+            const TileId n = tile_.rings[v].neighbor[k];
             if (n >= kNotInTile) continue;
-            const bool may = !vertices_[v].locked && !vertices_[n].locked;
+            const bool may = !tile_.vertices[v].locked && !tile_.vertices[n].locked;
             set_cost(v, n, may ? cost_beside(std::min(v, n), std::max(v, n)) : kShortNever);
         }
     }
@@ -232,20 +137,20 @@ class TileCollapser {
     IMGMESH_INLINE void evaluate_later_edges(TileId v) {
         TileId others[kNeighborRoom];
         int place[kNeighborRoom], count = 0;
-        for (int k = 0; k < vertices_[v].valence; ++k) {
-            const TileId n = rings_[v].neighbor[k];
+        for (int k = 0; k < tile_.vertices[v].valence; ++k) {
+            const TileId n = tile_.rings[v].neighbor[k];
             others[count] = n;
             place[count] = k;
-            count += n > v && !vertices_[n].locked;
+            count += n > v && !tile_.vertices[n].locked;
         }
         ShortCost costs[kNeighborRoom];
         evaluate(v, others, count, costs);
         const bool beside = all_beside(v);
         for (int k = 0; k < count; ++k) {
             const TileId n = others[k];
-            if (beside || vertices_[n].border()) costs[k] = cost_beside(v, n);
-            rings_[v].cost[place[k]] = costs[k];
-            rings_[n].cost[rings_[n].find(v)] = costs[k];
+            if (beside || tile_.vertices[n].border()) costs[k] = cost_beside(v, n);
+            tile_.rings[v].cost[place[k]] = costs[k];
+            tile_.rings[n].cost[tile_.rings[n].find(v)] = costs[k];
         }
     }
 
@@ -254,21 +159,22 @@ class TileCollapser {
     IMGMESH_INLINE void evaluate(TileId i, TileId* others, int count, ShortCost* costs) const {
         if constexpr (kColor) {
             fill16_from(others, count, i);
-            const ColorQuadric8 own = in_every_lane(quadrics_[i]);
+            const ColorQuadric8 own = in_every_lane(tile_.quadrics[i]);
             for (int k = 0; k < count; k += 8) {
-                short_costs(merged_minimum(own, side_by_side(quadrics_.data(), others + k)).increment,
+                short_costs(merged_minimum(own, side_by_side(tile_.quadrics.data(), others + k)).increment,
                             costs + k);
             }
         } else if constexpr (kCanonical<Q>) {
             for (int k = 0; k < count; ++k) {
-                const float increment = merged_minimum(quadrics_[i], quadrics_[others[k]]).increment;
+                const float increment =
+                    merged_minimum(tile_.quadrics[i], tile_.quadrics[others[k]]).increment;
                 costs[k] = short_cost(costs_.cost(i, others[k], increment));
             }
         }
     }
     // Whether evaluate() has not given the costs of vertex i's edges, but cost_beside() will.
     bool all_beside(TileId i) const {
-        return !kCanonical<Q> || vertices_[i].border() || rules_.params.total_priority;
+        return !kCanonical<Q> || tile_.vertices[i].border() || rules_.params.total_priority;
     }
     [[gnu::noinline]] ShortCost cost_beside(TileId i, TileId j) const {
         return short_cost(costs_.cost(i, j));
@@ -277,8 +183,8 @@ class TileCollapser {
     // The least of the costs that edges are left with.
     float least_left() const {
         ShortCost least = kShortNever;
-        for (std::size_t v = 0; v < vertices_.size(); ++v)
-            if (vertices_[v].live()) least = std::min(least, least16(rings_[v].cost));
+        for (std::size_t v = 0; v < tile_.vertices.size(); ++v)
+            if (tile_.vertices[v].live()) least = std::min(least, least16(tile_.rings[v].cost));
         return least_cost(least);
     }
 
@@ -291,9 +197,9 @@ class TileCollapser {
         std::size_t length = 1;
         while (length > 0 && !stats_.reached(may_go_)) {
             const TileId v = chain_[length - 1];
-            const TileRing& ring = rings_[v];
+            const TileRing& ring = tile_.rings[v];
             const ShortCost cost = least16(ring.cost);
-            if (cost >= threshold_ || !vertices_[v].live()) {
+            if (cost >= threshold_ || !tile_.vertices[v].live()) {
                 --length;
                 continue;
             }
@@ -314,13 +220,13 @@ class TileCollapser {
     // Merges j into i. Where that is not allowed the edge becomes more expensive, and it returns false.
     IMGMESH_INLINE bool try_collapse(TileId i, TileId j, ShortCost cost) {
         MergedTileRing ring;
-        if (!merge_rings(rings_, vertices_, i, j, ring)) return set_cost(i, j, kShortNever);
+        if (!merge_rings(tile_.rings, tile_.vertices, i, j, ring)) return set_cost(i, j, kShortNever);
         Q sum;
         Placement place;
         bool allowed;
-        const bool inside = kColor && !vertices_[i].border() && !vertices_[j].border();
+        const bool inside = kColor && !tile_.vertices[i].border() && !tile_.vertices[j].border();
         if (inside) {
-            if constexpr (kColor) merge_colors(quadrics_[i], quadrics_[j], sum);
+            if constexpr (kColor) merge_colors(tile_.quadrics[i], tile_.quadrics[j], sum);
             place.x = snapped(sum.px);
             place.y = snapped(sum.py);
             allowed = shape_allowed(ring, place);
@@ -336,13 +242,13 @@ class TileCollapser {
         stats_.error = std::max(stats_.error, static_cast<double>(total));
         ++stats_.vertices;
         stats_.faces += ring.faces_removed;
-        quadrics_[i] = sum;
-        TileVertex& vertex = vertices_[i];
+        tile_.quadrics[i] = sum;
+        TileVertex& vertex = tile_.vertices[i];
         vertex.x = place.x;
         vertex.y = place.y;
-        vertex.fixed |= vertices_[j].fixed;
+        vertex.fixed |= tile_.vertices[j].fixed;
         vertex.valence = static_cast<std::uint8_t>(ring.valence);
-        vertices_[j].valence = 0;
+        tile_.vertices[j].valence = 0;
         merge_into_rings(i, j, ring);
         return true;
     }
@@ -352,7 +258,7 @@ class TileCollapser {
         ShapeLimits::Corners corners;
         const int count = ring.valence;
         for (int k = 0; k < count; ++k) {
-            const TileVertex& corner = vertices_[ring.neighbor[k]];
+            const TileVertex& corner = tile_.vertices[ring.neighbor[k]];
             corners.xy[2 * k] = corner.x;
             corners.xy[2 * k + 1] = corner.y;
         }
@@ -363,7 +269,7 @@ class TileCollapser {
     // Where one end may be on the border. Returns whether the place is allowed.
     [[gnu::noinline]] bool place_beside(TileId i, TileId j, const MergedTileRing& ring, Q& sum,
                                         Placement& place) const {
-        sum = merged(quadrics_[i], quadrics_[j]);
+        sum = merged(tile_.quadrics[i], tile_.quadrics[j]);
         place = costs_.best_place(i, j, sum);
         return costs_.allowed(i, j, ring, place);
     }
@@ -372,14 +278,14 @@ class TileCollapser {
     }
 
     IMGMESH_INLINE bool set_cost(TileId i, TileId j, ShortCost cost) {
-        rings_[i].cost[rings_[i].find(j)] = cost;
-        rings_[j].cost[rings_[j].find(i)] = cost;
+        tile_.rings[i].cost[tile_.rings[i].find(j)] = cost;
+        tile_.rings[j].cost[tile_.rings[j].find(i)] = cost;
         return false;
     }
 
     // Gives i its new ring, names it i in the rings around, and evaluates its edges.
     IMGMESH_INLINE void merge_into_rings(TileId i, TileId j, const MergedTileRing& ring) {
-        TileRing& own = rings_[i];
+        TileRing& own = tile_.rings[i];
         store16(own.neighbor, load16(ring.neighbor));
         TileId others[kNeighborRoom];
         store16(others, load16(ring.neighbor));
@@ -388,12 +294,13 @@ class TileCollapser {
         const bool beside = all_beside(i);
         for (int k = 0; k < ring.valence; ++k) {
             const TileId n = others[k];
-            TileVertex& vertex = vertices_[n];
+            TileVertex& vertex = tile_.vertices[n];
             if (vertex.locked)
                 own.cost[k] = kShortNever;
             else if (beside || vertex.border())
                 own.cost[k] = cost_beside(i, n);
-            vertex.valence = static_cast<std::uint8_t>(vertex.valence - rings_[n].merge(i, j, own.cost[k]));
+            vertex.valence =
+                static_cast<std::uint8_t>(vertex.valence - tile_.rings[n].merge(i, j, own.cost[k]));
         }
     }
 
@@ -401,11 +308,8 @@ class TileCollapser {
     static constexpr std::size_t kFirstChain = 64;
 
     const SimplifyRules& rules_;
-    std::vector<TileRing> rings_;
-    std::vector<TileVertex> vertices_;
-    std::vector<Q> quadrics_;
+    TileContent<Q> tile_;
     EdgeCosts<Q, std::vector<TileVertex>> costs_;
-    GridCosts grid_costs_;
     std::vector<TileId> chain_;   // each is the cheapest to merge with for the one before
     std::vector<TileId> merged_;  // vertices that have merged since they were last looked at
     ShortCost threshold_ = 0;
