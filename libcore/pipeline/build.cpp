@@ -124,13 +124,7 @@ struct Pipeline {
     Level finish(SimplifyResult&& collapsed, const SimplifyParams& limits, std::optional<PixelMap> tracked,
                  LevelReport& figures, double begin, double end) const {
         Stopwatch watch;
-        RefineParams refinement;
-        refinement.rounds = static_cast<int>(refine_rounds(params));
-        refinement.shape_weight = params.shape_weight;
-        refinement.exchange = params.exchange;
-        refinement.anneal = static_cast<int>(params.anneal);
-        refinement.keep_faces = params.stop.faces || params.levels.count > 1 || !params.levels.faces.empty();
-        refinement.min_quality = params.min_quality;
+        RefineParams refinement = refine_params(params);
         refinement.max_face_area = limits.max_face_area;
         const double unit = static_cast<double>(space.unit);
         Level level{std::move(collapsed.mesh), {}, collapsed.error * params.color_weight / (unit * unit)};
@@ -151,14 +145,7 @@ struct Pipeline {
             }
         }
         report.seconds.refine += watch.lap();
-        FitParams fit;
-        fit.color_weight = map_color_weight(params);
-        fit.bary = params.bary;
-        fit.steps = params.map_steps;
-        fit.rounds = static_cast<int>(params.map_rounds);
-        fit.rate = params.map_rate;
-        fit.space = space;
-        fit.keep_colors = params.quadric_colors || params.objective == Objective::kRgb;
+        const FitParams fit = fit_params(params, space);
         const bool left_out = params.map_is_left_out && !tracked;
         if (left_out)
             level.map = fit_drawing(level.mesh, feature, fit, mask);
@@ -186,13 +173,10 @@ struct Pipeline {
     // Estimates the error of the map of an unrefined mesh after one round.
     double estimated_rms(SimplifyResult&& collapsed) const {
         Stopwatch watch;
-        FitParams fit;
-        fit.color_weight = map_color_weight(params);
-        fit.space = space;
+        FitParams fit = fit_params(params, space);
         fit.rounds = 1;
-        fit.steps = params.map_steps;
-        fit.rate = params.map_rate;
         fit.bary = WeightPrecision::kFloat;
+        fit.keep_colors = false;
         const PixelMap map = fit_map(collapsed.mesh, feature, fit, {}, mask);
         const double rms = map_rms(collapsed.mesh, map, feature);
         report.seconds.map += watch.lap();

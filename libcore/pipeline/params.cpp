@@ -3,7 +3,6 @@
 #include <cmath>
 
 #include "libcore/base/error.h"
-#include "libcore/param/fit_map.h"
 #include "libcore/param/track.h"
 #include "libcore/pipeline/param_table.h"
 
@@ -130,6 +129,29 @@ BuildParams closed_params(const BuildParams& params, const SimplifyParams& colla
     out.projection_color_weight = map_color_weight(params);
     out.bary = precision;
     return out;
+}
+
+RefineParams refine_params(const BuildParams& p) {
+    RefineParams refine;
+    refine.rounds = static_cast<int>(refine_rounds(p));
+    refine.shape_weight = p.shape_weight;
+    refine.exchange = p.exchange;
+    refine.anneal = static_cast<int>(p.anneal);
+    refine.keep_faces = p.stop.faces || p.levels.count > 1 || !p.levels.faces.empty();
+    refine.min_quality = p.min_quality;
+    return refine;
+}
+
+FitParams fit_params(const BuildParams& p, const FeatureSpace& space) {
+    FitParams fit;
+    fit.color_weight = map_color_weight(p);
+    fit.bary = p.bary;
+    fit.steps = p.map_steps;
+    fit.rounds = static_cast<int>(p.map_rounds);
+    fit.rate = p.map_rate;
+    fit.space = space;
+    fit.keep_colors = p.quadric_colors || p.objective == Objective::kRgb;
+    return fit;
 }
 
 }  // namespace imgmesh

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "libcore/param/fit_map.h"
 #include "libcore/pipeline/build_params.h"
 #include "libcore/simplify/simplify.h"
 
@@ -25,5 +26,11 @@ BuildParams closed_params(const BuildParams& params, const SimplifyParams& colla
 /// Returns the rounds of refinement: the chosen number, else none for published metrics and for the quadrics'
 /// colours, which are compared unrefined, and for a tracked map, which must end with the collapse.
 std::int64_t refine_rounds(const BuildParams& params);
+
+/// Returns the refinement's parameters except max_face_area.
+RefineParams refine_params(const BuildParams& params);
+
+/// Returns the parameters of the pixel map and the colours, for features of that space.
+FitParams fit_params(const BuildParams& params, const FeatureSpace& space);
 
 }  // namespace imgmesh

@@ -56,23 +56,6 @@ class Bench {
     std::vector<StageRow> rows_;
 };
 
-FitParams fit_params(const BuildParams& params, const FeatureSpace& space) {
-    FitParams fit;
-    fit.color_weight = map_color_weight(params);
-    fit.bary = params.bary;
-    fit.space = space;
-    return fit;
-}
-
-RefineParams refine_params(const BuildParams& params) {
-    RefineParams refine;
-    refine.rounds = static_cast<int>(refine_rounds(params));
-    refine.shape_weight = params.shape_weight;
-    refine.exchange = params.exchange;
-    refine.min_quality = params.min_quality;
-    return refine;
-}
-
 // What has come back is what was written: a faster writer must not lose anything.
 void check_same(const MeshImage& written, const MeshImage& read, const FeatureImage& feature) {
     const Level &a = written.levels.front(), &b = read.levels.front();
