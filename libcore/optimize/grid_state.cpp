@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "libcore/base/for_each_id.h"
+#include "libcore/mesh/adjacency.h"
 #include "libcore/mesh/fixed_axes.h"
 
 namespace imgmesh {
@@ -145,30 +146,20 @@ void GridState::reorder() {
 
 void GridState::fit_colors(int passes) {
     std::vector<FaceFit> fits(cost_.size());
-    // The faces of each vertex, one after the other: `first` is where its own begin.
-    std::vector<Id> first(mesh_.vertices() + 1, 0), corners;
     for_each_id(cost_.size(), [&](Id f) {
         if (!mesh_.live_face(f)) return;
         const auto& [a, b, c] = mesh_.face(f);
         fits[f] = face_fit(*sums_, spot_[a].place, spot_[b].place, spot_[c].place);
     });
-    for (Id f = 0; f < cost_.size(); ++f)
-        for (const Id v : mesh_.face(f))
-            if (v != kNone) ++first[v + 1];
-    for (std::size_t v = 0; v < mesh_.vertices(); ++v) first[v + 1] += first[v];
-    corners.resize(first.back());
-    std::vector<Id> next(first.begin(), first.end() - 1);
-    for (Id f = 0; f < cost_.size(); ++f)
-        for (std::size_t i = 0; i < 3 && mesh_.live_face(f); ++i)
-            corners[next[mesh_.face(f)[i]]++] = 3 * f + static_cast<Id>(i);
+    const VertexCorners corners = vertex_corners(mesh_.faces(), mesh_.vertices());
     const auto fit = [&](Id v) {
-        if (first[v] == first[v + 1]) return;
+        if (corners.of(v).empty()) return;
         double weight = kColorPull;
         Double4 rhs = kColorPull * spot_[v].color;
-        for (Id k = first[v]; k < first[v + 1]; ++k) {
-            const FaceFit& of_face = fits[corners[k] / 3];
-            const Face& face = mesh_.face(corners[k] / 3);
-            const std::size_t i = corners[k] % 3, j = (i + 1) % 3, m = (i + 2) % 3;
+        for (const std::size_t corner : corners.of(v)) {
+            const FaceFit& of_face = fits[corner / 3];
+            const Face& face = mesh_.faces()[corner / 3];
+            const std::size_t i = corner % 3, j = (i + 1) % 3, m = (i + 2) % 3;
             weight += of_face.gram[i][i];
             rhs += of_face.rhs[i] - of_face.gram[i][j] * spot_[face[j]].color -
                    of_face.gram[i][m] * spot_[face[m]].color;
