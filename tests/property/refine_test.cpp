@@ -11,6 +11,7 @@
 #include "libcore/refine/refiner.h"
 #include "libcore/simplify/simplify.h"
 #include "tests/support/meshes.h"
+#include "tests/support/refined_meshes.h"
 #include "tests/support/sample_masks.h"
 #include "tests/support/sample_pictures.h"
 #include "tests/support/simplify_params.h"
@@ -25,30 +26,6 @@ RefineParams without_shape() {
     RefineParams params;
     params.shape_weight = 0;
     return params;
-}
-
-BaseMesh collapsed(const FeatureImage& feature, std::int64_t vertices, float min_shape = 0) {
-    SimplifyParams params = plain_params();
-    params.min_shape = min_shape;
-    SimplifyTarget target;
-    target.vertices = vertices;
-    return simplify(grid_mesh(feature), params, target).mesh;
-}
-
-// Squared error of the mesh as it is drawn, from the rasteriser and in another order than the refinement's.
-double drawn_error(const BaseMesh& mesh, const FeatureImage& feature) {
-    const double rms = map_rms(mesh, trivial_map(mesh, feature.width, feature.height), feature);
-    return rms * rms * static_cast<double>(feature.pixel_count());
-}
-
-void check_sound(const BaseMesh& mesh, std::size_t vertices, int width, int height) {
-    const MeshQuality q = mesh_quality(mesh);
-    CHECK(mesh.vertex_count() == vertices);
-    CHECK(q.euler == 1);
-    CHECK(q.flipped_faces + q.nonmanifold_edges + q.nonmanifold_vertices == 0);
-    CHECK(q.area == double(std::max(1, width - 1)) * std::max(1, height - 1));
-    for (const Vec2f& p : mesh.position) CHECK(p == Vec2f(snapped(p.x()), snapped(p.y())));
-    for (const float f : mesh.feature) CHECK(std::isfinite(f));
 }
 
 }  // namespace
@@ -163,33 +140,12 @@ TEST_CASE("refine: vertices are relocated to where the error is") {
 }
 
 TEST_CASE("refine: limits on shape and area hold, and shape weighs against error") {
-    const FeatureImage feature = sample_feature(Kind::kDisc, 80, 60);
-    const BaseMesh start = collapsed(feature, 150, 0.4f);
     RefineParams params = without_shape();
     params.rounds = 6;
     params.relocations = 0.1;
-    const auto refined = [&] {
-        BaseMesh mesh = start;
-        refine(mesh, feature, params);
-        return mesh;
-    };
-    const BaseMesh free = refined();
-    params.min_quality = 0.4;
-    CHECK(mesh_quality(refined()).min_shape >= 0.4);
-    CHECK(mesh_quality(free).min_shape < 0.4);
-    params.min_quality = 0;
-    params.shape_weight = 1;
-    CHECK(mesh_quality(refined()).mean_shape > mesh_quality(free).mean_shape + 0.05);
-    params.shape_weight = 0;
-    const auto largest = [](const BaseMesh& mesh) {
-        double area = 0;
-        for (const auto& [a, b, c] : mesh.faces)
-            area = std::max(area, signed_area2(mesh.position[a], mesh.position[b], mesh.position[c]) / 2);
-        return area;
-    };
-    params.max_face_area = largest(start);
-    CHECK(largest(free) > params.max_face_area);
-    CHECK(largest(refined()) <= params.max_face_area);
+    check_limits(params, [](BaseMesh& mesh, const FeatureImage& feature, const RefineParams& limited) {
+        refine(mesh, feature, limited);
+    });
 }
 
 TEST_CASE("refine: the same bytes for any number of threads, in the range of colours asked for") {
@@ -198,15 +154,9 @@ TEST_CASE("refine: the same bytes for any number of threads, in the range of col
     RefineParams params = without_shape();
     params.rounds = 4;
     params.range = ColorRange::kUnit;
-    const BaseMesh start = collapsed(feature, 500);
-    BaseMesh first = start, second = start;
-    refine(first, feature, params);
-    const ThreadLimit one(1);
-    refine(second, feature, params);
-    CHECK(first.position == second.position);
-    CHECK(first.feature == second.feature);
-    CHECK(first.faces == second.faces);
-    for (const float f : first.feature) CHECK((f >= 0 && f <= 1));
+    const BaseMesh refined =
+        check_threads(collapsed(feature, 500), [&](BaseMesh& mesh) { refine(mesh, feature, params); });
+    for (const float f : refined.feature) CHECK((f >= 0 && f <= 1));
 }
 
 // Every step keeps the sums of each face up to date, so that their error is that of the drawing.
@@ -231,31 +181,10 @@ TEST_CASE("refine: each step's error is that of the drawing") {
     check("new colours");
 }
 
-// Pixels outside the mask do not count, the boundary stays, and the map stays one to one.
 TEST_CASE("refine: masked images keep boundary and topology") {
-    for (const auto& [name, mask] : sample_masks(40)) {
-        INFO(name);
-        Image image = sample_picture(Kind::kNoise, mask.width, mask.height);
-        BuildParams params;
-        params.stop.density = 10;
-        const BuildResult plain = build_mesh_image(image, params, {}, mask);
-        params.refine = 3;
-        const Level refined = build_mesh_image(image, params, {}, mask).mesh_image.levels[0];
-        const MeshQuality before = mesh_quality(plain.mesh_image.levels[0].mesh),
-                          after = mesh_quality(refined.mesh);
-        CHECK(after.vertices == before.vertices);
-        CHECK(after.euler == before.euler);
-        CHECK(after.components == before.components);
-        CHECK(after.area == before.area);
-        CHECK(after.flipped_faces + after.nonmanifold_edges + after.nonmanifold_vertices == 0);
-        const MapQuality map = map_quality(refined.mesh, refined.map, true);
-        CHECK(map.unmapped + map.outside_simplex + map.flipped_triangles == 0);
-
-        // The colours outside change nothing.
-        for (std::size_t i = 0; i < image.pixel_count(); ++i)
-            if (!mask.contains(i)) std::fill_n(&image.data[3 * i], 3, 1.0f);
-        const Level other = build_mesh_image(image, params, {}, mask).mesh_image.levels[0];
-        CHECK(other.mesh.position == refined.mesh.position);
-        CHECK(other.mesh.feature == refined.mesh.feature);
-    }
+    BuildParams plain;
+    plain.stop.density = 10;
+    BuildParams refined = plain;
+    refined.refine = 3;
+    check_masks(plain, refined);
 }
