@@ -10,7 +10,6 @@
 namespace imgmesh {
 namespace {
 
-
 // Sums of one run of pixels of a row in the same face. A run is short, so floats are enough. There is room
 // for 4 G features.
 template <int G>

@@ -38,7 +38,6 @@ float at_coord(const BaseMesh& mesh, const PixelCoord& at, int feature) {
            at.v * mesh.feature_of(c)[feature];
 }
 
-
 // The colour of each vertex, in one register.
 std::vector<Float4> vertex_colors(const BaseMesh& mesh) {
     std::vector<Float4> colors;
