@@ -24,13 +24,13 @@ SOURCES = {".h", ".hpp", ".cpp", ".inl"}
 RANKS = {
     "libcore": [["base"], ["image"], ["mesh"],
                 ["simplify", "param", "refine", "recon", "segment", "warp", "metrics"], ["optimize"], ["coding"],
-                ["pipeline"]],
+                ["pipeline"], ["tiles"]],
     "formats": [["files"], ["findings"], ["exr"], ["picture", "gltf", "compact"], ["container"], ["export"]],
 }
 RANK_OF = {layer: {room: rank for rank, rooms in enumerate(ranks) for room in rooms} for layer, ranks in RANKS.items()}
 
 # Which parts of libcore formats may know: values and what is computed of them row by row, no algorithms.
-VALUES = re.compile(r"libcore/(base/|image/|mesh/(base_mesh|disc_part|displacements|locate_map|loop|mesh_image|pixel_map)\.h$|warp/warp_edits\.h$)")
+VALUES = re.compile(r"libcore/(base/|image/|tiles/tile_grid\.h$|mesh/(base_mesh|disc_part|displacements|locate_map|loop|mesh_image|pixel_map)\.h$|warp/warp_edits\.h$)")
 # Libraries by the names of their headers.
 TBB = re.compile(r"(oneapi/)?tbb(/|\.h$)")
 FILE_LIBRARIES = re.compile(r"OpenEXR/|Imath/|Imf\w*\.h|OpenImageIO/|png\.h$|libdeflate\.h$|lcms2\.h$|draco/|tiny_gltf|tinygltf|nlohmann/|webp/|json/")
