@@ -27,6 +27,11 @@ struct GridMesh {
     Mask mask;               ///< empty() for the whole image
     std::vector<Id> copies;  ///< pixels of the split vertices W * H, W * H + 1, ..., ascending
 
+    /// Of a tile of a larger picture (tile_sides.h): the pixels on the rectangle's sides that stay vertices,
+    /// at their places, ascending, with the corners; all others there are removed. Empty where sides are
+    /// free.
+    std::vector<Id> side_vertices;
+
     bool falling_diagonal(int x, int y) const { return diagonal.at(x, y) != 0; }
     std::size_t vertex_count() const { return feature.pixel_count() + copies.size(); }
     /// Returns the pixel of vertex v.

@@ -23,6 +23,9 @@ struct SimplifyTarget {
     double face_share = 0;      ///< or at this share of the faces of the level before
     /// no collapse above this total quadric error [feature units^2 px^2]
     double max_error = std::numeric_limits<double>::infinity();
+    /// no collapse that adds more than this to the error, or with SimplifyParams::total_priority whose total
+    /// is above it [feature units^2 px^2]
+    double max_increment = std::numeric_limits<double>::infinity();
 };
 
 struct SimplifyResult {
