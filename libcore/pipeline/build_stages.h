@@ -10,6 +10,7 @@
 #include "libcore/image/image.h"
 #include "libcore/image/mask.h"
 #include "libcore/mesh/grid_mesh.h"
+#include "libcore/mesh/tile_sides.h"
 #include "libcore/pipeline/build.h"
 #include "libcore/simplify/simplify.h"
 
@@ -27,6 +28,7 @@ struct BuildStages {
     const BuildParams& params;
     BuildReport& report;
     const Progress& progress;
+    const TileSides* sides;  ///< that stay as they are; none: sides are free
 
     std::vector<SimplifyResult> collapse(const SimplifyParams& limits,
                                          std::span<const SimplifyTarget> targets,
