@@ -41,8 +41,18 @@ class LineFit {
         }
     }
 
-    std::vector<float> solve() && {
-        const std::size_t count = vertices_.size();
+    // The ends keep the features of `line`: other sides begin there too.
+    std::vector<float> solve(std::span<const float> line) && {
+        const std::size_t count = vertices_.size(), last = count - 1;
+        for (std::size_t c = 0; c < channels_; ++c) {
+            const double first_f = line[c], last_f = line[line.size() - channels_ + c];
+            right_[channels_ + c] -= next_[0] * first_f;
+            right_[(last - 1) * channels_ + c] -= next_[last - 1] * last_f;
+            right_[c] = first_f;
+            right_[last * channels_ + c] = last_f;
+        }
+        own_[0] = own_[last] = 1;
+        next_[0] = next_[last - 1] = 0;
         for (std::size_t s = 0; s + 1 < count; ++s) {
             const double factor = next_[s] / own_[s];
             own_[s + 1] -= factor * next_[s];
@@ -71,53 +81,33 @@ class LineFit {
 Side simplify_side(std::span<const float> line, int channels, const SideParams& params) {
     Side side;
     const std::size_t count = line.size() / as_index(channels);
-    const auto round = [&] {
-        if (!params.round) return;
-        for (std::size_t v = 0; v < side.vertices.size(); ++v)
-            params.round(&side.features[v * as_index(channels)]);
-    };
     side.vertices = line_vertices(line, channels, params.threshold);
     side.features.assign(line.begin(), line.end());
-    if (count < 2) {
-        round();
-        return side;
-    }
+    if (count < 2) return side;
     const std::vector<int> resting(count, 0);
     std::vector<int> shifts = resting;
     const auto fit = [&] {
         LineFit sums(side.vertices, channels);
         sums.add(line, shifts, 1 - params.gouraud_share);
         sums.add(line, resting, params.gouraud_share);
-        side.features = std::move(sums).solve();
+        side.features = std::move(sums).solve(line);
     };
     fit();
     if (params.smoothness > 0)
         for (int n = 0; n < kRounds; ++n) {
-            round();
             shifts = line_shifts(line, channels, side.vertices, side.features, params.smoothness);
             fit();
         }
-    round();
     if (params.smoothness > 0)
         for (const int shift : shifts) side.shifts.push_back(static_cast<float>(shift) / kShiftSteps);
     return side;
 }
 
-Side coarser_side(std::span<const Side> parts, int channels) {
-    Side whole;
-    for (const Side& part : parts) {
-        const int offset = whole.vertices.empty() ? 0 : whole.vertices.back();
-        const std::size_t first = whole.vertices.empty() ? 0 : 1;  // shared
-        for (std::size_t v = first; v < part.vertices.size(); ++v)
-            whole.vertices.push_back(offset + part.vertices[v]);
-        whole.features.insert(whole.features.end(),
-                              part.features.begin() + static_cast<std::ptrdiff_t>(first * as_index(channels)),
-                              part.features.end());
-    }
+Side coarser_side(const Side& side, int channels) {
     Side coarse;
-    for (const int v : half_of_vertices(whole.vertices, whole.features, channels)) {
-        coarse.vertices.push_back(whole.vertices[as_index(v)]);
-        const float* feature = &whole.features[as_index(v) * as_index(channels)];
+    for (const int v : half_of_vertices(side.vertices, side.features, channels)) {
+        coarse.vertices.push_back(side.vertices[as_index(v)]);
+        const float* feature = &side.features[as_index(v) * as_index(channels)];
         coarse.features.insert(coarse.features.end(), feature, feature + channels);
     }
     return coarse;

@@ -2,7 +2,6 @@
 // them, in any order (docs/decisions/0051-tile-sets.md).
 #pragma once
 
-#include <functional>
 #include <span>
 
 #include "libcore/mesh/tile_sides.h"
@@ -14,22 +13,16 @@ struct SideParams {
     double smoothness =
         20;  ///< of the shifts, as RelaxParams::smoothness [feature^2 / px^2]; 0: all pixels rest
     double gouraud_share = 0.1;  ///< weight of the drawing with resting pixels in the fit, as in FitParams
-    /// Makes the features of a vertex what a container holds; in place.
-    std::function<void(float*)> round = {};
 };
 
-/// Returns the vertices of a line of pixels, their least-squares features, and the places of the pixels. A
-/// line of one pixel has one vertex.
+/// Returns the vertices of a line of pixels, their least-squares features, and the places of the pixels. The
+/// ends keep their own, as the sides of four tiles meet there. Colours are neither rounded nor clipped.
 ///
 /// line  the pixels, `channels` features each, interleaved
 Side simplify_side(std::span<const float> line, int channels, const SideParams& params);
 
-/// Returns the side of a tile of the next level: the sides of two tiles end to end, with about half of their
-/// vertices. The pixels have no places any more.
-///
-/// parts  one or two sides in their order, the last vertex of the first is the first of the second; numbers
-/// of
-///        pixels in the result go on from one to the next
-Side coarser_side(std::span<const Side> parts, int channels);
+/// Returns the side of a tile of the next level: `side` with half of its vertices. Its pixels have no places
+/// any more.
+Side coarser_side(const Side& side, int channels);
 
 }  // namespace imgmesh

@@ -1,6 +1,7 @@
 // Sides of tiles: exact where the line is simple, in order everywhere.
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -95,15 +96,22 @@ TEST_CASE("a step moves its pixels to its ends") {
     CHECK(shifts[5] == kMostShift);
 }
 
-TEST_CASE("a coarser side joins two and keeps half of their vertices") {
-    const std::vector<float> all = noise(101, 7);
-    const Side left = simplify_side(std::span(all).first(51), 1, {.threshold = 2e3, .smoothness = 0}),
-               right = simplify_side(std::span(all).last(51), 1, {.threshold = 2e3, .smoothness = 0});
-    const Side parts[] = {left, right};
-    const Side coarse = coarser_side(parts, 1);
-    const std::size_t before = left.vertices.size() + right.vertices.size() - 1;
-    CHECK(coarse.vertices.size() == before / 2 + 1);
+TEST_CASE("a coarser side has half of the vertices, in their places") {
+    const Side side = simplify_side(noise(101, 7), 1, {.threshold = 2e3});
+    const Side coarse = coarser_side(side, 1);
+    CHECK(coarse.vertices.size() == side.vertices.size() / 2 + 1);
     CHECK((coarse.vertices.front() == 0 && coarse.vertices.back() == 100));
+    CHECK(std::ranges::includes(side.vertices, coarse.vertices));
+    CHECK(
+        (coarse.features.front() == side.features.front() && coarse.features.back() == side.features.back()));
     CHECK(coarse.features.size() == coarse.vertices.size());
     CHECK(coarse.shifts.empty());
+}
+
+TEST_CASE("the ends of a side keep the colours of their pixels, as four tiles meet there") {
+    const std::vector<float> line = noise(60, 3);
+    for (const double threshold : {1e3, 1e9}) {
+        const Side side = simplify_side(line, 1, {.threshold = threshold});
+        CHECK((side.features.front() == line.front() && side.features.back() == line.back()));
+    }
 }
