@@ -4,7 +4,7 @@ include(CMakePackageConfigHelpers)
 set(_tools imgmesh-build imgmesh-reconstruct imgmesh-info imgmesh-compare imgmesh-convert imgmesh-warp imgmesh-segment
   imgmesh-encode imgmesh-decode)
 set(_libraries imgmesh_core imgmesh_files imgmesh_findings imgmesh_exr imgmesh_picture imgmesh_gltf imgmesh_compact
-  imgmesh_container imgmesh_export imgmesh_formats imgmesh_pictures imgmesh_compiler)
+  imgmesh_container imgmesh_tileset imgmesh_export imgmesh_formats imgmesh_pictures imgmesh_compiler)
 install(TARGETS ${_tools} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 foreach(_library IN LISTS _libraries)
   string(REPLACE "imgmesh_" "" _name ${_library})

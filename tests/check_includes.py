@@ -25,7 +25,7 @@ RANKS = {
     "libcore": [["base"], ["image"], ["mesh"],
                 ["simplify", "param", "refine", "recon", "segment", "warp", "metrics"], ["optimize"], ["coding"],
                 ["pipeline"], ["tiles"]],
-    "formats": [["files"], ["findings"], ["exr"], ["picture", "gltf", "compact"], ["container"], ["export"]],
+    "formats": [["files"], ["findings"], ["exr"], ["picture", "gltf", "compact"], ["container"], ["export", "tileset"]],
 }
 RANK_OF = {layer: {room: rank for rank, rooms in enumerate(ranks) for room in rooms} for layer, ranks in RANKS.items()}
 
