@@ -55,6 +55,8 @@ struct ReadImageOptions {
     /// Pixels are no data where all channels but A have this value, in the file's own numbers; may be NaN.
     std::optional<double> nodata = {};
     bool file_nodata = true;  ///< without `nodata`, the value that the file names (GDAL's tag in TIFF)
+    /// Where integers go that a profile gives in none of our spaces; none: to the narrowest that holds them.
+    std::optional<ColorSpace> fitting_space = {};
 };
 
 /// Where the image of an EXR was found.

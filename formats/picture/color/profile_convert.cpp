@@ -129,11 +129,21 @@ std::optional<Image> linear_from_profile(const Image& image, const LcmsProfile& 
     return out;
 }
 
+void count_outside(const Image& image, OutsideGamut& counts) {
+    counts.srgb += outside(image, ColorSpace::kSrgb);
+    counts.display_p3 += outside(image, ColorSpace::kDisplayP3);
+    counts.adobe_rgb += outside(image, ColorSpace::kAdobeRgb);
+}
+
+ColorSpace narrowest_space(const OutsideGamut& counts) {
+    if (counts.srgb == 0) return ColorSpace::kSrgb;
+    return counts.adobe_rgb < counts.display_p3 ? ColorSpace::kAdobeRgb : ColorSpace::kDisplayP3;
+}
+
 void encode_in_narrowest(Image& image) {
-    if (outside(image, ColorSpace::kSrgb) == 0) return encode_in(image, ColorSpace::kSrgb);
-    const std::int64_t p3 = outside(image, ColorSpace::kDisplayP3);
-    const bool adobe = p3 > 0 && outside(image, ColorSpace::kAdobeRgb) < p3;
-    encode_in(image, adobe ? ColorSpace::kAdobeRgb : ColorSpace::kDisplayP3);
+    OutsideGamut counts;
+    if (outside(image, ColorSpace::kSrgb) > 0) count_outside(image, counts);
+    encode_in(image, narrowest_space(counts));
 }
 
 void encode_in(Image& image, ColorSpace space) {

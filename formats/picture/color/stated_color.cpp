@@ -15,25 +15,34 @@ bool is_integer(SampleType type) {
     return type == SampleType::kUint8 || type == SampleType::kUint16;
 }
 
+// What the user wants of an image that has to be converted.
+struct Wish {
+    std::optional<ColorSpace> asked;    ///< this space
+    std::optional<ColorSpace> fitting;  ///< for integers
+};
+
 // Linear floats stay so: they hold every colour. Integers are stored again, in a space that fits.
-void encode(Image& image, std::optional<ColorSpace> asked) {
-    if (asked)
-        encode_in(image, *asked);
+void encode(Image& image, const Wish& wish) {
+    if (wish.asked)
+        encode_in(image, *wish.asked);
+    else if (is_integer(image.sample_type) && wish.fitting)
+        encode_in(image, *wish.fitting);
     else if (is_integer(image.sample_type))
         encode_in_narrowest(image);
 }
 
 // Returns whether the image could be converted.
-bool convert(const LcmsProfile& profile, bool inks, std::optional<ColorSpace> asked, Image& image) {
+bool convert(const LcmsProfile& profile, bool inks, const Wish& wish, Image& image) {
     std::optional<Image> linear = linear_from_profile(image, profile, inks);
     if (!linear) return false;
     image = std::move(*linear);
-    encode(image, asked);
+    encode(image, wish);
     return true;
 }
 
 // The next three return whether the statement could be used.
-bool use_code_points(const CodePoints& codes, Image& image, std::vector<std::string>& warnings) {
+bool use_code_points(const StatedColor& stated, Image& image, std::vector<std::string>& warnings) {
+    const CodePoints& codes = *stated.code_points;
     const LcmsProfile profile = profile_from_code_points(codes);
     if (!profile) {
         warnings.push_back(cat("its colours are by code points ", codes.primaries, " and ", codes.transfer,
@@ -49,11 +58,12 @@ bool use_code_points(const CodePoints& codes, Image& image, std::vector<std::str
         image.color_space = *ours;
         return true;
     }
-    return convert(profile, false, {}, image);
+    return convert(profile, false, {{}, stated.fitting}, image);
 }
 
-bool use_icc(const std::vector<std::uint8_t>& icc, bool inks, std::optional<ColorSpace> asked, Image& image,
-             std::vector<std::string>& warnings) {
+bool use_icc(const StatedColor& stated, const Wish& wish, Image& image, std::vector<std::string>& warnings) {
+    const std::vector<std::uint8_t>& icc = stated.icc;
+    const bool inks = stated.inks;
     const LcmsProfile profile = profile_from_icc(icc);
     const bool grey_profile = profile && cmsGetColorSpace(profile.get()) == cmsSigGrayData;
     if (profile && !inks && !(grey_profile && image.channel("R") >= 0)) {
@@ -63,7 +73,7 @@ bool use_icc(const std::vector<std::uint8_t>& icc, bool inks, std::optional<Colo
             return true;
         }
     }
-    if (profile && convert(profile, inks, asked, image)) return true;
+    if (profile && convert(profile, inks, wish, image)) return true;
     warnings.push_back(
         cat("its ICC profile ",
             profile ? profile_name(profile) + " cannot be used for its channels" : "is broken"));
@@ -83,7 +93,7 @@ bool use_chromaticities(const StatedColor& stated, Image& image, std::vector<std
             image.color_space = *ours;
             return true;
         }
-        if (convert(profile, false, {}, image)) return true;
+        if (convert(profile, false, {{}, stated.fitting}, image)) return true;
     }
     warnings.push_back("its chromaticities span no colours");
     return false;
@@ -113,14 +123,14 @@ void settle_color(const StatedColor& stated, std::optional<ColorSpace> asked, Im
     image.color_space = asked.value_or(usual);
     const std::size_t before = warnings.size();
     if (stated.inks) {
-        if (!stated.icc.empty() && use_icc(stated.icc, true, asked, image, warnings)) return;
+        if (!stated.icc.empty() && use_icc(stated, {asked, stated.fitting}, image, warnings)) return;
         mix_inks(image);
         image.color_space = asked.value_or(ColorSpace::kSrgb);
     } else {
         if (asked) return;
         const bool color = image.channel("R") >= 0 || image.channel("Y") >= 0;
-        if (color && stated.code_points && use_code_points(*stated.code_points, image, warnings)) return;
-        if (color && !stated.icc.empty() && use_icc(stated.icc, false, {}, image, warnings)) return;
+        if (color && stated.code_points && use_code_points(stated, image, warnings)) return;
+        if (color && !stated.icc.empty() && use_icc(stated, {{}, stated.fitting}, image, warnings)) return;
         if (const auto named = parse_color_space(stated.name))
             image.color_space = *named;
         else if (color)

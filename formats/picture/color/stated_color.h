@@ -19,6 +19,7 @@ struct StatedColor {
     std::optional<Chromaticities> chromaticities = {};  ///< none: Rec.709's
     float gamma = 0;                                    ///< linear = value^gamma; 0 if not stated
     bool inks = false;  ///< the first four channels are C, M, Y and K, where 1 is full ink
+    std::optional<ColorSpace> fitting = {};  ///< ReadImageOptions::fitting_space
 };
 
 /// Sets the image's colour space. Samples of one of our spaces stay as they are; others are converted to the

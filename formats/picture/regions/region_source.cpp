@@ -1,0 +1,108 @@
+#include "formats/picture/regions/region_source.h"
+
+#include <algorithm>
+#include <mutex>
+
+#include "formats/picture/color/profile_convert.h"
+#include "formats/picture/decode/picture_probe.h"
+#include "formats/picture/regions/region_reader.h"
+#include "libcore/base/error.h"
+
+namespace imgmesh {
+namespace {
+
+std::unique_ptr<RegionReader> open_regions(const std::string& path, const ReadImageOptions& options) {
+    if (options.non_finite == NonFinite::kNearest)
+        throw Error(ErrorKind::kBadArgument,
+                    cat(path,
+                        ": samples that are not finite cannot get the value of the nearest pixel where "
+                        "a picture is read by parts, expected that they are refused or become 0"));
+    return open_whole(path, options);
+}
+
+std::string span_text(const PixelRect& r) {
+    return cat("columns ", r.left, " to ", r.right - 1, ", rows ", r.top, " to ", r.bottom - 1);
+}
+
+}  // namespace
+
+struct RegionSource::State {
+    std::string path;
+    ReadImageOptions options;
+    std::unique_ptr<RegionReader> reader;
+    std::once_flag once;
+    ColorSpace fitted = ColorSpace::kSrgb;
+
+    ReadImage read(const PixelRect& region, ColorSpace fitting) const {
+        try {
+            return reader->read(region, fitting);
+        } catch (const Error& error) {
+            throw Error(error.kind(), cat(error.what(), " (read for ", span_text(region), ")"));
+        }
+    }
+
+    // Squares share fewer blocks of tiled pictures than bands, and the blocks of striped ones are read again
+    // for each square: a band of all columns is best for those.
+    ColorSpace narrowest() const {
+        const RegionFacts& facts = reader->facts();
+        constexpr int kSide = 2048;
+        const bool strips = facts.block_width >= std::max(facts.width, facts.height);
+        const int columns = strips ? facts.width : kSide;
+        const int rows = strips ? std::max(1, kSide * kSide / columns) : kSide;
+        OutsideGamut counts;
+        for (int y = 0; y < facts.height; y += rows)
+            for (int x = 0; x < facts.width; x += columns)
+                count_outside(
+                    read({x, y, std::min(facts.width, x + columns), std::min(facts.height, y + rows)},
+                         ColorSpace::kLinear)
+                        .image,
+                    counts);
+        return narrowest_space(counts);
+    }
+
+    ColorSpace color_space() {
+        if (!reader->facts().fits_colors) return reader->color_space();
+        std::call_once(once, [&] { fitted = options.fitting_space ? *options.fitting_space : narrowest(); });
+        return fitted;
+    }
+};
+
+RegionSource::RegionSource(const std::string& path, const ReadImageOptions& options)
+    : state_(std::make_unique<State>()) {
+    state_->path = path;
+    state_->options = options;
+    state_->reader = open_regions(path, options);
+}
+
+RegionSource::~RegionSource() = default;
+
+const RegionFacts& RegionSource::facts() const {
+    return state_->reader->facts();
+}
+
+ColorSpace RegionSource::color_space() const {
+    return state_->color_space();
+}
+
+Image RegionSource::read(const PixelRect& region) const {
+    return read_region(region).image;
+}
+
+ReadImage RegionSource::read_region(const PixelRect& region) const {
+    const RegionFacts& f = facts();
+    if (region.left < 0 || region.top < 0 || region.left >= region.right || region.top >= region.bottom ||
+        region.right > f.width || region.bottom > f.height)
+        throw Error(ErrorKind::kBadArgument,
+                    cat(state_->path, ": ", span_text(region), " are not inside the picture of ", f.width,
+                        "x", f.height, " pixels"));
+    check_size(state_->path, region.width(), region.height(),
+               std::max<std::int64_t>(1, static_cast<std::int64_t>(f.channel_names.size())),
+               state_->options.limits);
+    return state_->read(region, color_space());
+}
+
+std::uint64_t RegionSource::read_bytes(int width, int height) const {
+    return state_->reader->read_bytes(width, height);
+}
+
+}  // namespace imgmesh

@@ -1,0 +1,52 @@
+// Compares what a RegionSource gives with the whole picture.
+#pragma once
+
+#include <doctest/doctest.h>
+
+#include <cstring>
+#include <string>
+
+#include "formats/picture/regions/region_source.h"
+
+namespace imgmesh {
+
+/// Checks that `part` is what `whole` has in `region`, to the bit.
+inline void check_part(const ReadImage& part, const ReadImage& whole, const PixelRect& region) {
+    REQUIRE(part.image.width == region.width());
+    REQUIRE(part.image.height == region.height());
+    REQUIRE(part.image.channel_names == whole.image.channel_names);
+    CHECK(part.image.sample_type == whole.image.sample_type);
+    CHECK(part.image.color_space == whole.image.color_space);
+    int wrong = 0;
+    for (int y = region.top; y < region.bottom; ++y)
+        for (int x = region.left; x < region.right; ++x) {
+            const int at_x = x - region.left, at_y = y - region.top;
+            wrong += std::memcmp(part.image.pixel(at_x, at_y), whole.image.pixel(x, y),
+                                 sizeof(float) * static_cast<std::size_t>(whole.image.channels)) != 0;
+            wrong += (part.data.empty() || part.data.at(at_x, at_y) != 0) !=
+                     (whole.data.empty() || whole.data.at(x, y) != 0);
+        }
+    CHECK(wrong == 0);
+}
+
+/// Reads all of `path` by pieces of `step` x `step` pixels, and all at once.
+inline void check_regions(const std::string& path, int step, const ReadImageOptions& options = {}) {
+    const ReadImage whole = read_image_file(path, options);
+    const RegionSource source(path, options);
+    REQUIRE(source.facts().width == whole.image.width);
+    REQUIRE(source.facts().height == whole.image.height);
+    CHECK(source.facts().channel_names == whole.image.channel_names);
+    CHECK(source.facts().sample_type == whole.image.sample_type);
+    CHECK(source.color_space() == whole.image.color_space);
+    const int width = whole.image.width, height = whole.image.height;
+    for (int y = 0; y < height; y += step)
+        for (int x = 0; x < width; x += step) {
+            const PixelRect region{x, y, std::min(x + step, width), std::min(y + step, height)};
+            INFO("region at ", x, ", ", y);
+            check_part(source.read_region(region), whole, region);
+        }
+    const PixelRect all{0, 0, width, height};
+    check_part(source.read_region(all), whole, all);
+}
+
+}  // namespace imgmesh
