@@ -2,6 +2,7 @@
 // a mask pinches or leaves strips.
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "libcore/image/image.h"
@@ -33,6 +34,10 @@ struct GridMesh {
     std::vector<Id> side_vertices;
 
     bool falling_diagonal(int x, int y) const { return diagonal.at(x, y) != 0; }
+    /// Whether a pixel on a side stays at its place.
+    bool keeps(Id pixel) const {
+        return std::binary_search(side_vertices.begin(), side_vertices.end(), pixel);
+    }
     std::size_t vertex_count() const { return feature.pixel_count() + copies.size(); }
     /// Returns the pixel of vertex v.
     Id pixel_of(Id v) const { return v < feature.pixel_count() ? v : copies[v - feature.pixel_count()]; }

@@ -57,7 +57,7 @@ class MaskedRings {
         Ring ring;
         ring.x = static_cast<float>(x);
         ring.y = static_cast<float>(y);
-        ring.fixed = fan.closed ? 0 : kCorner;
+        ring.fixed = fan.closed ? 0 : open_fan_fixed(fan, x, y);
         for (std::size_t k = 0; k < fan.count; ++k) {
             const int d = fan.direction[k];
             const int nx = x + kAround[d].dx, ny = y + kAround[d].dy;
@@ -68,6 +68,15 @@ class MaskedRings {
             ring.neighbor[ring.valence++] = vertex(nx, ny, n);
         }
         return ring;
+    }
+
+    // All corners, but for pixels that must go from a side: their boundary runs along that side.
+    std::uint8_t open_fan_fixed(const Fan& fan, int x, int y) const {
+        if (grid_.side_vertices.empty() || grid_.keeps(as_id(grid_.feature.index(x, y)))) return kCorner;
+        const PixelStep first = kAround[fan.direction[0]], last = kAround[fan.direction[fan.count - 1]];
+        if (first.dx == 0 && last.dx == 0 && (x == 0 || x == grid_.feature.width - 1)) return kFixedX;
+        if (first.dy == 0 && last.dy == 0 && (y == 0 || y == grid_.feature.height - 1)) return kFixedY;
+        return kCorner;
     }
 
     // The first vertex of a strip's pixel is on its upper (left) side, the second on its lower (right) side.
@@ -152,6 +161,30 @@ std::int64_t masked_face_count(const GridMesh& grid) {
             }
     });
     return std::accumulate(rows.begin(), rows.end(), std::int64_t{0});
+}
+
+std::int64_t side_vertices_to_go(const GridMesh& grid) {
+    if (grid.side_vertices.empty()) return 0;
+    std::int64_t count = 0;
+    const auto add = [&](int x, int y) {
+        const auto goes = [](const Ring& ring) { return ring.border() && ring.fixed != kCorner; };
+        if (grid.mask.empty()) {
+            count += goes(grid_ring(grid, x, y));
+        } else {
+            const PixelRings rings = masked_pixel_rings(grid, x, y);
+            for (std::size_t n = 0; n < rings.count; ++n) count += goes(rings.ring[n]);
+        }
+    };
+    const int w = grid.feature.width, h = grid.feature.height;
+    for (int x = 0; x < w; ++x) {
+        add(x, 0);
+        add(x, h - 1);
+    }
+    for (int y = 1; y + 1 < h; ++y) {
+        add(0, y);
+        add(w - 1, y);
+    }
+    return count;
 }
 
 RingMesh masked_rings(const GridMesh& grid) {

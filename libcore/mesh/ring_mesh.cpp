@@ -21,6 +21,7 @@ Ring grid_ring(const GridMesh& grid, int x, int y) {
     ring.y = grid.origin_y + static_cast<float>(y);
     ring.fixed = static_cast<std::uint8_t>((x == 0 || x == w - 1 ? kFixedX : 0) |
                                            (y == 0 || y == h - 1 ? kFixedY : 0));
+    if (ring.fixed != 0 && grid.keeps(as_id(grid.feature.index(x, y)))) ring.fixed = kFixedX | kFixedY;
     const auto inside = [&](PixelStep s) { return grid.feature.contains(x + s.dx, y + s.dy); };
     // Begin after the gap, so that a border vertex's open fan is in order.
     int first = 0;

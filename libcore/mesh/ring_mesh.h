@@ -18,7 +18,8 @@ namespace imgmesh {
 /// A collapse may not make a vertex with more neighbours; only slivers would need more.
 inline constexpr int kMaxValence = 12;
 
-/// The coordinates that a vertex on the rectangle's border must keep: bits of Ring::fixed. A corner has both.
+/// The coordinates that a vertex on the rectangle's border must keep: bits of Ring::fixed. A corner has both,
+/// and so has a pixel of GridMesh::side_vertices.
 enum FixedAxis : std::uint8_t { kFixedX = 1, kFixedY = 2 };
 
 /// One vertex: 64 bytes.

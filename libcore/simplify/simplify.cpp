@@ -66,6 +66,8 @@ std::unique_ptr<AnySimplifier> simplifier_of(const GridMesh& grid, const Simplif
 std::unique_ptr<AnySimplifier> make_simplifier(const GridMesh& grid, const SimplifyParams& params,
                                                const SimplifyHooks& hooks) {
     const int channels = grid.feature.channels;
+    if (hooks.before && !grid.side_vertices.empty())
+        throw Error(ErrorKind::kBadArgument, "a tile whose sides are given has no follower of its collapse");
     if (channels < 1 || channels > kMaxFeatures)
         throw Error(ErrorKind::kBadArgument, cat(channels, " features, expected 1 to ", kMaxFeatures));
     if (params.metric == Metric::kFlattened && params.solver == Solver::kClosed)

@@ -57,6 +57,10 @@ struct SimplifyHooks {
 /// vertex is placed at its quadric's minimiser if that is legal, else at the edge's midpoint or an end,
 /// whichever costs least.
 ///
+/// With GridMesh::side_vertices these and the corners are all that is left on the sides. What could not merge
+/// along a side is taken out of the result, whose faces there are joined anew. (Error(kBadArgument) with
+/// SimplifyHooks::before.)
+///
 /// targets  one a level, each at least as coarse as the one before
 /// return   the mesh at each of the targets, in that order
 ///

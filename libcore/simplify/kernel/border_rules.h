@@ -12,6 +12,13 @@ struct BorderConstraint {
     float x = 0, y = 0;      ///< of use along fixed axes only
 };
 
+/// Whether a vertex, where all vertices of the sides are decided beforehand, is one that must go. Such a one
+/// only merges along its side.
+template <class Vertex>
+inline bool must_go(const Vertex& v) {
+    return v.fixed == kFixedX || v.fixed == kFixedY;
+}
+
 /// Corners stay, vertices of a side stay on their side.
 template <class Vertex>
 inline BorderConstraint border_constraint(const Vertex& a, const Vertex& b) {

@@ -10,13 +10,16 @@ namespace imgmesh {
 inline constexpr float kNever = std::numeric_limits<float>::infinity();
 
 struct CollapseStats {
-    std::int64_t vertices = 0, faces = 0;  ///< taken away
-    double error = 0;                      ///< largest total quadric error of a merged vertex
-    float postponed = kNever;              ///< least cost of the edges that are beyond the threshold
+    /// taken away, without vertices of sides that must go (border_rules.h) and a face with each
+    std::int64_t vertices = 0, faces = 0;
+    std::int64_t due = 0;      ///< vertices of sides that were taken away because they must go
+    double error = 0;          ///< largest total quadric error of a merged vertex
+    float postponed = kNever;  ///< least cost of the edges that are beyond the threshold
 
     void add(const CollapseStats& other) {
         vertices += other.vertices;
         faces += other.faces;
+        due += other.due;
         error = std::max(error, other.error);
         postponed = std::min(postponed, other.postponed);
     }

@@ -103,17 +103,21 @@ class EdgeCollapser {
                 return;
             }
         }
-        const float total = sum.at(place.x, place.y);
-        if (total > rules_.max_error) return;
-        if (rules_.hooks.before && !may_happen(i, j, sum, place)) return;
-        stats_.error = std::max(stats_.error, static_cast<double>(total));
+        if (costs_.is_due(i, j)) {
+            ++stats_.due;
+        } else {
+            const float total = sum.at(place.x, place.y);
+            if (total > rules_.max_error) return;
+            if (rules_.hooks.before && !may_happen(i, j, sum, place)) return;
+            stats_.error = std::max(stats_.error, static_cast<double>(total));
+            ++stats_.vertices;
+            stats_.faces += ring.faces_removed;
+        }
         if (rules_.boundary) rules_.boundary->merge(rings_, i, j, place.x, place.y);
         apply_merge(rings_, i, j, ring);
         rings_[i].x = place.x;
         rings_[i].y = place.y;
         quadrics_[i] = sum;
-        ++stats_.vertices;
-        stats_.faces += ring.faces_removed;
         file_edges_of(i, 0);
     }
 

@@ -50,7 +50,7 @@ class EdgeCosts {
     /// at.
     Placement best_place(Id i, Id j, const Q& sum) const {
         if (along_boundary(i, j)) return boundary_place(i, j, sum, [](const Placement&) { return true; });
-        const BorderConstraint border = border_constraint(rings_[i], rings_[j]);
+        const BorderConstraint border = constraint(i, j);
         if (!border.allowed) return {};
         if (!sum.has_minimum(border.fixed))
             return cheapest_of_three(i, j, sum, border, [](const Placement&) { return true; });
@@ -79,21 +79,36 @@ class EdgeCosts {
         return true;
     }
 
+    /// Whether their merge takes away a vertex of a side that must go. Such a merge is due, whatever it
+    /// costs.
+    bool is_due(Id i, Id j) const {
+        return rules_.sides_decided && (must_go(rings_[i]) || must_go(rings_[j]));
+    }
+
     /// Where it goes when the best place is not allowed: the cheapest allowed one of midpoint and ends, or of
     /// the boundary's places.
     template <class Merged>
     Placement fallback(Id i, Id j, const Merged& ring, const Q& sum) const {
         const auto legal = [&](const Placement& p) { return allowed(i, j, ring, p); };
         if (along_boundary(i, j)) return boundary_place(i, j, sum, legal);
-        const BorderConstraint border = border_constraint(rings_[i], rings_[j]);
+        const BorderConstraint border = constraint(i, j);
         return border.allowed ? cheapest_of_three(i, j, sum, border, legal) : Placement{};
     }
 
   private:
-    // Whether both ends are on a boundary of a masked image. The edge may lie on it or cross the inside.
+    // Whether both ends are on a boundary of a masked image, which decides. The edge may lie on it or cross
+    // the inside.
     bool along_boundary(Id i, Id j) const {
-        return kWhole && rules_.boundary && rings_[i].border() && rings_[j].border();
+        return kWhole && rules_.boundary && rings_[i].border() && rings_[j].border() && !is_due(i, j);
     }
+
+    BorderConstraint constraint(Id i, Id j) const {
+        // What an inner vertex stands for would wait on the side until the last of its vertices goes.
+        if (is_due(i, j) && !(rings_[i].border() && rings_[j].border())) return {};
+        return border_constraint(rings_[i], rings_[j]);
+    }
+
+    bool on_side(Id v) const { return rules_.boundary->on_side({rings_[v].x, rings_[v].y}); }
 
     // The cheapest of the places that the boundary has for the merged vertex, of those allowed.
     template <class Allowed>
@@ -101,9 +116,11 @@ class EdgeCosts {
         Placement best;
         if constexpr (kWhole) {
             if (rings_[i].neighbor[0] != j && rings_[j].neighbor[0] != i) return best;
+            if (rules_.sides_decided && (on_side(i) || on_side(j))) return best;
             const MaskBoundary::Places places = rules_.boundary->places(rings_, i, j, sum.px, sum.py);
             for (int k = 0; k < places.count; ++k) {
                 const Vec2f& at = places.at[static_cast<std::size_t>(k)];
+                if (rules_.sides_decided && rules_.boundary->on_side(at)) continue;  // no new vertex there
                 Placement p{at.x(), at.y(), 0};
                 p.cost = cost_at(i, j, sum, p);
                 if (p.cost < best.cost && allowed(p)) best = p;
@@ -129,7 +146,8 @@ class EdgeCosts {
     }
 
     float cost_at(Id i, Id j, const Q& sum, const Placement& place) const {
-        return priority(i, j, sum.at(place.x, place.y) - quadrics_[i].error - quadrics_[j].error);
+        const float cost = priority(i, j, sum.at(place.x, place.y) - quadrics_[i].error - quadrics_[j].error);
+        return is_due(i, j) ? kDue * cost : cost;
     }
     // What an edge is filed by, from what its merge adds to the error.
     float priority(Id i, Id j, float added) const {
@@ -137,6 +155,8 @@ class EdgeCosts {
         return rules_.params.total_priority ? added + (quadrics_[i].error + quadrics_[j].error) : added;
     }
 
+    // Of merges that are due: they come before all others of their surroundings.
+    static constexpr float kDue = 1e-4f;
     static constexpr bool kWhole = std::is_same_v<Rings, RingMesh>;
 
     const Rings& rings_;

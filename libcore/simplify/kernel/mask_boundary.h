@@ -6,6 +6,7 @@
 
 #include "libcore/mesh/grid_mesh.h"
 #include "libcore/mesh/ring_mesh.h"
+#include "libcore/mesh/tile_sides.h"
 
 namespace imgmesh {
 
@@ -38,6 +39,11 @@ class MaskBoundary {
 
     /// Returns whether (x, y), one of places(), is within the band and collides with nothing.
     bool allows(const RingMesh& rings, Id i, Id j, float x, float y);
+
+    /// Whether a place is on a side of the image.
+    bool on_side(const Vec2f& place) const {
+        return imgmesh::on_side(place, grid_.feature.width, grid_.feature.height);
+    }
 
     /// Must be called for every merge of j into i at (x, y), also of vertices on no boundary.
     void merge(const RingMesh& rings, Id i, Id j, float x, float y);

@@ -26,6 +26,7 @@ struct SimplifyRules {
     int channels;  ///< of the quadrics
     ShapeLimits limits;
     MaskBoundary* boundary = nullptr;  ///< of a masked image
+    bool sides_decided = false;  ///< vertices of a side that are no corners go (GridMesh::side_vertices)
     double max_error = std::numeric_limits<double>::infinity();
 };
 

@@ -12,6 +12,7 @@
 #include <optional>
 #include <vector>
 
+#include "libcore/mesh/remove_side_vertices.h"
 #include "libcore/simplify/kernel/edge_collapser.h"
 #include "libcore/simplify/kernel/round_in_tiles.h"
 #include "libcore/simplify/kernel/start_in_tiles.h"
@@ -55,6 +56,7 @@ class Simplifier : public AnySimplifier {
                  ShapeLimits::of(params.max_face_area, params.min_shape)} {
         // A follower is told of one step at a time, and vertices have the grid's numbers.
         if (hooks.before) params_.tiles = false;
+        rules_.sides_decided = !grid.side_vertices.empty();
     }
 
     SimplifyResult to(const SimplifyTarget& target, const Progress& progress) override {
@@ -97,12 +99,16 @@ class Simplifier : public AnySimplifier {
         result.mesh.feature.resize(order.size() * channels);
         float* feature = result.mesh.feature.data();
         result.mesh.faces = ring_faces(mesh_.rings, order);
+        std::vector<Id> gone;
         for (const Id v : order) {
             const Ring& ring = mesh_.rings[v];
+            if (rules_.sides_decided && must_go(ring))
+                gone.push_back(static_cast<Id>(result.mesh.position.size()));
             result.mesh.position.emplace_back(ring.x, ring.y);
             mesh_.quadrics[v].features(ring.x, ring.y, feature);
             feature += channels;
         }
+        remove_side_vertices(result.mesh, gone);
         return result;
     }
 
@@ -163,8 +169,9 @@ class Simplifier : public AnySimplifier {
         const bool masked = !grid_.mask.empty();
         dense_vertices_ =
             masked ? grid_.mask.count() + static_cast<std::int64_t>(grid_.copies.size()) : w * h;
-        faces_ = masked ? masked_face_count(grid_) : 2 * (w - 1) * (h - 1);
-        vertices_ = dense_vertices_;
+        const std::int64_t going = side_vertices_to_go(grid_);
+        faces_ = (masked ? masked_face_count(grid_) : 2 * (w - 1) * (h - 1)) - going;
+        vertices_ = dense_vertices_ - going;
     }
 
     // The share of its vertices that each tile may remove. Without such a limit one tile could use up the
@@ -184,15 +191,18 @@ class Simplifier : public AnySimplifier {
         const RoundTiles tiles(grid_.feature.width, grid_.feature.height, vertices_, kVerticesPerTile,
                                ++rounds_);
         CollapseStats sum = round_in_tiles(mesh_, rules_, tiles, threshold_, share_that_goes());
-        if (!rules_.boundary) return sum;
-        // The boundary is one object, so one thread at a time may change it.
+        if (!rules_.boundary && !rules_.sides_decided) return sum;
+        // The boundary is one object, so one thread at a time may change it. What must go from a side may do
+        // so now where it could not before; there is little of it.
         CollapseStats may_go = left_to_go();
         may_go.vertices -= sum.vertices;
         may_go.faces -= sum.faces;
         EdgeCollapser<Q> collapser(mesh_, rules_);
         std::vector<Id> border;
         for (Id v = 0; v < mesh_.rings.size(); ++v)
-            if (mesh_.rings[v].live() && mesh_.rings[v].border()) border.push_back(v);
+            if (mesh_.rings[v].live() &&
+                (rules_.boundary ? mesh_.rings[v].border() : must_go(mesh_.rings[v])))
+                border.push_back(v);
         sum.add(collapser.run(
             border.size(), [&](std::size_t n) { return border[n]; }, threshold_, may_go, true));
         return sum;
@@ -273,7 +283,8 @@ class Simplifier : public AnySimplifier {
     int rounds_ = 0;
     bool tiles_over_ = false;
     SimplifyTarget target_;
-    std::int64_t dense_vertices_ = 0, vertices_ = 0, next_rebuild_ = 0, faces_ = 0;
+    std::int64_t dense_vertices_ = 0, next_rebuild_ = 0;
+    std::int64_t vertices_ = 0, faces_ = 0;  // as if all were gone that must go from the sides
     double error_ = 0;
 };
 

@@ -174,7 +174,7 @@ struct StartCollapse {
             // Edges put off while quadrics were old may be cheaper now.
             sum.postponed = kNever;
             sum.add(part);
-            tile.live -= part.vertices;
+            tile.live -= part.vertices + part.due;
             const bool halved = params.rebuild_quadrics && part.vertices > 0 && tile.live <= tile.halved;
             if (!halved || sum.vertices >= may_go) return sum;
             store();

@@ -238,10 +238,14 @@ class TileCollapser {
             if (short_cost(place.cost) > cost) return set_cost(i, j, short_cost(place.cost));
         }
         const float total = sum.at(place.x, place.y);
-        if (total > rules_.max_error) return set_cost(i, j, kShortNever);
-        stats_.error = std::max(stats_.error, static_cast<double>(total));
-        ++stats_.vertices;
-        stats_.faces += ring.faces_removed;
+        if (!inside && costs_.is_due(i, j)) {
+            ++stats_.due;
+        } else {
+            if (total > rules_.max_error) return set_cost(i, j, kShortNever);
+            stats_.error = std::max(stats_.error, static_cast<double>(total));
+            ++stats_.vertices;
+            stats_.faces += ring.faces_removed;
+        }
         tile_.quadrics[i] = sum;
         TileVertex& vertex = tile_.vertices[i];
         vertex.x = place.x;
