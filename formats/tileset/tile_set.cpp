@@ -24,6 +24,7 @@ TileTotals level_totals(const TileSetIndex& index, int level) {
         if (tile.tile.level != level) continue;
         ++totals.tiles;
         totals.vertices += tile.vertices;
+        totals.own_vertices += tile.own_vertices;
         totals.faces += tile.faces;
         totals.pixels += tile.pixels;
         totals.seam_pixels += tile.seam_pixels;

@@ -38,20 +38,26 @@ struct TileSetPlan {
 /// Returns the hash of everything in a plan but the source's path: a tile with another key is made anew.
 std::string plan_key(const TileSetPlan& plan);
 
-/// A finished tile: written after its files, so where a record is, its files are complete.
+/// What became of a tile: written after its files, so where a record is, its files are complete.
 struct TileRecord {
     TileName tile;
-    std::string key;              ///< plan_key()
-    std::vector<TileFile> files;  ///< its container first
-    std::int64_t vertices = 0, faces = 0;
+    std::string key;  ///< plan_key()
+    /// Its container first; none if all of its pixels are outside the mask, or if it is missing.
+    std::vector<TileFile> files;
+    std::int64_t vertices = 0;
+    /// Without those on a right or bottom side that another tile shares: the sum of a level's tiles is the
+    /// number of its different vertices.
+    std::int64_t own_vertices = 0;
+    std::int64_t faces = 0;
     /// Of level 0: pixels that the tile owns (TileGrid::own_rect) inside the mask, and the sums of their
     /// squared errors through the pixel map and of the mesh alone, so that those of the whole set are exact
     /// sums. [L*u*v*^2, or features with their weights]
     std::int64_t pixels = 0;
     double map_squares = 0, gouraud_squares = 0;
-    /// Of these, the pixels on lines that tiles share.
+    /// Of these, the pixels that are at most two pixels from a line that tiles share.
     std::int64_t seam_pixels = 0;
     double seam_squares = 0;
+    std::string missing = {};  ///< why the tile could not be made, in one line; empty if it is made
 };
 
 /// A tile that could not be made.
@@ -64,7 +70,7 @@ struct MissingTile {
 struct TileSetIndex {
     TileSetPlan plan;
     double threshold = 0;              ///< that the tiles were made with
-    std::vector<TileRecord> tiles;     ///< as comes_before() has them; all have plan_key(plan)
+    std::vector<TileRecord> tiles;     ///< those made, as comes_before() has them; all have plan_key(plan)
     std::vector<MissingTile> missing;  ///< in the same order; no tile is in both, and none in neither
 };
 
@@ -73,7 +79,7 @@ bool comes_before(const TileName& a, const TileName& b);
 
 /// Figures of a level of a set.
 struct TileTotals {
-    std::int64_t tiles = 0, vertices = 0, faces = 0, pixels = 0;
+    std::int64_t tiles = 0, vertices = 0, own_vertices = 0, faces = 0, pixels = 0;
     std::uint64_t bytes = 0;  ///< of all files of the tiles
     double map_rms = 0, gouraud_rms = 0;
     std::int64_t seam_pixels = 0;

@@ -63,6 +63,7 @@ json record_members(const TileRecord& record) {
         files.push_back({{"path", file.path}, {"bytes", file.bytes}, {"sha256", file.sha256}});
     json members = {{"tile", tile_text(record.tile)},
                     {"vertices", record.vertices},
+                    {"own_vertices", record.own_vertices},
                     {"faces", record.faces},
                     {"files", std::move(files)}};
     if (record.tile.level == 0)
@@ -76,7 +77,11 @@ json record_members(const TileRecord& record) {
 
 json totals_member(const TileSetIndex& index, int level) {
     const TileTotals t = level_totals(index, level);
-    json member = {{"tiles", t.tiles}, {"vertices", t.vertices}, {"faces", t.faces}, {"bytes", t.bytes}};
+    json member = {{"tiles", t.tiles},
+                   {"vertices", t.vertices},
+                   {"own_vertices", t.own_vertices},
+                   {"faces", t.faces},
+                   {"bytes", t.bytes}};
     if (level == 0)
         member.update({{"pixels", t.pixels},
                        {"map_rms", t.map_rms},
@@ -180,10 +185,11 @@ TileRecord record_of(const JsonNode& node) {
     TileRecord record;
     record.tile = name_of(node);
     record.vertices = node.member("vertices").whole(kMostCount);
+    record.own_vertices = node.member("own_vertices").whole(record.vertices);
     record.faces = node.member("faces").whole(kMostCount);
-    for (const JsonNode& file : node.member("files").items(1, kMostFiles))
+    for (const JsonNode& file : node.member("files").items(0, kMostFiles))
         record.files.push_back(file_of(file));
-    if (record.files[0].path != tile_container(record.tile))
+    if (record.files.empty() ? record.faces > 0 : record.files[0].path != tile_container(record.tile))
         node["files"].refuse(cat("expected ", tile_container(record.tile), " to be the first"));
     if (record.tile.level > 0) return record;
     record.pixels = node.member("pixels").whole(kMostCount);
@@ -245,6 +251,7 @@ void write_record(const std::string& folder, const TileRecord& record) {
     json document = head(kTileFormat, "tile");
     document["key"] = record.key;
     document.update(record_members(record));
+    if (!record.missing.empty()) document["missing"] = record.missing;
     write(folder, tile_record(record.tile), text_of_json(document, 2));
 }
 
@@ -252,9 +259,12 @@ TileRecord read_record(const std::string& folder, const TileName& tile) {
     const std::string path = in_set(folder, tile_record(tile));
     const nlohmann::json document = load(path, kTileFormat);
     const JsonNode root(document, path + ": ");
-    root.check_members({"$schema", "format", "version", "key", "tile", "vertices", "faces", "files", "pixels",
-                        "map_squares", "gouraud_squares", "seam_pixels", "seam_squares"});
+    root.check_members({"$schema", "format", "version", "key", "tile", "vertices", "own_vertices", "faces",
+                        "files", "pixels", "map_squares", "gouraud_squares", "seam_pixels", "seam_squares",
+                        "missing"});
     TileRecord record = record_of(root);
+    if (root.has("missing")) record.missing = root["missing"].text();
+    if (!record.missing.empty() && !record.files.empty()) root["files"].refuse("a missing tile has none");
     record.key = root.member("key").text();
     if (record.tile != tile) root["tile"].refuse(cat("expected ", tile_text(tile)));
     return record;
@@ -297,8 +307,8 @@ TileSetIndex read_index(const std::string& folder) {
     const std::string key = plan_key(index.plan);
     if (root.member("key").text() != key) root["key"].refuse("not that of the plan");
     for (const JsonNode& node : root.member("tiles").items()) {
-        node.check_members({"tile", "vertices", "faces", "files", "pixels", "map_squares", "gouraud_squares",
-                            "seam_pixels", "seam_squares"});
+        node.check_members({"tile", "vertices", "own_vertices", "faces", "files", "pixels", "map_squares",
+                            "gouraud_squares", "seam_pixels", "seam_squares"});
         index.tiles.push_back(record_of(node));
         index.tiles.back().key = key;
     }
@@ -313,7 +323,7 @@ TileSetIndex read_index(const std::string& folder) {
 bool is_finished(const std::string& folder, const TileName& tile, const std::string& key) {
     try {
         const TileRecord record = read_record(folder, tile);
-        if (record.key != key) return false;
+        if (record.key != key || !record.missing.empty()) return false;
         for (const TileFile& file : record.files)
             if (!has_content(folder, file)) return false;
         return true;

@@ -23,7 +23,8 @@ void write_index(const std::string& folder, const TileSetIndex& index);
 /// Takes about half a second for 100,000 tiles.
 TileSetIndex read_index(const std::string& folder);
 
-/// Returns whether a tile needs no work: its record is there, has the key, and its files are as it says.
+/// Returns whether a tile needs no work: its record is there, has the key, does not tell that the tile is
+/// missing, and its files are as it says.
 bool is_finished(const std::string& folder, const TileName& tile, const std::string& key);
 
 /// Returns whether a path names a tile set: a folder with an index, or the index itself.

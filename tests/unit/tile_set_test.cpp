@@ -38,6 +38,7 @@ TileRecord record_in(const std::string& folder, const TileName& tile, const std:
     TileRecord record{tile, key, {}, 0, 0};
     record.files = {file_facts(folder, tile_container(tile)), file_facts(folder, tile_view(tile))};
     record.vertices = 10 + tile.column;
+    record.own_vertices = 9;
     record.faces = 20;
     if (tile.level > 0) return record;
     record.pixels = 3000;
@@ -143,6 +144,14 @@ TEST_CASE("is_finished: a record of this plan whose files are as it says") {
     // Another tile's record is none of this one.
     std::filesystem::copy_file(in_set(path, tile_record(tile)), in_set(path, tile_record({0, 0, 0})));
     CHECK(!is_finished(path, {0, 0, 0}, key));
+    // A tile without a pixel inside the mask has no files; one that could not be made is not finished.
+    TileRecord empty{{0, 0, 0}, key, {}};
+    write_record(path, empty);
+    CHECK(is_finished(path, {0, 0, 0}, key));
+    empty.missing = "a broken strip";
+    write_record(path, empty);
+    CHECK(!is_finished(path, {0, 0, 0}, key));
+    CHECK(read_record(path, {0, 0, 0}).missing == "a broken strip");
 }
 
 TEST_CASE("write_index: comes back, with sums over each level") {
@@ -218,7 +227,7 @@ TEST_CASE("read_index: a hundred thousand tiles take a moment") {
     const TileGrid grid = index.plan.grid();
     for (int level = 0; level < grid.levels(); ++level)
         for (const TileName& tile : grid.tiles(level)) {
-            TileRecord record{tile, "", {}, 1000, 2000, 4096, 12345.678, 23456.789, 128, 456.789};
+            TileRecord record{tile, "", {}, 1000, 990, 2000, 4096, 12345.678, 23456.789, 128, 456.789};
             for (const std::string& file : {tile_container(tile), tile_view(tile)})
                 record.files.push_back({file, 123456, std::string(64, 'a')});
             index.tiles.push_back(record);
