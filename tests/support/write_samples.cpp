@@ -1,5 +1,6 @@
 // write-samples FOLDER: a container of every flavour for the tests that use other software, and for each .glb
 // the image (.ppm) that a reader must draw of its level 0. FOLDER/regions: base meshes in pieces.
+// FOLDER/set: a tile set of three levels.
 // FOLDER/compact: streams of displacements (.imap), and what a reader must find in their lod0 (.d16: dx, then
 // dy).
 #include <cmath>
@@ -12,6 +13,7 @@
 #include "formats/container/container.h"
 #include "formats/gltf/region_gltf.h"
 #include "tests/support/random_mesh_image.h"
+#include "tests/support/sample_tile_set.h"
 #include "tests/support/small_pictures.h"
 
 using namespace imgmesh;
@@ -152,6 +154,8 @@ int main(int argc, char** argv) {
     const std::pair<const char*, WeightPrecision> precisions[] = {{"half", WeightPrecision::kHalf},
                                                                   {"float", WeightPrecision::kFloat}};
     const std::array<std::array<int, 2>, 3> sizes = {{{96, 64}, {1, 9}, {1, 1}}};
+    std::filesystem::create_directories(folder / "set");
+    test::write_sample_set((folder / "set").string(), 100, 60, 32);
     write_compact(folder / "compact", "plain", 61, 45, false);
     write_compact(folder / "compact", "mask", 33, 70, true);
     write_compact(folder / "compact", "column", 1, 9, false);
