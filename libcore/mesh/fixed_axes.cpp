@@ -1,10 +1,11 @@
 #include "libcore/mesh/fixed_axes.h"
 
 #include "libcore/mesh/adjacency.h"
+#include "libcore/mesh/tile_sides.h"
 
 namespace imgmesh {
 
-std::vector<std::uint8_t> fixed_axes(const BaseMesh& mesh) {
+std::vector<std::uint8_t> fixed_axes(const BaseMesh& mesh, const GridSize* tile) {
     std::vector<std::uint8_t> fixed(mesh.vertex_count(), 0);
     if (mesh.position.empty()) return fixed;
     Vec2f low = mesh.position[0], high = low;
@@ -25,6 +26,8 @@ std::vector<std::uint8_t> fixed_axes(const BaseMesh& mesh) {
             fixed[a] |= axes;
             fixed[b] |= axes;
         }
+    for (Id v = 0; tile && v < mesh.vertex_count(); ++v)
+        if (on_side(mesh.position[v], tile->width, tile->height)) fixed[v] = kFixedX | kFixedY | kFixedColor;
     return fixed;
 }
 

@@ -20,11 +20,11 @@ double squared_edges(const std::array<Vec2f, 3>& p) {
 
 class Rounding {
   public:
-    Rounding(BaseMesh& mesh, float step, double min_quality)
+    Rounding(BaseMesh& mesh, float step, double min_quality, const GridSize* tile)
         : mesh_(mesh),
           step_(step),
           min_quality_(min_quality),
-          fixed_(fixed_axes(mesh)),
+          fixed_(fixed_axes(mesh, tile)),
           corners_(vertex_corners(mesh.faces, mesh.vertex_count())) {
         for (const auto& [a, b, c] : mesh.faces)
             least_area2_.push_back(kLeastShare *
@@ -92,8 +92,8 @@ class Rounding {
 
 }  // namespace
 
-std::size_t round_positions(BaseMesh& mesh, float step, double min_quality) {
-    const Rounding rounding(mesh, step, min_quality);
+std::size_t round_positions(BaseMesh& mesh, float step, double min_quality, const GridSize* tile) {
+    const Rounding rounding(mesh, step, min_quality, tile);
     std::vector<Id> left;
     for (Id v = 0; v < mesh.vertex_count(); ++v)
         if (!rounding.is_done(v)) left.push_back(v);

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 
+#include "libcore/base/grid.h"
 #include "libcore/mesh/base_mesh.h"
 
 namespace imgmesh {
@@ -14,8 +15,10 @@ namespace imgmesh {
 /// step         a power of two, kPositionStep or more [pixels]
 /// min_quality  no face becomes worse than this (q = 4 sqrt(3) area / sum of squared edges), unless it was
 /// return       the number of vertices that are no multiples of `step` all the same
+/// tile         the image of a tile, whose vertices on the image's sides stay; null if it is none
 ///
 /// Takes O(faces) time.
-std::size_t round_positions(BaseMesh& mesh, float step, double min_quality = 0);
+std::size_t round_positions(BaseMesh& mesh, float step, double min_quality = 0,
+                            const GridSize* tile = nullptr);
 
 }  // namespace imgmesh

@@ -2,9 +2,11 @@
 // side alone, so that neighbouring tiles agree to the bit.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
-#include "libcore/base/types.h"
+#include "libcore/base/grid.h"
+#include "libcore/mesh/base_mesh.h"
 
 namespace imgmesh {
 
@@ -27,5 +29,12 @@ inline bool on_side(const Vec2f& place, int width, int height) {
     return place.x() == 0 || place.y() == 0 || place.x() == static_cast<float>(width - 1) ||
            place.y() == static_cast<float>(height - 1);
 }
+
+/// Returns for each vertex of a tile's mesh whether it is on a side of the tile's image.
+std::vector<std::uint8_t> vertices_on_sides(const BaseMesh& mesh, const GridSize& image);
+
+/// Gives the vertices on the sides the features that the sides have there, and returns whether all of them
+/// are vertices of the sides.
+bool set_side_features(BaseMesh& mesh, const TileSides& sides, const GridSize& image);
 
 }  // namespace imgmesh

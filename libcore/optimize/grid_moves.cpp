@@ -16,8 +16,7 @@ constexpr double kSlack = 1e-9;
 }  // namespace
 
 bool GridState::may_move(Id v, OneRing& ring, const Worker& worker) const {
-    if (!mesh_.live_vertex(v) || vertex_[v].fixed == (kFixedX | kFixedY) || !mesh_.ring(v, ring))
-        return false;
+    if (!mesh_.live_vertex(v) || keeps_place(vertex_[v].fixed) || !mesh_.ring(v, ring)) return false;
     return std::all_of(ring.vertex.begin(), ring.vertex.begin() + static_cast<std::ptrdiff_t>(ring.faces + 1),
                        [&](Id u) { return worker.claims(u); });
 }

@@ -153,7 +153,7 @@ void GridState::fit_colors(int passes) {
     });
     const VertexCorners corners = vertex_corners(mesh_.faces(), mesh_.vertices());
     const auto fit = [&](Id v) {
-        if (corners.of(v).empty()) return;
+        if (corners.of(v).empty() || (vertex_[v].fixed & kFixedColor)) return;
         double weight = kColorPull;
         Double4 rhs = kColorPull * spot_[v].color;
         for (const std::size_t corner : corners.of(v)) {
@@ -183,6 +183,7 @@ void GridState::fit_colors(int passes) {
 }
 
 std::uint8_t GridState::side_of(Id a, Id b) const {
+    if (vertex_[a].fixed & vertex_[b].fixed & kFixedColor) return kFixedX | kFixedY;
     const Place &p = spot_[a].place, &q = spot_[b].place;
     if (p.x == q.x && (p.x == low_.x || p.x == high_.x)) return kFixedX;
     if (p.y == q.y && (p.y == low_.y || p.y == high_.y)) return kFixedY;

@@ -17,8 +17,8 @@ constexpr double kFatness = 0.01;
 // How far a vertex goes at once along its pattern, at most and at first [places].
 constexpr int kLongestMove = 4 * kPlacesPerPixel, kFirstMove = kPlacesPerPixel / 2;
 
-PlacedMesh placed(const BaseMesh& mesh, float levels) {
-    PlacedMesh out{std::vector<Spot>(mesh.vertex_count()), fixed_axes(mesh), mesh.faces};
+PlacedMesh placed(const BaseMesh& mesh, float levels, const GridSize* tile) {
+    PlacedMesh out{std::vector<Spot>(mesh.vertex_count()), fixed_axes(mesh, tile), mesh.faces};
     const auto place = [](float x) { return static_cast<std::int32_t>(std::lround(x * kPlacesPerPixel)); };
     for (Id v = 0; v < mesh.vertex_count(); ++v) {
         out.spot[v].place = {place(mesh.position[v].x()), place(mesh.position[v].y())};
@@ -78,7 +78,7 @@ OptimizeReport optimize_mesh(BaseMesh& mesh, const FeatureImage& image, const Re
     optimize.limits = {kFatness, params.min_quality, params.max_face_area,
                        unit ? ColorLimits::kUnit : ColorLimits::kLuv};
     optimize.shape_weight = params.shape_weight;
-    GridOptimizer optimizer(sums, placed(mesh, levels), optimize);
+    GridOptimizer optimizer(sums, placed(mesh, levels, params.keep_sides ? &image : nullptr), optimize);
     const double unit_error = double{levels} * levels;
     OptimizeReport report{optimizer.squared_error() / unit_error, 0};
     optimizer.optimize(schedule_of(params), progress);

@@ -93,7 +93,7 @@ Vec2f Refiner::newton_step(const OneRing& ring, Id v) const {
 
 bool Refiner::move_vertex(Id v) {
     OneRing ring;
-    if (vertex_.fixed[v] == RefineVertices::kFixed || !mesh_.ring(v, ring)) return false;
+    if (keeps_place(vertex_.fixed[v]) || !mesh_.ring(v, ring)) return false;
     const Cost before = cost_of(ring);
     Vec2f step = newton_step(ring, v);
     double longest = 0;

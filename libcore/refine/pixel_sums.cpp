@@ -284,8 +284,7 @@ const bool kAvx2 = has_avx2();
 
 }  // namespace
 
-ImagePlanes::ImagePlanes(const FeatureImage& image, const Mask& mask)
-    : width(image.width), height(image.height) {
+ImagePlanes::ImagePlanes(const FeatureImage& image, const Mask& mask) : GridSize(image) {
     constexpr std::size_t kPadding = 8;
     constexpr int kRows = 64;
     const std::size_t pixels = image.pixel_count(), columns = static_cast<std::size_t>(width);

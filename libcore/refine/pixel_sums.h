@@ -11,10 +11,9 @@
 namespace imgmesh {
 
 /// An image of three channels as planes, each padded so that eight floats can be read at any pixel.
-struct ImagePlanes {
+struct ImagePlanes : GridSize {
     /// Pixels outside `mask`, which is empty() or of the image's size, do not count.
     explicit ImagePlanes(const FeatureImage& image, const Mask& mask = {});
-    int width, height;
     std::vector<float> inside;  ///< 1 inside the mask and 0 outside, padded too; empty without a mask
     std::array<std::vector<float>, 3> channel;
 };

@@ -8,7 +8,8 @@
 
 namespace imgmesh {
 
-RefineVertices::RefineVertices(const BaseMesh& mesh) : position(mesh.position), fixed(fixed_axes(mesh)) {
+RefineVertices::RefineVertices(const BaseMesh& mesh, const GridSize* tile)
+    : position(mesh.position), fixed(fixed_axes(mesh, tile)) {
     color.reserve(mesh.vertex_count());
     for (Id v = 0; v < mesh.vertex_count(); ++v) color.emplace_back(mesh.feature_of(v));
 }

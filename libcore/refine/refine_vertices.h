@@ -11,14 +11,14 @@
 namespace imgmesh {
 
 struct RefineVertices {
-    static constexpr std::uint8_t kFree = 0, kFixed = kFixedX | kFixedY;
+    static constexpr std::uint8_t kFree = 0;
 
-    /// `mesh` has three channels.
-    explicit RefineVertices(const BaseMesh& mesh);
+    /// `mesh` has three channels. tile: as in fixed_axes()
+    explicit RefineVertices(const BaseMesh& mesh, const GridSize* tile = nullptr);
 
     std::vector<Vec2f> position;
     std::vector<Vec3f> color;
-    std::vector<std::uint8_t> fixed;  ///< fixed_axes() of the mesh that it was, bits of kFixedX and kFixedY
+    std::vector<std::uint8_t> fixed;  ///< fixed_axes() of the mesh that it was
 
     /// Adds a vertex, in the place of a removed one if there is one.
     void set(Id v, const Vec2f& p, const Vec3f& c, std::uint8_t axes);

@@ -33,7 +33,7 @@ Refiner::Refiner(const BaseMesh& mesh, const ImagePlanes& image, const RefinePar
     : image_(image),
       params_(params),
       mesh_(refine_faces(mesh)),
-      vertex_(mesh),
+      vertex_(mesh, params.keep_sides ? &image : nullptr),
       sums_(mesh.faces.size()),
       inverse_q_(mesh.faces.size()) {
     for_each_id(sums_.size(), [&](Id f) { measure(f); });
@@ -111,6 +111,7 @@ void Refiner::fit_colors() {
     constexpr double kPull = 1e-3;
     const VertexCorners corners = vertex_corners(mesh_.faces(), mesh_.vertices());
     const auto improve = [&](Id v) {
+        if (vertex_.fixed[v] & kFixedColor) return;
         double diagonal = kPull;
         Vec3d rhs = kPull * change[v];
         for (const std::size_t corner : corners.of(v)) {

@@ -63,8 +63,7 @@ std::size_t Refiner::estimate(const OneRing& ring, Estimates& out) const {
 double Refiner::estimated_removal(Id v) const {
     double best = std::numeric_limits<double>::infinity();
     OneRing ring;
-    if (!mesh_.live_vertex(v) || vertex_.fixed[v] == RefineVertices::kFixed || !mesh_.ring(v, ring))
-        return best;
+    if (!mesh_.live_vertex(v) || keeps_place(vertex_.fixed[v]) || !mesh_.ring(v, ring)) return best;
     const Cost before = cost_of(ring);
     Estimates estimates;
     const std::size_t count = estimate(ring, estimates);

@@ -69,6 +69,18 @@ TEST_CASE("optimised mesh: limits on shape and area hold, and shape weighs again
                  });
 }
 
+TEST_CASE("optimised mesh: the sides of a tile stay as they are") {
+    for (const bool unit : {false, true}) {
+        RefineParams params = rounds_of_exchanges(3);
+        params.anneal = 20;
+        params.keep_faces = false;
+        params.range = unit ? ColorRange::kUnit : ColorRange::kLuv;
+        check_sides(params, [](BaseMesh& mesh, const FeatureImage& feature, const RefineParams& kept) {
+            optimize_mesh(mesh, feature, kept);
+        });
+    }
+}
+
 TEST_CASE("optimised mesh: positions are on the grid asked for, colours in the range asked for") {
     FeatureImage feature = sample_feature(Kind::kNoise, 120, 90);
     for (float& f : feature.data) f = std::abs(f) / 100;

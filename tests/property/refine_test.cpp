@@ -148,6 +148,15 @@ TEST_CASE("refine: limits on shape and area hold, and shape weighs against error
     });
 }
 
+TEST_CASE("refine: the sides of a tile stay as they are") {
+    RefineParams params;
+    params.rounds = 4;
+    params.relocations = 0.1;
+    check_sides(params, [](BaseMesh& mesh, const FeatureImage& feature, const RefineParams& kept) {
+        refine(mesh, feature, kept);
+    });
+}
+
 TEST_CASE("refine: the same bytes for any number of threads, in the range of colours asked for") {
     FeatureImage feature = sample_feature(Kind::kNoise, 120, 90);
     for (float& f : feature.data) f = std::abs(f) / 100;

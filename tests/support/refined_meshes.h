@@ -4,9 +4,12 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <vector>
 
 #include "libcore/base/parallel.h"
+#include "libcore/mesh/tile_sides.h"
 #include "libcore/mesh/trivial_map.h"
 #include "libcore/metrics/metrics.h"
 #include "libcore/pipeline/build.h"
@@ -84,6 +87,43 @@ BaseMesh check_threads(const BaseMesh& start, const Improve& improve) {
     CHECK(first.feature == second.feature);
     CHECK(first.faces == second.faces);
     return first;
+}
+
+/// The vertices on the sides of an image with their colours, in the order of their places.
+inline std::vector<std::array<float, 5>> side_of(const BaseMesh& mesh, const GridSize& image) {
+    std::vector<std::array<float, 5>> out;
+    for (Id v = 0; v < mesh.vertex_count(); ++v) {
+        const Vec2f& p = mesh.position[v];
+        const float* f = mesh.feature_of(v);
+        if (on_side(p, image.width, image.height)) out.push_back({p.x(), p.y(), f[0], f[1], f[2]});
+    }
+    std::sort(out.begin(), out.end());
+    return out;
+}
+
+/// improve(mesh, feature, params) refines. With keep_sides it leaves what is on the sides as it is, and so
+/// many vertices and faces; without, it does not.
+template <class Improve>
+void check_sides(const RefineParams& any_sides, const Improve& improve) {
+    for (const Kind kind : {Kind::kGradient, Kind::kNoise, Kind::kDisc})
+        for (const auto& [w, h] : {std::pair{60, 45}, {130, 20}, {9, 2}, {3, 3}}) {
+            INFO(name_of(kind) << " " << w << " x " << h);
+            FeatureImage feature = sample_feature(kind, w, h);
+            if (any_sides.range == ColorRange::kUnit)
+                for (float& f : feature.data) f = std::abs(f) / 200;
+            const BaseMesh start = collapsed(feature, std::max(4, w * h / 30));
+            RefineParams params = any_sides;
+            params.keep_sides = true;
+            BaseMesh mesh = start, free = start;
+            improve(mesh, feature, params);
+            CHECK((side_of(mesh, feature) == side_of(start, feature)));
+            CHECK(mesh.faces.size() == start.faces.size());
+            check_sound(mesh, start.vertex_count(), w, h);
+            CHECK(drawn_error(mesh, feature) <= drawn_error(start, feature) * 1.001);
+            params.keep_sides = false;
+            improve(free, feature, params);
+            CHECK_FALSE((side_of(free, feature) == side_of(start, feature)));
+        }
 }
 
 /// In masked images pixels outside do not count, the boundary stays, and the map stays one to one. `plain`

@@ -309,10 +309,10 @@ TEST_CASE("refine vertices: a boundary inside the bounding box is fixed") {
     });
     const RefineVertices l(mesh);
     const auto fixed_at = [&](int i, int j) { return l.fixed[static_cast<std::size_t>(j * 5 + i)]; };
-    CHECK(fixed_at(2, 2) == RefineVertices::kFixed);  // the inner corner
-    CHECK(fixed_at(3, 2) == RefineVertices::kFixed);  // straight on, yet inside the box
-    CHECK(fixed_at(2, 3) == RefineVertices::kFixed);
-    CHECK(fixed_at(4, 2) == RefineVertices::kFixed);  // an end of the L
+    CHECK(fixed_at(2, 2) == (kFixedX | kFixedY));  // the inner corner
+    CHECK(fixed_at(3, 2) == (kFixedX | kFixedY));  // straight on, yet inside the box
+    CHECK(fixed_at(2, 3) == (kFixedX | kFixedY));
+    CHECK(fixed_at(4, 2) == (kFixedX | kFixedY));  // an end of the L
     CHECK(fixed_at(1, 4) == kFixedY);
     CHECK(fixed_at(0, 1) == kFixedX);
     CHECK(fixed_at(1, 1) == RefineVertices::kFree);
