@@ -81,11 +81,14 @@ struct ClassSystem {
 };
 
 template <int C>
-void fit(BaseMesh& mesh, const ColorSums& sums, const FeatureSpace& space, const Limit& limited, int passes) {
+void fit(BaseMesh& mesh, const ColorSums& sums, const FeatureSpace& space, const Limit& limited, int passes,
+         std::span<const std::uint8_t> kept) {
     const int features = feature_count<C>(mesh.channels);
     constexpr int kGrain = 512;
     // Class by class: no two vertices of a class share a face, so no thread sees another's change.
-    const std::vector<std::vector<Id>> classes = vertex_coloring(mesh.faces, mesh.vertex_count());
+    std::vector<std::vector<Id>> classes = vertex_coloring(mesh.faces, mesh.vertex_count());
+    if (!kept.empty())
+        for (std::vector<Id>& members : classes) std::erase_if(members, [&](Id v) { return kept[v] != 0; });
     std::vector<std::optional<ClassSystem<C>>> systems(classes.size());
     {
         const VertexCorners corners = vertex_corners(mesh.faces, mesh.vertex_count());
@@ -100,7 +103,7 @@ void fit(BaseMesh& mesh, const ColorSums& sums, const FeatureSpace& space, const
     if (space.color)
         parallel_blocks(0, as_int(mesh.vertex_count()), kGrain, [&](int begin, int end) {
             for (Id v = as_id(begin); v < as_id(end); ++v)
-                set_color(mesh, v, limited(Vec3f(mesh.feature_of(v))));
+                if (kept.empty() || !kept[v]) set_color(mesh, v, limited(Vec3f(mesh.feature_of(v))));
         });
     const auto improve = [&](const ClassSystem<C>& all, std::size_t n) {
         const VertexSystem<C>& system = all.vertices[n];
@@ -131,22 +134,22 @@ void fit(BaseMesh& mesh, const ColorSums& sums, const FeatureSpace& space, const
 }  // namespace
 
 void fit_colors(BaseMesh& mesh, const ColorSums& sums, const FeatureSpace& space, int passes,
-                const ColorLevels* levels) {
+                const ColorLevels* levels, std::span<const std::uint8_t> kept) {
     const Limit limited{space, levels};
     if (mesh.channels == 3)
-        fit<3>(mesh, sums, space, limited, passes);
+        fit<3>(mesh, sums, space, limited, passes, kept);
     else
-        fit<kMaxFeatures>(mesh, sums, space, limited, passes);
+        fit<kMaxFeatures>(mesh, sums, space, limited, passes, kept);
 }
 
 void fit_colors(BaseMesh& mesh, const FeatureImage& feature, const std::vector<FitTerm>& terms,
-                const FeatureSpace& space, const ColorLevels* levels) {
+                const FeatureSpace& space, const ColorLevels* levels, std::span<const std::uint8_t> kept) {
     // More than 6 passes change the RMS in the fourth digit.
     constexpr int kPasses = 6;
     ColorSums sums{mesh.channels, {}};
     for (const FitTerm& term : terms)
         sums.add(color_sums(feature, *term.map, mesh.faces.size()), term.weight);
-    fit_colors(mesh, sums, space, kPasses, levels);
+    fit_colors(mesh, sums, space, kPasses, levels, kept);
 }
 
 }  // namespace imgmesh

@@ -4,6 +4,7 @@
 
 #include "libcore/base/error.h"
 #include "libcore/image/color.h"
+#include "libcore/mesh/tile_sides.h"
 #include "libcore/mesh/trivial_map.h"
 #include "libcore/mesh/weight_grid.h"
 #include "libcore/param/color_sums.h"
@@ -18,9 +19,17 @@ namespace {
 // round evens out what that leaves. With a rate, places beyond the best one would cost bits.
 constexpr float kLongStride = 1.8f;
 
-void round_colors(BaseMesh& mesh, const FeatureSpace& space) {
+using Kept = std::vector<std::uint8_t>;
+
+// Returns the vertices whose features stay as they are; empty() for none.
+Kept kept_vertices(const BaseMesh& mesh, const FitParams& params, const GridSize& image) {
+    return params.sides ? vertices_on_sides(mesh, image) : Kept();
+}
+
+void round_colors(BaseMesh& mesh, const FeatureSpace& space, const Kept& kept) {
     const float weight = space.color_weight;
     for (Id v = 0; v < mesh.vertex_count(); ++v) {
+        if (!kept.empty() && kept[v]) continue;
         const Eigen::Map<Vec3f> color(mesh.feature_of(v));
         const Vec3f quantized = weight * quantized_color(color / weight, space.gamut);
         std::copy(quantized.data(), quantized.data() + 3, mesh.feature_of(v));
@@ -38,12 +47,12 @@ float longest_edge(const BaseMesh& mesh) {
 class ColorFit {
   public:
     ColorFit(BaseMesh& mesh, const FeatureImage& feature, const FitParams& params, const PixelMap& trivial)
-        : mesh_(mesh), params_(params) {
+        : mesh_(mesh), params_(params), kept_(kept_vertices(mesh, params, feature)) {
         if (!params.keep_colors) drawing_ = color_sums(feature, trivial, mesh.faces.size());
     }
 
     void fit_drawing() const {
-        if (!params_.keep_colors) fit_colors(mesh_, drawing_, params_.space, kPasses);
+        if (!params_.keep_colors) fit_colors(mesh_, drawing_, params_.space, kPasses, nullptr, kept_);
     }
     // `sums` returns the map's ColorSums.
     template <typename Sums>
@@ -52,10 +61,10 @@ class ColorFit {
         ColorSums all{drawing_.channels, {}};
         all.add(sums(), 1 - params_.gouraud_share);
         all.add(drawing_, params_.gouraud_share);
-        fit_colors(mesh_, all, params_.space, kPasses);
+        fit_colors(mesh_, all, params_.space, kPasses, nullptr, kept_);
     }
     void round() const {
-        if (params_.space.color) round_colors(mesh_, params_.space);
+        if (params_.space.color) round_colors(mesh_, params_.space, kept_);
     }
 
   private:
@@ -64,6 +73,7 @@ class ColorFit {
 
     BaseMesh& mesh_;
     const FitParams& params_;
+    Kept kept_;
     ColorSums drawing_;
 };
 
@@ -76,6 +86,7 @@ PixelMap fit_map(BaseMesh& mesh, const FeatureImage& feature, const FitParams& p
     const std::vector<Face> neighbors = face_neighbors(mesh);
     PixelEmbedding pixels = resting_pixels(trivial, mask);
     trivial = {};
+    if (params.sides) place_sides(pixels, *params.sides, face_fields(mesh), neighbors);
     colors.fit_drawing();
     // A strip of one pixel has no cells that could fold; its map stays trivial.
     const int rounds = params.color_weight > 0 && feature.width > 1 && feature.height > 1 ? params.rounds : 0;
@@ -98,8 +109,9 @@ PixelMap fit_map(BaseMesh& mesh, const FeatureImage& feature, const FitParams& p
 
 PixelMap fit_drawing(BaseMesh& mesh, const FeatureImage& feature, const FitParams& params, const Mask& mask) {
     PixelMap trivial = trivial_map(mesh, feature.width, feature.height, mask);
-    if (!params.keep_colors) fit_colors(mesh, feature, {{&trivial, 1}}, params.space);
-    if (params.space.color) round_colors(mesh, params.space);
+    const Kept kept = kept_vertices(mesh, params, feature);
+    if (!params.keep_colors) fit_colors(mesh, feature, {{&trivial, 1}}, params.space, nullptr, kept);
+    if (params.space.color) round_colors(mesh, params.space, kept);
     return trivial;
 }
 

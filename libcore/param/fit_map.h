@@ -13,6 +13,8 @@
 
 namespace imgmesh {
 
+struct TileSides;
+
 struct FitParams {
     double color_weight = 1.0 / 20;  ///< of colour against smoothness [px^2 / feature^2]; 0: the trivial map
     std::optional<WeightPrecision> bary;  ///< none: half where the map stays a bijection with it, else float
@@ -23,6 +25,9 @@ struct FitParams {
     FeatureSpace space;        ///< of the image
     bool keep_colors = false;  ///< keep the mesh's features, but for rounding
     double gouraud_share = 0.1;  ///< weight of the drawing without the map in the fit of colours, 0 to 1
+    /// Of a tile: vertices on its image's sides keep their features, and pixels there lie where these have
+    /// them. None: the image is no tile.
+    const TileSides* sides = nullptr;
 };
 
 /// Finds the pixel map of any base mesh over an image: every pixel moves a little to where the mesh has its

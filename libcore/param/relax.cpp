@@ -50,6 +50,25 @@ PixelEmbedding resting_pixels(const PixelMap& trivial, const Mask& mask) {
     return pixels;
 }
 
+void place_sides(PixelEmbedding& pixels, const TileSides& sides, const std::vector<FaceField>& fields,
+                 const std::vector<Face>& neighbors) {
+    pixels.sides_stay = true;
+    const auto place = [&](const Side& side, std::vector<float>& displacement, std::size_t first,
+                           std::size_t step) {
+        for (std::size_t k = 0; k < side.shifts.size(); ++k) {
+            const std::size_t i = first + k * step;
+            if (side.shifts[k] == 0 || pixels.outside(i)) continue;
+            displacement[i] = side.shifts[k];
+            pixels.face[i] = locate_face(pixels.image_of(pixels.x_of(i), pixels.y_of(i)), pixels.face[i],
+                                         fields, neighbors);
+        }
+    };
+    place(sides.top, pixels.dx, 0, 1);
+    place(sides.bottom, pixels.dx, pixels.row_begin(pixels.height - 1), 1);
+    place(sides.left, pixels.dy, 0, as_index(pixels.width));
+    place(sides.right, pixels.dy, as_index(pixels.width - 1), as_index(pixels.width));
+}
+
 Displacements displacements(const PixelEmbedding& pixels, int steps) {
     Displacements out{pixels,
                       steps,

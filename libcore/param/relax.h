@@ -11,6 +11,7 @@
 #include "libcore/mesh/displacements.h"
 #include "libcore/mesh/face_field.h"
 #include "libcore/mesh/pixel_map.h"
+#include "libcore/mesh/tile_sides.h"
 
 namespace imgmesh {
 
@@ -26,13 +27,17 @@ struct PixelEmbedding : GridSize {
     std::vector<float> dx, dy;  ///< place on the mesh minus the pixel [pixels]; NaN outside a mask
     std::vector<Id> face;       ///< the face that holds the place; kNone outside a mask
     std::vector<std::uint8_t> freedom =
-        {};  ///< of a masked image's pixels, Freedom bits; empty without a mask
+        {};                   ///< of a masked image's pixels, Freedom bits; empty without a mask
+    bool sides_stay = false;  ///< whether pixels on the image's sides do not move
 
     /// Whether nothing but its neighbours limits the moves of an inner pixel.
     bool is_free(int x, int y) const {
         return freedom.empty() ? !pinned_x(x, y) && !pinned_y(x, y) : freedom[index(x, y)] & kFree;
     }
     bool outside(std::size_t pixel) const { return face[pixel] == kNone; }
+    bool stays(int x, int y) const {
+        return sides_stay && (x == 0 || y == 0 || x == width - 1 || y == height - 1);
+    }
     bool pinned_x(int x, int y) const {
         return freedom.empty() ? x == 0 || x == width - 1 : freedom[index(x, y)] & kPinnedX;
     }
@@ -50,6 +55,10 @@ struct PixelEmbedding : GridSize {
 /// Pixels on a straight horizontal or vertical part of the mask's boundary may slide along it. Where it bends
 /// or pinches, and in strips one pixel wide, they rest. So the map takes the dense mesh onto itself.
 PixelEmbedding resting_pixels(const PixelMap& trivial, const Mask& mask = {});
+
+/// Puts the pixels of a tile's sides where the sides have them, for good. All pixels are at rest before.
+void place_sides(PixelEmbedding& pixels, const TileSides& sides, const std::vector<FaceField>& fields,
+                 const std::vector<Face>& neighbors);
 
 /// The least twice-area that a pixel triangle keeps during moves, on a grid of `steps` in a pixel [px^2]; at
 /// rest it is 1. It is more than what weights of half precision change in faces of usual size; on the

@@ -42,7 +42,7 @@ bool beyond(const FaceField& field, float x, float y) {
 
 void RelaxSweep::move_pixel(int x, int y) const {
     const std::size_t index = pixels.index(x, y);
-    if (pixels.outside(index)) return;
+    if (pixels.outside(index) || pixels.stays(x, y)) return;
     const Around around(pixels, x, y);
     const float rest_x = static_cast<float>(x), rest_y = static_cast<float>(y);
     const float own_x = pixels.dx[index], own_y = pixels.dy[index];

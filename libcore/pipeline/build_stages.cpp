@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "libcore/base/error.h"
 #include "libcore/base/stopwatch.h"
 #include "libcore/mesh/round_positions.h"
 #include "libcore/mesh/trivial_map.h"
@@ -29,6 +30,11 @@ std::vector<SimplifyResult> BuildStages::collapse(const SimplifyParams& limits,
     return collapsed;
 }
 
+void BuildStages::set_sides(BaseMesh& mesh) const {
+    if (sides && !set_side_features(mesh, *sides, feature))
+        throw Error(ErrorKind::kInternal, "a tile has a vertex on its sides that is not the sides'");
+}
+
 Level BuildStages::finish(SimplifyResult&& collapsed, const SimplifyParams& limits,
                           std::optional<PixelMap> tracked, LevelReport& figures, double begin,
                           double end) const {
@@ -37,6 +43,8 @@ Level BuildStages::finish(SimplifyResult&& collapsed, const SimplifyParams& limi
     refinement.max_face_area = limits.max_face_area;
     const double unit = static_cast<double>(space.unit);
     Level level{std::move(collapsed.mesh), {}, collapsed.error * params.color_weight / (unit * unit)};
+    refinement.keep_sides = sides != nullptr;
+    set_sides(level.mesh);
     const double middle = refinement.rounds > 0 ? begin + 0.7 * (end - begin) : begin;
     if (refinement.rounds > 0 || params.objective == Objective::kRgb)
         refine_level(level.mesh, feature, mask, params.objective, refinement,
@@ -44,7 +52,8 @@ Level BuildStages::finish(SimplifyResult&& collapsed, const SimplifyParams& limi
     figures.position_step = position_step(params, report.pixels, level.mesh.vertex_count());
     if (figures.position_step > double{kPositionStep}) {
         refinement.position_step = static_cast<float>(figures.position_step);
-        figures.fine_vertices = round_positions(level.mesh, refinement.position_step, params.min_quality);
+        figures.fine_vertices = round_positions(level.mesh, refinement.position_step, params.min_quality,
+                                                sides ? &feature : nullptr);
         if (refinement.rounds > 0) {
             // One round on the grid makes good what the rounding has cost.
             refinement.rounds = 1;
@@ -53,8 +62,10 @@ Level BuildStages::finish(SimplifyResult&& collapsed, const SimplifyParams& limi
             refine_level(level.mesh, feature, mask, params.objective, refinement, {});
         }
     }
+    set_sides(level.mesh);
     report.seconds.refine += watch.lap();
-    const FitParams fit = fit_params(params, space);
+    FitParams fit = fit_params(params, space);
+    fit.sides = sides;
     const bool left_out = params.map_is_left_out && !tracked;
     if (left_out)
         level.map = fit_drawing(level.mesh, feature, fit, mask);
@@ -64,9 +75,9 @@ Level BuildStages::finish(SimplifyResult&& collapsed, const SimplifyParams& limi
     const PixelMap trivial =
         left_out ? PixelMap() : trivial_map(level.mesh, feature.width, feature.height, mask);
     const PixelMap& drawing = left_out ? level.map : trivial;
-    figures.color_levels = round_colors(params, level.mesh, feature, space, level.map, drawing,
-                                        fit.gouraud_share, fit.keep_colors);
+    figures.color_levels = round_colors(params, level.mesh, feature, space, level.map, drawing, fit);
     limit_alpha(level.mesh, feature, space, mask);
+    set_sides(level.mesh);
     figures.map_rms = map_rms(level.mesh, level.map, feature);
     figures.gouraud_rms = left_out ? figures.map_rms : map_rms(level.mesh, trivial, feature);
     figures.auxiliary_rms.clear();

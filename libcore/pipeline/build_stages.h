@@ -37,6 +37,9 @@ struct BuildStages {
     /// of the progress.
     Level finish(SimplifyResult&& collapsed, const SimplifyParams& limits, std::optional<PixelMap> tracked,
                  LevelReport& figures, double begin, double end) const;
+    /// Gives the vertices on sides that stay their features again: other colour spaces and weights are not
+    /// exact.
+    void set_sides(BaseMesh& mesh) const;
     /// Estimates the error of the map of an unrefined mesh after one round.
     double estimated_rms(SimplifyResult&& collapsed) const;
 };

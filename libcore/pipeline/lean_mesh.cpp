@@ -2,10 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <span>
 #include <vector>
 
 #include "libcore/image/color_levels.h"
 #include "libcore/mesh/round_positions.h"
+#include "libcore/mesh/tile_sides.h"
 #include "libcore/metrics/metrics.h"
 #include "libcore/param/fit_colors.h"
 
@@ -36,8 +39,11 @@ int compact_levels(double rms) {
     return count > kMostColorLevels ? 0 : static_cast<int>(std::max(count, kFewest));
 }
 
-void round_to(const ColorLevels& levels, float weight, BaseMesh& mesh) {
+// Rounds all colours but the `kept` ones; empty() for none.
+void round_to(const ColorLevels& levels, float weight, BaseMesh& mesh,
+              std::span<const std::uint8_t> kept = {}) {
     for (Id v = 0; v < mesh.vertex_count(); ++v) {
+        if (!kept.empty() && kept[v]) continue;
         const Vec3f color = weight * levels.rounded(Vec3f(mesh.feature_of(v)) / weight);
         std::copy(color.data(), color.data() + 3, mesh.feature_of(v));
     }
@@ -60,7 +66,7 @@ double position_step(const BuildParams& params, std::int64_t pixels, std::size_t
 
 int round_colors(const BuildParams& params, BaseMesh& mesh, const FeatureImage& feature,
                  const FeatureSpace& space, const PixelMap& map, const PixelMap& trivial,
-                 double gouraud_share, bool keep_colors) {
+                 const FitParams& fit) {
     if (!space.color || space.gamut != Gamut::kDisplay) return 0;
     int count = 0;
     if (params.color_levels)
@@ -69,13 +75,15 @@ int round_colors(const BuildParams& params, BaseMesh& mesh, const FeatureImage& 
         count = compact_levels(color_rms(mesh, map, feature, space));
     if (count == 0) return 0;
     const ColorLevels levels(count);
-    if (!keep_colors) {
+    std::vector<std::uint8_t> kept;
+    if (fit.sides) kept = vertices_on_sides(mesh, feature);
+    if (!fit.keep_colors) {
         std::vector<FitTerm> terms = {{&map, 1}};
-        if (&map != &trivial) terms = {{&map, 1 - gouraud_share}, {&trivial, gouraud_share}};
-        fit_colors(mesh, feature, terms, space, &levels);
+        if (&map != &trivial) terms = {{&map, 1 - fit.gouraud_share}, {&trivial, fit.gouraud_share}};
+        fit_colors(mesh, feature, terms, space, &levels, kept);
         return count;
     }
-    round_to(levels, space.color_weight, mesh);
+    round_to(levels, space.color_weight, mesh, kept);
     return count;
 }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <random>
 
 #include "libcore/base/parallel.h"
 #include "libcore/mesh/trivial_map.h"
@@ -122,6 +123,50 @@ TEST_CASE("relax: no triangle of pixels folds or thins out, however soft or hard
                 check_border(s.pixels);
                 check_faces(s);
             }
+        }
+}
+
+// Shifts of the pixels of a line, as far as they may go: ascending places, less than a pixel beside the ends.
+std::vector<float> random_shifts(int length, std::mt19937& random) {
+    std::vector<float> shifts(as_index(length), 0.0f);
+    for (std::size_t k = 1; k + 1 < shifts.size(); ++k) {
+        const auto place = static_cast<float>(random() % 56) / 8 - 3.5f;
+        shifts[k] = std::max(k == 1 ? -0.875f : shifts[k - 1] - 0.875f, place);
+    }
+    for (std::size_t k = shifts.size() - 1; k-- > 1;)
+        shifts[k] = std::min(shifts[k], k + 2 == shifts.size() ? 0.875f : shifts[k + 1] + 0.875f);
+    shifts[1] = std::min(shifts[1], 0.875f);
+    if (shifts.size() > 2) shifts[shifts.size() - 2] = std::max(shifts[shifts.size() - 2], -0.875f);
+    return shifts;
+}
+
+TEST_CASE("relax: pixels of a tile's sides stay where they are put, and no triangle folds") {
+    std::mt19937 random(5);
+    for (const Kind kind : kAllKinds)
+        for (const auto& [w, h] : {std::pair{33, 26}, {70, 21}, {2, 30}, {3, 3}, {40, 2}}) {
+            INFO(name_of(kind) << " " << w << " x " << h);
+            Scene s = scene(sample_feature(kind, w, h), std::max(4, w * h / 20));
+            TileSides sides;
+            for (Side* side : {&sides.top, &sides.bottom}) side->shifts = random_shifts(w, random);
+            for (Side* side : {&sides.left, &sides.right}) side->shifts = random_shifts(h, random);
+            place_sides(s.pixels, sides, s.fields, s.neighbors);
+            const auto check = [&] {
+                for (int x = 0; x < w; ++x) {
+                    CHECK(s.pixels.dx[s.pixels.index(x, 0)] == sides.top.shifts[as_index(x)]);
+                    CHECK(s.pixels.dx[s.pixels.index(x, h - 1)] == sides.bottom.shifts[as_index(x)]);
+                }
+                for (int y = 0; y < h; ++y) {
+                    CHECK(s.pixels.dy[s.pixels.index(0, y)] == sides.left.shifts[as_index(y)]);
+                    CHECK(s.pixels.dy[s.pixels.index(w - 1, y)] == sides.right.shifts[as_index(y)]);
+                }
+                // In a corner an eighth of a pixel each way may be left.
+                CHECK(least_area2(s.pixels, kUsualSteps) >= kUsualSteps * kUsualSteps / 64);
+                check_border(s.pixels);
+                check_faces(s);
+            };
+            check();
+            relax(s, 5, 6);
+            check();
         }
 }
 
