@@ -4,6 +4,7 @@
 //     node web/build.mjs studio OUT       the page, as static files in OUT
 //     node web/build.mjs decoder OUT      imgm.min.js, the decoder of coded pictures
 //     node web/build.mjs placeholders OUT the page of placeholders; imgmesh-encode of build/release makes them
+//     node web/build.mjs tiles OUT        the viewer of tile sets, as static files in OUT
 //     node web/build.mjs check            only checks the types
 import { execFileSync } from "node:child_process";
 import { copyFileSync, cpSync, existsSync, mkdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
@@ -31,12 +32,17 @@ function copyDraco(folder) {
     copyFileSync(join(web, "node_modules/draco3d", name), join(folder, name));
 }
 
-// What the files contain of others, who want their notices kept. draco3d has the licence of imgmesh itself.
-function writeNotices(folder) {
-  const debian = ["emscripten", "libeigen3-dev", "libimath-dev", "libtinygltf-dev", "nlohmann-json3-dev"];
+// What the files contain of others, who want their notices kept. Draco has the licence of imgmesh itself.
+const kEngineNotices = {
+  packages: ["fflate", "@noble/hashes"],
+  debian: ["emscripten", "libeigen3-dev", "libimath-dev", "libtinygltf-dev", "nlohmann-json3-dev"],
+};
+const kTilesNotices = { packages: ["three", "3d-tiles-renderer"], debian: [] };
+
+function writeNotices(folder, { packages, debian }) {
   const files = [
-    ["imgmesh and draco3d", join(root, "LICENSE")],
-    ...["fflate", "@noble/hashes"].map((name) => [name, join(web, "node_modules", name, "LICENSE")]),
+    ["imgmesh and Draco", join(root, "LICENSE")],
+    ...packages.map((name) => [name, join(web, "node_modules", name, "LICENSE")]),
     ...debian.map((name) => [name, join("/usr/share/doc", name, "copyright")]),
   ].filter(([, file]) => existsSync(file));
   const text = files.map(([name, file]) => `==== ${name} ====\n\n${readFileSync(file, "utf8").trim()}\n`).join("\n\n");
@@ -63,7 +69,7 @@ function buildPackage() {
   copyFileSync(join(folder, "src/engine.d.mts"), join(dist, "engine.d.mts"));
   for (const name of ["engine.mjs", "engine.wasm"]) copyFileSync(join(engine, name), join(dist, name));
   copyDraco(dist);
-  writeNotices(dist);
+  writeNotices(dist, kEngineNotices);
   copyFileSync(join(root, "LICENSE"), join(folder, "LICENSE"));
 }
 
@@ -84,13 +90,12 @@ const noNode = {
   },
 };
 
-async function buildStudio(out) {
-  checkEngine();
-  check();
-  const studio = join(web, "studio"), assets = join(out, "assets");
+/** Joins a page's scripts, by the names that they get, and its styles into OUT/assets, and copies what stays as it is. */
+async function buildPage(page, entryPoints, out, plugins = []) {
+  const folder = join(web, page), assets = join(out, "assets");
   mkdirSync(assets, { recursive: true });
   await esbuild.build({
-    entryPoints: { main: join(studio, "src/main.ts"), worker: join(studio, "src/worker/worker.ts") },
+    entryPoints: Object.fromEntries(Object.entries(entryPoints).map(([name, file]) => [name, join(folder, file)])),
     outdir: assets,
     bundle: true,
     format: "esm",
@@ -99,20 +104,37 @@ async function buildStudio(out) {
     sourcemap: process.env.IMGMESH_SOURCEMAP === "1",
     legalComments: "none",
     tsconfig: join(web, "tsconfig.json"),
-    plugins: [findEngine, noNode],
+    plugins,
     logLevel: "warning",
   });
   await esbuild.build({
-    entryPoints: { style: join(studio, "styles/main.css") },
+    entryPoints: { style: join(folder, "styles/main.css") },
     outdir: assets,
     bundle: true,
     minify: true,
     logLevel: "warning",
   });
+  cpSync(join(folder, "static"), out, { recursive: true });
+  return assets;
+}
+
+async function buildStudio(out) {
+  checkEngine();
+  check();
+  const assets = await buildPage("studio", { main: "src/main.ts", worker: "src/worker/worker.ts" }, out, [findEngine, noNode]);
   copyFileSync(join(engine, "engine.wasm"), join(assets, "engine.wasm"));
   copyDraco(assets);
-  writeNotices(out);
-  cpSync(join(studio, "static"), out, { recursive: true });
+  writeNotices(out, kEngineNotices);
+}
+
+// The viewer needs no engine: Draco's decoder comes with three.js.
+async function buildTiles(out) {
+  check();
+  const assets = await buildPage("tiles", { main: "src/main.ts" }, out);
+  const draco = join(web, "node_modules/three/examples/jsm/libs/draco/gltf");
+  for (const name of ["draco_wasm_wrapper.js", "draco_decoder.wasm"]) copyFileSync(join(draco, name), join(assets, name));
+  copyFileSync(join(web, "studio/static/assets/icon.svg"), join(assets, "icon.svg"));
+  writeNotices(out, kTilesNotices);
 }
 
 // Names that end in _ are the decoder's own; `let` is shorter than `const`.
@@ -150,4 +172,5 @@ else if (what === "package") buildPackage();
 else if (what === "studio" && out) await buildStudio(resolve(out));
 else if (what === "decoder" && out) await buildDecoder(resolve(out));
 else if (what === "placeholders" && out) await buildPlaceholders(resolve(out));
-else fail("expected one of: check, package, studio OUT, decoder OUT, placeholders OUT");
+else if (what === "tiles" && out) await buildTiles(resolve(out));
+else fail("expected one of: check, package, studio OUT, decoder OUT, placeholders OUT, tiles OUT");
