@@ -20,25 +20,12 @@ std::vector<std::uint8_t> read_bytes(const std::string& path, const ImageLimits&
     return read_file(path, std::min(kMaxFileBytes, most));
 }
 
-// The limits for a file of so many bytes; of those, max_pixels_per_byte is 0 where it does not matter.
-ImageLimits limits_for(ImageLimits limits, std::size_t bytes) {
-    constexpr std::int64_t kAlways = std::int64_t{1} << 22, kMostBytes = std::int64_t{1} << 30;
-    const std::int64_t per_byte = std::clamp<std::int64_t>(limits.max_pixels_per_byte, 0, 1 << 20);
-    const std::int64_t most =
-        std::max(kAlways, per_byte * std::min(static_cast<std::int64_t>(bytes), kMostBytes));
-    if (per_byte == 0 || most >= limits.max_pixels)
-        limits.max_pixels_per_byte = 0;
-    else
-        limits.max_pixels = most;
-    return limits;
-}
-
 }  // namespace
 
 DecodedPicture decode_picture(const std::string& path, std::span<std::uint8_t> bytes,
                               const ReadImageOptions& options) {
     ReadImageOptions within = options;
-    within.limits = limits_for(options.limits, bytes.size());
+    within.limits = limits_for_bytes(options.limits, bytes.size());
     const PictureFile file{path, bytes, probe_picture(path, bytes), within};
     switch (file.claim.format) {
         case PictureFormat::kExr:

@@ -55,6 +55,19 @@ void check_size(const std::string& path, std::int64_t width, std::int64_t height
                       rounded(static_cast<double>(limits.max_memory)), " may be taken"));
 }
 
+ImageLimits limits_for_bytes(ImageLimits limits, std::uint64_t bytes) {
+    constexpr std::int64_t kAlways = std::int64_t{1} << 22;
+    constexpr std::uint64_t kMostBytes = std::uint64_t{1} << 30;
+    const std::int64_t per_byte = std::clamp<std::int64_t>(limits.max_pixels_per_byte, 0, 1 << 20);
+    const std::int64_t most =
+        std::max(kAlways, per_byte * static_cast<std::int64_t>(std::min(bytes, kMostBytes)));
+    if (per_byte == 0 || most >= limits.max_pixels)
+        limits.max_pixels_per_byte = 0;
+    else
+        limits.max_pixels = most;
+    return limits;
+}
+
 void check_block_size(const std::string& path, std::int64_t width, std::int64_t height, std::int64_t channels,
                       ImageLimits limits) {
     limits.work_bytes = 0;

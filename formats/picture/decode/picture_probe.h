@@ -29,6 +29,10 @@ PictureClaim probe_picture(const std::string& path, std::span<const std::uint8_t
 void check_size(const std::string& path, std::int64_t width, std::int64_t height, std::int64_t channels,
                 const ImageLimits& limits);
 
+/// Returns the limits for a file of so many bytes. Of those, max_pixels_per_byte is 0 where it does not
+/// matter.
+ImageLimits limits_for_bytes(ImageLimits limits, std::uint64_t bytes);
+
 /// check_size() of a tile, with which the caller does no work.
 void check_block_size(const std::string& path, std::int64_t width, std::int64_t height, std::int64_t channels,
                       ImageLimits limits);

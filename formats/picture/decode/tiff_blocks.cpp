@@ -1,4 +1,4 @@
-// Reads the strips or tiles of a TIFF, each once, into the samples of the whole image.
+// Reads strips or tiles of a TIFF, each once, into the samples of an area.
 #include <algorithm>
 
 #include "formats/picture/decode/tiff_samples.h"
@@ -14,28 +14,44 @@ std::int64_t rounded_up(std::int64_t n, std::int64_t unit) {
     return (n + unit - 1) / unit;
 }
 
-// A strip or a tile: the pixels [x, x + columns) x [y, y + rows) of the image.
+// A strip or a tile. Its first pixel is (x, y) of the image, and it has so many rows in the file.
 struct Block {
     std::uint32_t index;
-    std::int64_t x, y, columns, rows;
+    std::int64_t x, y, rows;
     int sample;  ///< the first
 };
 
+// Calls use(block) for those that the area touches. They are counted along rows, plane after plane.
+template <typename Use>
+void for_blocks(const TiffLayout& layout, const PixelRect& area, const Use& use) {
+    const std::int64_t wide = layout.block_width, high = layout.block_height;
+    for (int plane = 0; plane < (layout.planar ? layout.samples : 1); ++plane)
+        for (std::int64_t row = area.top / high; row * high < area.bottom; ++row)
+            for (std::int64_t column = area.left / wide; column * wide < area.right; ++column) {
+                const std::int64_t index =
+                    (plane * layout.blocks_down() + row) * layout.blocks_across() + column;
+                const std::int64_t rows = layout.tiled ? high : std::min(high, layout.height - row * high);
+                use(Block{static_cast<std::uint32_t>(index), column * wide, row * high, rows, plane});
+            }
+}
+
 class BlockReader {
   public:
-    BlockReader(TiffFile& file, const TiffLayout& layout, std::optional<float> fill, std::vector<float>& out)
-        : file_(file), layout_(layout), fill_(fill), out_(out) {}
+    BlockReader(TiffFile& file, const TiffLayout& layout, const PixelRect& area, std::optional<float> fill,
+                std::vector<float>& out)
+        : file_(file), layout_(layout), area_(area), fill_(fill), out_(out) {}
 
     void read(const Block& block) {
-        std::uint64_t stored_rows = as_size(layout_.tiled ? layout_.block_height : block.rows);
-        const std::size_t wanted = block_bytes(stored_rows);
+        const std::int64_t first = std::max<std::int64_t>(area_.top - block.y, 0),
+                           end = std::min(area_.bottom - block.y, block.rows);
         if (is_left_out(block.index)) {
-            for (std::int64_t y = 0; y < block.rows; ++y) fill_row(block, y);
+            for (std::int64_t y = first; y < end; ++y) fill_row(block, y);
             return;
         }
+        const std::size_t wanted = block_bytes(as_size(block.rows));
         const std::uint64_t theirs =
             layout_.tiled ? TIFFTileSize64(file_.get())
-                          : TIFFVStripSize64(file_.get(), static_cast<std::uint32_t>(stored_rows));
+                          : TIFFVStripSize64(file_.get(), static_cast<std::uint32_t>(block.rows));
         if (theirs != wanted)
             throw file_.broken(
                 cat("the TIFF's block ", block.index, " has ", theirs, " bytes, expected ", wanted));
@@ -45,7 +61,7 @@ class BlockReader {
                                  ? TIFFReadEncodedTile(file_.get(), block.index, buffer_.data(), size)
                                  : TIFFReadEncodedStrip(file_.get(), block.index, buffer_.data(), size);
         if (got != size) throw file_.broken(cat("the TIFF is broken or truncated in block ", block.index));
-        for (std::int64_t y = 0; y < block.rows; ++y)
+        for (std::int64_t y = first; y < end; ++y)
             is_subsampled() ? unpack_chroma_row(block, y) : unpack_row(block, y);
     }
 
@@ -71,29 +87,48 @@ class BlockReader {
                TIFFGetStrileByteCount(file_.get(), index) == 0;
     }
 
+    // The columns of the block, from its left, that the area has.
+    std::int64_t first_column(const Block& block) const {
+        return std::max<std::int64_t>(area_.left - block.x, 0);
+    }
+    std::int64_t columns(const Block& block) const {
+        return std::min(area_.right - block.x, layout_.block_width) - first_column(block);
+    }
+
     float* place(const Block& block, std::int64_t row) {
-        const std::int64_t pixel = (block.y + row) * layout_.width + block.x;
-        return out_.data() + as_size(pixel * layout_.samples + block.sample);
+        const std::int64_t x = block.x + first_column(block) - area_.left, y = block.y + row - area_.top;
+        return out_.data() + as_size((y * area_.width() + x) * layout_.samples + block.sample);
     }
 
     void fill_row(const Block& block, std::int64_t row) {
         float* out = place(block, row);
-        for (std::int64_t x = 0; x < block.columns; ++x, out += layout_.samples)
+        for (std::int64_t x = 0; x < columns(block); ++x, out += layout_.samples)
             std::fill_n(out, samples_of_block(), *fill_);
     }
 
+    // Samples of few bits begin inside of a byte: such rows are unpacked from their first.
     void unpack_row(const Block& block, std::int64_t row) {
-        const std::span<const std::uint8_t> bytes(buffer_.data() + as_size(row) * row_bytes(), row_bytes());
-        const auto count = as_size(block.columns * samples_of_block());
-        unpack_samples(bytes, count, layout_.kind, layout_.bits, place(block, row),
-                       layout_.planar ? as_size(layout_.samples) : 1);
+        std::span<const std::uint8_t> bytes(buffer_.data() + as_size(row) * row_bytes(), row_bytes());
+        const std::int64_t skipped = first_column(block) * samples_of_block(),
+                           count = columns(block) * samples_of_block();
+        const std::size_t step = layout_.planar ? as_size(layout_.samples) : 1;
+        if (skipped * layout_.bits % 8 == 0) {
+            bytes = bytes.subspan(as_size(skipped * layout_.bits / 8));
+            unpack_samples(bytes, as_size(count), layout_.kind, layout_.bits, place(block, row), step);
+            return;
+        }
+        row_.resize(as_size(skipped + count));
+        unpack_samples(bytes, row_.size(), layout_.kind, layout_.bits, row_.data(), 1);
+        float* out = place(block, row);
+        for (std::int64_t i = skipped; i < skipped + count; ++i, out += step) *out = row_[as_size(i)];
     }
 
     void unpack_chroma_row(const Block& block, std::int64_t row) {
         const int wide = layout_.chroma_x, high = layout_.chroma_y;
         const std::uint8_t* groups = buffer_.data() + as_size(row / high) * group_row_bytes();
         float* out = place(block, row);
-        for (std::int64_t x = 0; x < block.columns; ++x, out += layout_.samples) {
+        const std::int64_t first = first_column(block);
+        for (std::int64_t x = first; x < first + columns(block); ++x, out += layout_.samples) {
             const std::uint8_t* group = groups + as_size(x / wide) * group_bytes();
             out[0] = group[as_size((row % high) * wide + x % wide)];
             out[1] = group[wide * high];
@@ -103,46 +138,50 @@ class BlockReader {
 
     TiffFile& file_;
     const TiffLayout& layout_;
+    const PixelRect area_;
     std::optional<float> fill_;
     std::vector<float>& out_;
     std::vector<std::uint8_t> buffer_;
+    std::vector<float> row_;
 };
 
-// Every block is where the file has bytes, so that none of the pixels' memory is taken for a file without.
-void check_blocks(const TiffFile& file, const TiffLayout& layout, bool may_leave_out) {
-    const std::int64_t planes = layout.planar ? layout.samples : 1;
-    const std::int64_t blocks = planes * rounded_up(layout.width, layout.block_width) *
-                                rounded_up(layout.height, layout.block_height);
-    const std::uint32_t count = layout.tiled ? TIFFNumberOfTiles(file.get()) : TIFFNumberOfStrips(file.get());
-    if (count != blocks)
-        throw file.broken(cat("the TIFF has ", count, " strips or tiles, expected ", blocks));
-    const std::uint64_t size = file.bytes().size();
+// The blocks are where the file has bytes, so that no memory is taken for pixels of a file without.
+void check_blocks(const TiffFile& file, const TiffLayout& layout, const PixelRect& area, bool may_leave_out) {
     // Old-style JPEG is one stream, whatever the strips are.
     if (file.tag<std::uint16_t>(TIFFTAG_COMPRESSION, COMPRESSION_NONE) == COMPRESSION_OJPEG) return;
-    for (std::uint32_t i = 0; i < count; ++i) {
-        const std::uint64_t at = TIFFGetStrileOffset(file.get(), i),
-                            bytes = TIFFGetStrileByteCount(file.get(), i);
-        if (at == 0 && bytes == 0 && may_leave_out) continue;
+    for_blocks(layout, area, [&](const Block& block) {
+        int no_place = 0, no_length = 0;
+        const std::uint64_t at = TIFFGetStrileOffsetWithErr(file.get(), block.index, &no_place),
+                            bytes = TIFFGetStrileByteCountWithErr(file.get(), block.index, &no_length),
+                            size = file.size();
+        if (no_place || no_length)
+            throw file.broken(
+                cat("the TIFF is broken or truncated: no place is given for block ", block.index));
+        if (at == 0 && bytes == 0 && may_leave_out) return;
         if (bytes == 0 || at >= size || bytes > size - at)
-            throw file.broken(cat("the TIFF is broken or truncated: block ", i, " has ", bytes, " bytes at ",
-                                  at, " in a file of ", size));
-    }
+            throw file.broken(cat("the TIFF is broken or truncated: block ", block.index, " has ", bytes,
+                                  " bytes at ", at, " in a file of ", size));
+    });
 }
 
 }  // namespace
 
-std::vector<float> read_samples(TiffFile& file, const TiffLayout& layout, std::optional<float> fill) {
-    check_blocks(file, layout, fill.has_value());
+void check_block_count(const TiffFile& file, const TiffLayout& layout) {
+    const std::int64_t planes = layout.planar ? layout.samples : 1,
+                       blocks = planes * layout.blocks_across() * layout.blocks_down();
+    const std::uint32_t count = layout.tiled ? TIFFNumberOfTiles(file.get()) : TIFFNumberOfStrips(file.get());
+    if (count != blocks)
+        throw file.broken(cat("the TIFF has ", count, " strips or tiles, expected ", blocks));
+}
+
+std::vector<float> read_samples(TiffFile& file, const TiffLayout& layout, const PixelRect& area,
+                                std::optional<float> fill) {
+    check_blocks(file, layout, area, fill.has_value());
     std::vector<float> out =
-        parallel_vector<float>(as_size(layout.width) * as_size(layout.height) * as_size(layout.samples));
-    BlockReader reader(file, layout, fill, out);
+        parallel_vector<float>(as_size(area.width()) * as_size(area.height()) * as_size(layout.samples));
+    BlockReader reader(file, layout, area, fill, out);
     file.forget_messages();
-    std::uint32_t index = 0;  // blocks are counted along rows, plane after plane
-    for (int sample = 0; sample < (layout.planar ? layout.samples : 1); ++sample)
-        for (std::int64_t y = 0; y < layout.height; y += layout.block_height)
-            for (std::int64_t x = 0; x < layout.width; x += layout.block_width)
-                reader.read({index++, x, y, std::min(layout.block_width, layout.width - x),
-                             std::min(layout.block_height, layout.height - y), sample});
+    for_blocks(layout, area, [&](const Block& block) { reader.read(block); });
     // Some codecs only warn of pixels that are missing, and make them up.
     for (const std::string& warning : file.warnings())
         if (warning.find("remature") != std::string::npos)

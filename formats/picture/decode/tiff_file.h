@@ -1,4 +1,4 @@
-// A TIFF file in memory, opened by libtiff.
+// A TIFF file in memory or on disk, opened by libtiff.
 #pragma once
 
 #include <tiffio.h>
@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "formats/files/random_file.h"
 #include "libcore/base/error.h"
 
 namespace imgmesh {
@@ -18,13 +19,17 @@ class TiffFile {
   public:
     /// Reads the first directory. `path` and `bytes` must outlive the file. Throws Error(kBadFile).
     TiffFile(const std::string& path, std::span<const std::uint8_t> bytes);
+    /// The same of a file on disk. Of its table of blocks only what is asked for is read.
+    explicit TiffFile(const RandomFile& file);
     TiffFile(const TiffFile&) = delete;
     TiffFile& operator=(const TiffFile&) = delete;
     ~TiffFile() = default;
 
     TIFF* get() const { return tiff_.get(); }
     const std::string& path() const { return path_; }
-    std::span<const std::uint8_t> bytes() const { return bytes_; }
+    std::uint64_t size() const { return file_ ? file_->size() : bytes_.size(); }  ///< bytes
+    /// Returns the bytes from `at` on, at most `most`.
+    std::vector<std::uint8_t> bytes_at(std::uint64_t at, std::size_t most) const;
 
     /// The tag's value; `otherwise` if the file does not have it.
     template <typename Value>
@@ -52,8 +57,12 @@ class TiffFile {
     };
     struct Callbacks;
 
+    void open(const char* mode);
+    std::size_t read_at(std::uint64_t at, std::span<std::uint8_t> out) const;
+
     const std::string& path_;
-    std::span<const std::uint8_t> bytes_;
+    std::span<const std::uint8_t> bytes_ = {};
+    const RandomFile* file_ = nullptr;
     std::uint64_t at_ = 0;
     std::string error_;  ///< the first
     std::vector<std::string> warnings_;

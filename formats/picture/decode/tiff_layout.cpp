@@ -62,10 +62,10 @@ std::string named(std::uint16_t number, std::span<const Named> names) {
 bool is_old_thumbnail(const TiffFile& file) {
     const bool big = TIFFIsBigTIFF(file.get()) != 0;
     const std::uint64_t start = TIFFCurrentDirOffset(file.get());
-    if (start >= file.bytes().size()) return false;
     const bool big_endian = TIFFIsBigEndian(file.get()) != 0;
-    const ByteReader in(file.bytes().subspan(start), big_endian ? ByteOrder::kBig : ByteOrder::kLittle);
-    constexpr std::size_t kMostTags = 65535;
+    constexpr std::size_t kMostTags = 65535, kTagBytes = 20, kCountBytes = 8;
+    const std::vector<std::uint8_t> bytes = file.bytes_at(start, kCountBytes + kMostTags * kTagBytes);
+    const ByteReader in(bytes, big_endian ? ByteOrder::kBig : ByteOrder::kLittle);
     const std::size_t count = big ? in.number_at(big_endian ? 4 : 0, 4) : in.number_at(0, 2);
     for (std::size_t i = 0; i < std::min(count, kMostTags); ++i) {
         const std::size_t entry = big ? 8 + 20 * i : 2 + 12 * i;
@@ -223,7 +223,7 @@ bool choose_page(TiffFile& file) {
     return true;
 }
 
-TiffLayout tiff_layout(const TiffFile& file, const ImageLimits& limits) {
+TiffLayout tiff_layout(const TiffFile& file, const ImageLimits& limits, const ImageLimits& tile_limits) {
     TiffLayout layout;
     layout.width = file.tag<std::uint32_t>(TIFFTAG_IMAGEWIDTH, 0);
     layout.height = file.tag<std::uint32_t>(TIFFTAG_IMAGELENGTH, 0);
@@ -258,7 +258,7 @@ TiffLayout tiff_layout(const TiffFile& file, const ImageLimits& limits) {
     check_photometric(file, layout);
     set_chroma(file, layout, compression);
     set_log_luv(file, layout, compression);
-    set_blocks(file, layout, limits);
+    set_blocks(file, layout, tile_limits);
     return layout;
 }
 

@@ -24,6 +24,8 @@ struct TiffLayout {
     std::vector<std::uint16_t> extras;  ///< EXTRASAMPLE_*, of the last samples of a pixel
 
     int color_samples() const { return samples - static_cast<int>(extras.size()); }
+    std::int64_t blocks_across() const { return (width + block_width - 1) / block_width; }
+    std::int64_t blocks_down() const { return (height + block_height - 1) / block_height; }
 };
 
 /// Makes the first full-size page the current one: not one that is flagged as a thumbnail or as a mask,
@@ -31,8 +33,8 @@ struct TiffLayout {
 bool choose_page(TiffFile& file);
 
 /// Returns the layout of the current page, and sets the codecs so that JPEG arrives as RGB and LogLuv as
-/// floats. Throws Error: kBadFile for sizes over the limits, kUnsupported for kinds of pixels and
-/// compressions that are not read. No memory is taken for pixels.
-TiffLayout tiff_layout(const TiffFile& file, const ImageLimits& limits);
+/// floats. Throws Error: kBadFile for sizes over the limits, and of a tile over its own, kUnsupported for
+/// kinds of pixels and compressions that are not read. No memory is taken for pixels.
+TiffLayout tiff_layout(const TiffFile& file, const ImageLimits& limits, const ImageLimits& tile_limits);
 
 }  // namespace imgmesh

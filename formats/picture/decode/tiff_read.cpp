@@ -6,6 +6,7 @@
 
 #include "formats/picture/decode/nodata.h"
 #include "formats/picture/decode/tiff_color.h"
+#include "formats/picture/decode/tiff_picture.h"
 #include "formats/picture/decode/tiff_samples.h"
 
 namespace imgmesh {
@@ -76,34 +77,55 @@ Mask take_nodata_out(std::vector<float>& samples, const TiffLayout& layout, doub
 
 }  // namespace
 
-DecodedPicture decode_tiff(const PictureFile& picture) {
-    TiffFile file(picture.path, picture.bytes);
-    DecodedPicture out;
+TiffPicture::TiffPicture(TiffFile& file, const ReadImageOptions& options, const ImageLimits& limits)
+    : file_(file), options_(options) {
     const bool thumbnail = choose_page(file);
     if (thumbnail && TIFFCurrentDirectory(file.get()) == 0)
-        out.warnings.emplace_back(
+        warnings_.emplace_back(
             "every image of the TIFF is flagged as a thumbnail or a mask; the first is read");
-    const TiffLayout layout = tiff_layout(file, picture.options.limits);
-    const ReadImageOptions& options = picture.options;
-    const std::optional<double> of_file = nodata_of(file);
+    layout_ = tiff_layout(file, limits, options.limits);
+    check_block_count(file, layout_);
+    nodata_ = nodata_of(file);
+}
+
+DecodedPicture TiffPicture::read(const PixelRect& area) {
     std::optional<float> fill;  // GDAL leaves blocks out that hold nothing else
-    if (of_file) fill = static_cast<float>(*of_file);
-    std::vector<float> samples = read_samples(file, layout, fill);
-    const std::optional<double> nodata = options.nodata || !options.file_nodata ? options.nodata : of_file;
+    if (nodata_) fill = static_cast<float>(*nodata_);
+    return picture(area.width(), area.height(), read_samples(file_, layout_, area, fill));
+}
+
+DecodedPicture TiffPicture::zero_pixel() {
+    return picture(1, 1, std::vector<float>(static_cast<std::size_t>(layout_.samples)));
+}
+
+DecodedPicture TiffPicture::picture(int width, int height, std::vector<float> samples) {
+    TiffLayout layout = layout_;  // of what has been read
+    layout.width = width;
+    layout.height = height;
+    DecodedPicture out;
+    out.warnings = warnings_;
+    const std::optional<double> nodata = options_.nodata || !options_.file_nodata ? options_.nodata : nodata_;
     if (nodata) out.data = take_nodata_out(samples, layout, *nodata);
     out.knows_nodata = true;
-    if (options.values) out.largest_code = 1;
-    if (options.values)
+    if (options_.values) out.largest_code = 1;
+    if (options_.values)
         values_from_samples(layout, std::move(samples), out);
     else
-        image_from_samples(file, layout, std::move(samples), out);
-    if (!options.values && layout.kind == TiffSamples::kSigned)
+        image_from_samples(file_, layout, std::move(samples), out);
+    if (!options_.values && layout.kind == TiffSamples::kSigned)
         out.warnings.push_back(cat("the samples are signed integers, which are values rather than colours; ",
                                    "as colours, the largest, ", std::ldexp(1.0, layout.bits - 1) - 1,
                                    ", is 1"));
-    out.orientation = file.defaulted_tag<std::uint16_t>(TIFFTAG_ORIENTATION, ORIENTATION_TOPLEFT);
-    if (!options.values) state_color(file, layout, out);
+    out.orientation = file_.defaulted_tag<std::uint16_t>(TIFFTAG_ORIENTATION, ORIENTATION_TOPLEFT);
+    if (!options_.values) state_color(file_, layout, out);
     return out;
+}
+
+DecodedPicture decode_tiff(const PictureFile& picture) {
+    TiffFile file(picture.path, picture.bytes);
+    TiffPicture tiff(file, picture.options, picture.options.limits);
+    const TiffLayout& layout = tiff.layout();
+    return tiff.read({0, 0, static_cast<int>(layout.width), static_cast<int>(layout.height)});
 }
 
 }  // namespace imgmesh

@@ -17,9 +17,14 @@ namespace imgmesh {
 void unpack_samples(std::span<const std::uint8_t> row, std::size_t count, TiffSamples kind, int bits,
                     float* out, std::size_t step);
 
-/// Returns all samples of the current page, interleaved, as their own numbers; the chroma of subsampled YCbCr
-/// is repeated. Blocks that the file leaves out (offset and length 0) are `fill`, or an error without one.
-/// Throws Error(kBadFile) for blocks that are broken or not complete.
-std::vector<float> read_samples(TiffFile& file, const TiffLayout& layout, std::optional<float> fill);
+/// Throws Error(kBadFile) if the current page has not the blocks that its size asks for.
+void check_block_count(const TiffFile& file, const TiffLayout& layout);
+
+/// Returns the samples of the current page in `area`, interleaved, as their own numbers; the chroma of
+/// subsampled YCbCr is repeated. Only blocks that the area touches are read, each once. Blocks that the file
+/// leaves out (offset and length 0) are `fill`, or an error without one. Throws Error(kBadFile) for blocks
+/// that are broken or not complete; for blocks outside of the file before memory is taken.
+std::vector<float> read_samples(TiffFile& file, const TiffLayout& layout, const PixelRect& area,
+                                std::optional<float> fill);
 
 }  // namespace imgmesh

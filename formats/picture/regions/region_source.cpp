@@ -3,9 +3,10 @@
 #include <algorithm>
 #include <mutex>
 
+#include "formats/files/random_file.h"
 #include "formats/picture/color/profile_convert.h"
 #include "formats/picture/decode/picture_probe.h"
-#include "formats/picture/regions/region_reader.h"
+#include "formats/picture/regions/decoded_regions.h"
 #include "libcore/base/error.h"
 
 namespace imgmesh {
@@ -17,7 +18,13 @@ std::unique_ptr<RegionReader> open_regions(const std::string& path, const ReadIm
                     cat(path,
                         ": samples that are not finite cannot get the value of the nearest pixel where "
                         "a picture is read by parts, expected that they are refused or become 0"));
-    return open_whole(path, options);
+    constexpr std::size_t kStart = std::size_t{1} << 16;  // far more than signatures need
+    switch (probe_picture(path, RandomFile(path).bytes_at(0, kStart)).format) {
+        case PictureFormat::kTiff:
+            return open_tiff_regions(path, options);
+        default:
+            return open_whole(path, options);
+    }
 }
 
 std::string span_text(const PixelRect& r) {

@@ -1,0 +1,37 @@
+// The image of a TIFF file, whole or in parts. Internal to this room.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "formats/picture/decode/picture_decoders.h"
+#include "formats/picture/decode/tiff_layout.h"
+
+namespace imgmesh {
+
+/// The first full-size page of a file. Both that and the options must outlive it. One thread at a time.
+class TiffPicture {
+  public:
+    /// `limits` are those of the image; of one tile those of the options count. Throws Error as decode_tiff()
+    /// does; no block has been looked at.
+    TiffPicture(TiffFile& file, const ReadImageOptions& options, const ImageLimits& limits);
+
+    const TiffLayout& layout() const { return layout_; }
+    /// Reads the pixels of `area`, as stored, of the blocks that it touches. Throws Error(kBadFile) for
+    /// blocks that are broken or truncated.
+    DecodedPicture read(const PixelRect& area);
+    /// What read() gives for a pixel of zeros, without looking at the file's: all that pixels do not change.
+    DecodedPicture zero_pixel();
+
+  private:
+    DecodedPicture picture(int width, int height, std::vector<float> samples);
+
+    TiffFile& file_;
+    const ReadImageOptions& options_;
+    TiffLayout layout_;
+    std::optional<double> nodata_;  ///< as the file names it
+    std::vector<std::string> warnings_;
+};
+
+}  // namespace imgmesh

@@ -1,0 +1,45 @@
+// Regions of a picture whose file has them in blocks. Internal to this room.
+#pragma once
+
+#include <functional>
+#include <memory>
+
+#include "formats/picture/decode/picture_decoders.h"
+#include "formats/picture/regions/region_reader.h"
+
+namespace imgmesh {
+
+/// Decodes parts of one file. One thread at a time.
+class RegionDecoder {
+  public:
+    RegionDecoder() = default;
+    virtual ~RegionDecoder() = default;
+    RegionDecoder(const RegionDecoder&) = delete;
+    RegionDecoder& operator=(const RegionDecoder&) = delete;
+
+    /// The pixels of `stored`, a rectangle of the picture as it is stored.
+    virtual DecodedPicture decode(const PixelRect& stored) = 0;
+};
+
+/// What the header of a picture says.
+struct PictureHeader {
+    int width = 0, height = 0;  ///< as stored
+    int block_width = 0, block_height = 0;
+    DecodedPicture zero_pixel;  ///< a picture of one pixel of zeros: what does not depend on pixels
+    RegionAccess access = RegionAccess::kDirect;
+    std::string why;                 ///< not kDirect: RegionFacts::why
+    std::uint64_t decode_bytes = 0;  ///< what a decoder takes beside its result, at most
+};
+
+/// The limits of a picture of which only parts are read, from a file of so many bytes.
+ImageLimits source_limits(const ReadImageOptions& options, std::uint64_t file_bytes);
+
+/// `open` makes a decoder for each thread that reads. Without kDirect it is not used: the whole picture is
+/// read when the first region is.
+std::unique_ptr<RegionReader> open_decoded(const std::string& path, const ReadImageOptions& options,
+                                           PictureHeader header,
+                                           std::function<std::unique_ptr<RegionDecoder>()> open);
+
+std::unique_ptr<RegionReader> open_tiff_regions(const std::string& path, const ReadImageOptions& options);
+
+}  // namespace imgmesh

@@ -1,0 +1,64 @@
+// Regions of a TIFF, of the strips or tiles that they touch.
+#include "formats/picture/decode/tiff_picture.h"
+#include "formats/picture/regions/decoded_regions.h"
+
+namespace imgmesh {
+namespace {
+
+// Samples of one block, which is read as a whole: above any tile, and memory for it is little.
+constexpr std::int64_t kMostInBlock = std::int64_t{1} << 26;
+// A square of 1024 pixels reads a thousand rows of strips, so at this width 32 times what it shows, which
+// takes about as long as the work on a hundredth of it.
+constexpr std::int64_t kWidestStrip = 32768;
+
+class TiffDecoder : public RegionDecoder {
+  public:
+    TiffDecoder(const std::string& path, const ReadImageOptions& options)
+        : options_(options),
+          file_(path),
+          tiff_(file_),
+          picture_(tiff_, options_, source_limits(options, file_.size())) {}
+
+    DecodedPicture decode(const PixelRect& stored) override { return picture_.read(stored); }
+
+    PictureHeader header() {
+        const TiffLayout& layout = picture_.layout();
+        PictureHeader out;
+        out.width = static_cast<int>(layout.width);
+        out.height = static_cast<int>(layout.height);
+        out.block_width = static_cast<int>(layout.block_width);
+        out.block_height = static_cast<int>(layout.block_height);
+        out.zero_pixel = picture_.zero_pixel();
+        const std::int64_t samples = layout.block_width * layout.block_height * layout.samples;
+        if (tiff_.tag<std::uint16_t>(TIFFTAG_COMPRESSION, COMPRESSION_NONE) == COMPRESSION_OJPEG)
+            out.why = "it is a TIFF of old-style JPEG, which is one stream";
+        else if (samples > kMostInBlock)
+            out.why =
+                cat("it is a TIFF in blocks of ", layout.block_width, "x", layout.block_height, " pixels");
+        else if (!layout.tiled && layout.width > kWidestStrip)
+            out.why = cat("it is a TIFF in strips of ", layout.width, " pixels");
+        if (!out.why.empty()) out.access = RegionAccess::kSpool;
+        // As packed and unpacked, and places and lengths of all blocks.
+        const auto bytes = static_cast<std::uint64_t>((samples * layout.bits + 7) / 8);
+        const std::int64_t blocks =
+            layout.blocks_across() * layout.blocks_down() * (layout.planar ? layout.samples : 1);
+        out.decode_bytes = 2 * bytes + 16 * static_cast<std::uint64_t>(blocks);
+        return out;
+    }
+
+  private:
+    const ReadImageOptions options_;
+    RandomFile file_;
+    TiffFile tiff_;
+    TiffPicture picture_;
+};
+
+}  // namespace
+
+std::unique_ptr<RegionReader> open_tiff_regions(const std::string& path, const ReadImageOptions& options) {
+    PictureHeader header = TiffDecoder(path, options).header();
+    return open_decoded(path, options, std::move(header),
+                        [path, options] { return std::make_unique<TiffDecoder>(path, options); });
+}
+
+}  // namespace imgmesh
