@@ -4,9 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <random>
 
 #include "libcore/base/parallel.h"
 #include "libcore/mesh/raster.h"
+#include "libcore/mesh/tile_sides.h"
 #include "libcore/metrics/metrics.h"
 #include "libcore/simplify/kernel/mask_boundary.h"
 #include "libcore/simplify/simplify.h"
@@ -91,6 +94,41 @@ void check_covers(const BaseMesh& mesh, const Mask& mask) {
     std::int64_t uncovered = 0;
     for (std::size_t i = 0; i < map.size(); ++i) uncovered += mask.contains(i) && map[i].face == kNone;
     CHECK(uncovered == 0);
+}
+
+using Places = std::vector<std::pair<float, float>>;
+
+Places vertices_on_sides(const BaseMesh& mesh, int width, int height) {
+    Places places;
+    for (const Vec2f& p : mesh.position)
+        if (on_side(p, width, height)) places.emplace_back(p.x(), p.y());
+    std::sort(places.begin(), places.end());
+    return places;
+}
+
+// Those to be kept, and those where the boundary comes to the side or leaves it.
+Places side_vertices_that_stay(const BaseMesh& dense, const GridMesh& grid) {
+    const int w = grid.feature.width, h = grid.feature.height;
+    const auto straight_on = [](double place, double p, double q, int last) {
+        return place == p && place == q && (place == 0 || place == last);
+    };
+    std::map<std::pair<float, float>, std::vector<Segment>> edges;
+    for (const auto& [p, q] : boundary(dense)) {
+        edges[{static_cast<float>(p.x()), static_cast<float>(p.y())}].emplace_back(p, q);
+        edges[{static_cast<float>(q.x()), static_cast<float>(q.y())}].emplace_back(q, p);
+    }
+    Places places;
+    for (const auto& at : vertices_on_sides(dense, w, h)) {
+        const std::vector<Segment>& two = edges[at];
+        const bool straight =
+            two.size() == 2 && (straight_on(at.first, two[0].second.x(), two[1].second.x(), w - 1) ||
+                                straight_on(at.second, two[0].second.y(), two[1].second.y(), h - 1));
+        const Id pixel =
+            static_cast<Id>(std::floor(at.second)) * as_id(as_index(w)) + static_cast<Id>(at.first);
+        const bool whole = at.first == std::floor(at.first) && at.second == std::floor(at.second);
+        if (!whole || !straight || grid.keeps(pixel)) places.push_back(at);
+    }
+    return places;
 }
 
 }  // namespace
@@ -181,6 +219,39 @@ TEST_CASE("masked images: topology is kept, every pixel stays covered, and the b
                 CHECK(distance_from_to(to, from) <= kBoundaryBand + 1e-4);
             }
         }
+}
+
+// Of a side that the mask cuts all pixels are to be kept; others may go where the boundary runs along the
+// side.
+TEST_CASE("masked images: what is decided of the image's sides is what is left there") {
+    int went = 0;
+    for (std::uint32_t seed = 1; seed <= 150; ++seed) {
+        const Mask mask = random_mask(seed);
+        const int w = mask.width, h = mask.height;
+        if (w < 2 || h < 2) continue;
+        for (const unsigned one_in : {1u, 4u}) {
+            INFO("seed " << seed << ", one in " << one_in);
+            GridMesh grid = masked_grid(mask, kAllKinds[seed % 5]);
+            const BaseMesh dense = dense_mesh(grid);
+            std::mt19937 random(seed);
+            for (Id p = 0; p < mask.size(); ++p) {
+                const Vec2f at(static_cast<float>(grid.feature.x_of(p)),
+                               static_cast<float>(grid.feature.y_of(p)));
+                if (on_side(at, w, h) && mask.contains(p) && random() % one_in == 0)
+                    grid.side_vertices.push_back(p);
+            }
+            if (grid.side_vertices.empty()) continue;
+            const auto stays = side_vertices_that_stay(dense, grid);
+            for (const std::int64_t vertices : {200, 0}) {
+                const BaseMesh mesh = coarse_mesh(grid, vertices);
+                check_topology(mesh, mesh_quality(dense));
+                check_covers(mesh, mask);
+                CHECK((vertices_on_sides(mesh, w, h) == stays));
+            }
+            went += stays != vertices_on_sides(dense, w, h);
+        }
+    }
+    CHECK(went > 50);
 }
 
 TEST_CASE("masked images: masks at random keep topology, pixels and distance") {
