@@ -32,6 +32,7 @@ struct SimplifyResult {
     BaseMesh mesh;               ///< vertices in the order of their pixels; positions on kPositionStep
     double error = 0;            ///< largest total quadric error of a merged vertex so far
     std::int64_t collapses = 0;  ///< so far
+    double increment = 0;        ///< most that a collapse has cost so far, as max_increment has it
 };
 
 /// A collapse that is about to happen: `removed` merges into `kept`, which moves. Vertices are numbered as in

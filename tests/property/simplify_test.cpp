@@ -104,6 +104,39 @@ TEST_CASE("collapse: no vertex costs more than the largest error allowed") {
     }
 }
 
+// One limit for many pictures gives all the same error; a run that passes several of them counts vertices for
+// each. Large enough for tiles.
+TEST_CASE("collapse: a limit on what a merge adds, alone and as one of several of a run") {
+    for (const Kind kind : {Kind::kNoise, Kind::kDisc, Kind::kGradient}) {
+        const GridMesh grid = grid_mesh(sample_feature(kind, 230, 170));
+        const double last = simplify(grid, plain_params(), to_vertices(1500)).increment;
+        const SimplifyTarget targets[] = {
+            {.max_increment = 0.5 * last}, {.max_increment = 0.8 * last}, {.max_increment = last}};
+        const std::vector<SimplifyResult> run = simplify(grid, plain_params(), targets);
+        std::size_t before = grid.vertex_count();
+        for (std::size_t k = 0; k < run.size(); ++k) {
+            INFO(name_of(kind) << " " << k);
+            const SimplifyResult alone = simplify(grid, plain_params(), targets[k]);
+            for (const SimplifyResult& result : {run[k], alone}) {
+                check_sound(result.mesh, {230, 170});
+                CHECK(result.increment <= targets[k].max_increment * (1 + 1e-6));
+            }
+            // Flat parts tie, and then the order decides more.
+            const double within = kind == Kind::kDisc ? 0.03 : 0.005;
+            const auto vertices = static_cast<double>(alone.mesh.vertex_count());
+            CHECK(std::abs(static_cast<double>(run[k].mesh.vertex_count()) - vertices) <=
+                  within * vertices + 4);
+            CHECK(run[k].mesh.vertex_count() < before);
+            before = run[k].mesh.vertex_count();
+        }
+        // The last limit is the one that leaves about so many.
+        CHECK(before > 1200);
+        CHECK(before <= 1600);
+        const SimplifyTarget either{.vertices = 3000, .max_increment = last};
+        CHECK(simplify(grid, plain_params(), either).mesh.vertex_count() == 3000);
+    }
+}
+
 // Large enough for several tiles in each direction, one after the other, and for the whole image after them.
 TEST_CASE("collapse: tiles make a sound mesh, the same every time, with any number of threads") {
     for (const Kind kind : {Kind::kNoise, Kind::kCheckerboard, Kind::kDisc}) {

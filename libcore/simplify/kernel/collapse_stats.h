@@ -14,6 +14,7 @@ struct CollapseStats {
     std::int64_t vertices = 0, faces = 0;
     std::int64_t due = 0;      ///< vertices of sides that were taken away because they must go
     double error = 0;          ///< largest total quadric error of a merged vertex
+    float increment = 0;       ///< largest cost of a merge
     float postponed = kNever;  ///< least cost of the edges that are beyond the threshold
 
     void add(const CollapseStats& other) {
@@ -21,6 +22,7 @@ struct CollapseStats {
         faces += other.faces;
         due += other.due;
         error = std::max(error, other.error);
+        increment = std::max(increment, other.increment);
         postponed = std::min(postponed, other.postponed);
     }
     /// Whether as much is taken away as may be.

@@ -107,9 +107,10 @@ class EdgeCollapser {
             ++stats_.due;
         } else {
             const float total = sum.at(place.x, place.y);
-            if (total > rules_.max_error) return;
+            if (total > rules_.max_error || place.cost > rules_.max_increment) return;
             if (rules_.hooks.before && !may_happen(i, j, sum, place)) return;
             stats_.error = std::max(stats_.error, static_cast<double>(total));
+            stats_.increment = std::max(stats_.increment, place.cost);
             ++stats_.vertices;
             stats_.faces += ring.faces_removed;
         }

@@ -27,6 +27,7 @@ struct SimplifyRules {
     ShapeLimits limits;
     MaskBoundary* boundary = nullptr;  ///< of a masked image
     bool sides_decided = false;  ///< vertices of a side that are no corners go (GridMesh::side_vertices)
+    float max_increment = std::numeric_limits<float>::infinity();
     double max_error = std::numeric_limits<double>::infinity();
 };
 

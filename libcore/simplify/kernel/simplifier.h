@@ -8,6 +8,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <optional>
 #include <vector>
@@ -81,6 +82,10 @@ class Simplifier : public AnySimplifier {
                 continue;
             }
             if (done() || (part.vertices == 0 && part.postponed == kNever)) break;
+            if (threshold_ > rules_.max_increment) {
+                if (part.vertices == 0) break;
+                continue;  // until no edge below the limit is left
+            }
             // Where nothing has changed, windows below the cheapest edge would stay empty. The first window
             // of an image with flat parts is far below what the rest costs.
             do threshold_ *= kWindow;
@@ -89,7 +94,7 @@ class Simplifier : public AnySimplifier {
     }
 
     SimplifyResult snapshot() const {
-        SimplifyResult result{{}, error_, dense_vertices_ - vertices_};
+        SimplifyResult result{{}, error_, dense_vertices_ - vertices_, increment_};
         std::vector<Id> order = live_list(mesh_.rings);
         if (!mesh_.pixel.empty())
             std::sort(order.begin(), order.end(),
@@ -112,6 +117,9 @@ class Simplifier : public AnySimplifier {
         return result;
     }
 
+    // Edges that cost as much or more are not looked at for now.
+    float window() const { return std::min(threshold_, std::nextafter(rules_.max_increment, kNever)); }
+
     bool done() const { return vertices_ <= target_.vertices || faces_ <= target_.faces; }
     double fraction_done(std::int64_t removed = 0) const {
         const auto begin = static_cast<double>(dense_vertices_),
@@ -124,12 +132,15 @@ class Simplifier : public AnySimplifier {
         target_.faces = std::max(target.faces,
                                  static_cast<std::int64_t>(target.face_share * static_cast<double>(faces_)));
         rules_.max_error = target.max_error;
+        rules_.max_increment = static_cast<float>(target.max_increment);
+        if (rules_.max_increment < kNever) tiles_over_ = false;
     }
 
     void take(const CollapseStats& part) {
         vertices_ -= part.vertices;
         faces_ -= part.faces;
         error_ = std::max(error_, part.error);
+        increment_ = std::max(increment_, double{part.increment});
     }
 
     // Makes the dense mesh, or what its tiles leave of it.
@@ -143,7 +154,7 @@ class Simplifier : public AnySimplifier {
                                               kStartAbove * (1 - share_that_goes()));
                 if (share < kMostStartShare) {
                     threshold_ = start_threshold<Q>(grid_, rules_, share);
-                    take(start_in_tiles(grid_, rules_, threshold_, share, share_that_goes(), mesh_,
+                    take(start_in_tiles(grid_, rules_, window(), share, share_that_goes(), mesh_,
                                         [&](std::int64_t removed) {
                                             if (progress) progress(fraction_done(removed), "collapse");
                                         }));
@@ -190,7 +201,7 @@ class Simplifier : public AnySimplifier {
     CollapseStats round_of_tiles() {
         const RoundTiles tiles(grid_.feature.width, grid_.feature.height, vertices_, kVerticesPerTile,
                                ++rounds_);
-        CollapseStats sum = round_in_tiles(mesh_, rules_, tiles, threshold_, share_that_goes());
+        CollapseStats sum = round_in_tiles(mesh_, rules_, tiles, window(), share_that_goes());
         if (!rules_.boundary && !rules_.sides_decided) return sum;
         // The boundary is one object, so one thread at a time may change it. What must go from a side may do
         // so now where it could not before; there is little of it.
@@ -204,14 +215,14 @@ class Simplifier : public AnySimplifier {
                 (rules_.boundary ? mesh_.rings[v].border() : must_go(mesh_.rings[v])))
                 border.push_back(v);
         sum.add(collapser.run(
-            border.size(), [&](std::size_t n) { return border[n]; }, threshold_, may_go, true));
+            border.size(), [&](std::size_t n) { return border[n]; }, window(), may_go, true));
         return sum;
     }
 
     CollapseStats whole() {
         EdgeCollapser<Q> collapser(mesh_, rules_);
         return collapser.run(
-            mesh_.rings.size(), [](std::size_t v) { return static_cast<Id>(v); }, threshold_, left_to_go());
+            mesh_.rings.size(), [](std::size_t v) { return static_cast<Id>(v); }, window(), left_to_go());
     }
 
     CollapseStats left_to_go() const {
@@ -248,7 +259,7 @@ class Simplifier : public AnySimplifier {
     }
 
     bool far_from_done() const {
-        if (tiles_over_ || vertices_ < kLeastTiled) return false;
+        if (tiles_over_ || vertices_ < kLeastTiled || threshold_ > rules_.max_increment) return false;
         const std::vector<float> costs = sampled_costs();
         const auto below =
             std::count_if(costs.begin(), costs.end(), [&](float cost) { return cost < threshold_; });
@@ -285,7 +296,7 @@ class Simplifier : public AnySimplifier {
     SimplifyTarget target_;
     std::int64_t dense_vertices_ = 0, next_rebuild_ = 0;
     std::int64_t vertices_ = 0, faces_ = 0;  // as if all were gone that must go from the sides
-    double error_ = 0;
+    double error_ = 0, increment_ = 0;
 };
 
 }  // namespace imgmesh

@@ -243,6 +243,7 @@ class TileCollapser {
         } else {
             if (total > rules_.max_error) return set_cost(i, j, kShortNever);
             stats_.error = std::max(stats_.error, static_cast<double>(total));
+            stats_.increment = std::max(stats_.increment, least_cost(cost));
             ++stats_.vertices;
             stats_.faces += ring.faces_removed;
         }
