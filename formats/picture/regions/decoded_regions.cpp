@@ -40,7 +40,7 @@ class DecodedRegions : public RegionReader {
                              finished_zero(ColorSpace::kAdobeRgb).image.color_space;
     }
 
-    const RegionFacts& facts() const override { return facts_; }
+    const PictureFacts& facts() const override { return facts_; }
     ColorSpace color_space() const override { return space_; }
 
     ReadImage read(const PixelRect& region, ColorSpace fitting) const override {
@@ -103,7 +103,7 @@ class DecodedRegions : public RegionReader {
     PictureHeader header_;
     std::function<std::unique_ptr<RegionDecoder>()> open_;
     Orientation orientation_;
-    RegionFacts facts_;
+    PictureFacts facts_;
     ColorSpace space_ = ColorSpace::kSrgb;
     mutable std::mutex mutex_;
     mutable std::vector<std::unique_ptr<RegionDecoder>> idle_;

@@ -27,7 +27,7 @@ struct PictureHeader {
     int block_width = 0, block_height = 0;
     DecodedPicture zero_pixel;  ///< a picture of one pixel of zeros: what does not depend on pixels
     RegionAccess access = RegionAccess::kDirect;
-    std::string why;                 ///< not kDirect: RegionFacts::why
+    std::string why;                 ///< not kDirect: PictureFacts::why
     std::uint64_t decode_bytes = 0;  ///< what a decoder takes beside its result, at most
 };
 

@@ -15,7 +15,7 @@ class RegionReader {
     RegionReader(const RegionReader&) = delete;
     RegionReader& operator=(const RegionReader&) = delete;
 
-    virtual const RegionFacts& facts() const = 0;
+    virtual const PictureFacts& facts() const = 0;
     /// The space of the colours, if not facts().fits_colors.
     virtual ColorSpace color_space() const = 0;
     /// Reads a region that lies inside the picture. If facts().fits_colors, `fitting` counts for that of the

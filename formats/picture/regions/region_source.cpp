@@ -51,7 +51,7 @@ struct RegionSource::State {
     // Squares share fewer blocks of tiled pictures than bands, and the blocks of striped ones are read again
     // for each square: a band of all columns is best for those.
     ColorSpace narrowest() const {
-        const RegionFacts& facts = reader->facts();
+        const PictureFacts& facts = reader->facts();
         constexpr int kSide = 2048;
         const bool strips = facts.block_width >= std::max(facts.width, facts.height);
         const int columns = strips ? facts.width : kSide;
@@ -83,7 +83,7 @@ RegionSource::RegionSource(const std::string& path, const ReadImageOptions& opti
 
 RegionSource::~RegionSource() = default;
 
-const RegionFacts& RegionSource::facts() const {
+const PictureFacts& RegionSource::facts() const {
     return state_->reader->facts();
 }
 
@@ -96,7 +96,7 @@ Image RegionSource::read(const PixelRect& region) const {
 }
 
 ReadImage RegionSource::read_region(const PixelRect& region) const {
-    const RegionFacts& f = facts();
+    const PictureFacts& f = facts();
     if (region.left < 0 || region.top < 0 || region.left >= region.right || region.top >= region.bottom ||
         region.right > f.width || region.bottom > f.height)
         throw Error(ErrorKind::kBadArgument,

@@ -20,7 +20,7 @@ enum class RegionAccess {
 };
 
 /// What a picture is, without its pixels.
-struct RegionFacts {
+struct PictureFacts {
     int width = 0, height = 0;  ///< as displayed
     std::vector<std::string> channel_names;
     SampleType sample_type = SampleType::kUint8;
@@ -46,7 +46,7 @@ class RegionSource {
     RegionSource(const RegionSource&) = delete;
     RegionSource& operator=(const RegionSource&) = delete;
 
-    const RegionFacts& facts() const;
+    const PictureFacts& facts() const;
 
     /// The space of the colours that regions have. If facts().fits_colors, the first call reads all pixels to
     /// find the narrowest that holds them, unless options.fitting_space names it: whoever opens the picture

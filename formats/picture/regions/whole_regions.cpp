@@ -31,7 +31,7 @@ class WholeRegions : public RegionReader {
         facts_.warnings = picture_.warnings;
     }
 
-    const RegionFacts& facts() const override { return facts_; }
+    const PictureFacts& facts() const override { return facts_; }
     ColorSpace color_space() const override { return picture_.image.color_space; }
 
     ReadImage read(const PixelRect& region, ColorSpace) const override {
@@ -62,7 +62,7 @@ class WholeRegions : public RegionReader {
 
   private:
     ReadImage picture_;
-    RegionFacts facts_;
+    PictureFacts facts_;
 };
 
 }  // namespace
