@@ -317,6 +317,11 @@ TileSetIndex read_index(const std::string& folder) {
         index.missing.push_back({name_of(node), node.member("reason").text()});
     }
     check_tiles(index, root);
+    const std::vector<JsonNode> levels = root.member("levels").items();
+    bool right = levels.size() == static_cast<std::size_t>(index.plan.grid().levels());
+    for (std::size_t k = 0; right && k < levels.size(); ++k)
+        right = levels[k].value() == nlohmann::json(totals_member(index, static_cast<int>(k)));
+    if (!right) root["levels"].refuse("not the sums over the tiles");
     return index;
 }
 

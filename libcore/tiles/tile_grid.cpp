@@ -83,4 +83,9 @@ std::vector<TileName> TileGrid::tiles(int level) const {
     return all;
 }
 
+GridSize level_size(const TileGrid& grid, const TileName& tile) {
+    const PixelRect rect = grid.rect(tile);
+    return {((rect.width() - 1) >> tile.level) + 1, ((rect.height() - 1) >> tile.level) + 1};
+}
+
 }  // namespace imgmesh

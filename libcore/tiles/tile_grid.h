@@ -58,4 +58,8 @@ class TileGrid {
     int width_, height_, step_, levels_;
 };
 
+/// Returns the size of the picture's part on a tile at 1 / 2^level of its size: of the pixels there whose
+/// centres lie on the tile.
+GridSize level_size(const TileGrid& grid, const TileName& tile);
+
 }  // namespace imgmesh

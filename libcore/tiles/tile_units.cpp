@@ -33,11 +33,6 @@ BaseMesh in_pixels(BaseMesh mesh, int level) {
     return mesh;
 }
 
-GridSize level_size(const TileGrid& grid, const TileName& tile) {
-    const PixelRect rect = grid.rect(tile);
-    return {((rect.width() - 1) >> tile.level) + 1, ((rect.height() - 1) >> tile.level) + 1};
-}
-
 MeshImage coarse_image(const BaseMesh& mesh, const SourceInfo& source, const TileGrid& grid,
                        const TileName& tile) {
     MeshImage image;

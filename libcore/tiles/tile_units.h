@@ -13,9 +13,6 @@ BaseMesh in_level_units(BaseMesh mesh, int level);
 /// The inverse: in pixels of level 0. Exact.
 BaseMesh in_pixels(BaseMesh mesh, int level);
 
-/// Returns the pixels of the picture at 1 / 2^level of its size whose centres lie on a tile.
-GridSize level_size(const TileGrid& grid, const TileName& tile);
-
 /// Returns a tile of a coarser level as a mesh image like any other: the picture at 1 / 2^level of its size,
 /// with every pixel at its own place on the mesh.
 ///
