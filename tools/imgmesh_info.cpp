@@ -1,10 +1,12 @@
-// imgmesh-info: facts about a container, and whether it is sound. Does not link OpenImageIO.
+// imgmesh-info: facts about a container or a tile set, and whether it is sound. Does not link OpenImageIO.
 #include <map>
 #include <nlohmann/json.hpp>
 #include <ostream>
 
 #include "formats/container/container.h"
 #include "formats/container/validate.h"
+#include "formats/tileset/tile_set_files.h"
+#include "formats/tileset/validate_set.h"
 #include "libcore/image/color.h"
 #include "libcore/metrics/metrics.h"
 #include "tools/common/limits.h"
@@ -13,6 +15,7 @@
 #include "tools/common/options.h"
 #include "tools/common/text.h"
 #include "tools/common/tool_main.h"
+#include "tools/tiles/set_info.h"
 
 using namespace imgmesh;
 
@@ -34,7 +37,7 @@ void add_options(CLI::App& app, Options& o) {
     CLI::Option* const validate =
         in_group(add_flag(
                      app, "--validate", [&o] { o.validate = true; },
-                     "Only tell whether the container is sound, with every finding"),
+                     "Only tell whether the container or tile set is sound, with every finding"),
                  validation);
     in_group(needs(add_flag(
                        app, "--warnings-as-errors", [&o] { o.warnings_as_errors = true; },
@@ -129,7 +132,10 @@ Report place_report(const Place& place) {
 Report validate(const Options& o, Context& context) {
     std::map<Severity, std::uint64_t> counts;
     Report findings = Report::array();
-    for (const Issue& issue : validate_container(o.input, container_limits(o.limits, context.max_memory))) {
+    const ContainerLimits limits = container_limits(o.limits, context.max_memory);
+    for (const Issue& issue : is_tile_set(o.input)
+                                  ? validate_tile_set(tile_set_folder(o.input), limits, context.progress)
+                                  : validate_container(o.input, limits)) {
         const Finding& finding = *issue.finding;
         ++counts[finding.severity];
         const bool fails = finding.severity == Severity::kError ||
@@ -154,6 +160,10 @@ Report tell_one(const Options& o, Context& context) {
     Report report = {{"input", o.input}};
     if (o.validate) {
         report.update(validate(o, context));
+        return report;
+    }
+    if (is_tile_set(o.input)) {
+        report.update(set_facts(o.input));
         return report;
     }
     const Container container = read_container(o.input, container_limits(o.limits, context.max_memory));
@@ -216,6 +226,10 @@ void print(const Report& report, std::ostream& out) {
         print_verdict(report, out);
         return;
     }
+    if (report.contains("tile")) {
+        print_set_facts(report, out);
+        return;
+    }
     const std::string input = printable_line(report["input"].get<std::string>());
     const auto text = [&](const char* key) { return report[key].get<std::string>(); };
     const auto bytes = [&](const char* part) {
@@ -251,6 +265,7 @@ std::string line(const Report& report) {
             if (report[kind] != 0) text += cat(", ", kind, ' ', report[kind]);
         return text;
     }
+    if (report.contains("tile")) return set_facts_line(report);
     const Report& finest = report["levels"][0];
     return cat(report["width"], " x ", report["height"], " pixels, levels ", report["levels"].size(), ", ",
                finest["vertices"], " vertices, ", finest["faces"], " faces, ",
@@ -261,9 +276,10 @@ std::string line(const Report& report) {
 
 int main(int argc, char** argv) {
     Options options;
-    return tool_main<Options>({.name = "imgmesh-info",
-                               .description = "Tell what is in containers, and whether they are sound.",
-                               .input_name = "CONTAINER",
-                               .input_help = "Containers to read (.glb, .gltf)"},
-                              {add_options, nullptr, tell_one, print, line}, options, argc, argv);
+    return tool_main<Options>(
+        {.name = "imgmesh-info",
+         .description = "Tell what is in containers and tile sets, and whether they are sound.",
+         .input_name = "CONTAINER",
+         .input_help = "Containers to read (.glb, .gltf), or folders of tile sets"},
+        {add_options, nullptr, tell_one, print, line}, options, argc, argv);
 }
