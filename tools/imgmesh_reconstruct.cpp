@@ -1,4 +1,4 @@
-// imgmesh-reconstruct: a container in, an image out.
+// imgmesh-reconstruct: a container or a tile set in, an image out.
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -7,6 +7,7 @@
 #include "formats/container/container.h"
 #include "formats/files/extension.h"
 #include "formats/picture/image_io.h"
+#include "formats/tileset/tile_set_files.h"
 #include "libcore/image/feature_space.h"
 #include "libcore/recon/draw.h"
 #include "libcore/recon/draw_channels.h"
@@ -23,6 +24,7 @@
 #include "tools/common/source_image.h"
 #include "tools/common/text.h"
 #include "tools/common/tool_main.h"
+#include "tools/tiles/set_draw.h"
 
 using namespace imgmesh;
 
@@ -46,6 +48,7 @@ struct Options {
     ReadImageOptions read;
     int level = 0;
     std::optional<SampleType> depth;
+    std::optional<PixelRect> crop;
     ContainerLimits limits;
 };
 
@@ -79,7 +82,9 @@ void add_options(CLI::App& app, Options& o) {
                           "Image itself, to smooth instead of the reconstruction in mode smooth"),
                  drawing);
     o.read.channels.emplace();  // the colour and alpha
-    in_group(add_count(app, "--level", o.level, {0}, "Level of the pyramid, 0 the finest"), drawing);
+    in_group(add_count(app, "--level", o.level, {0},
+                       "Level of the pyramid, 0 the finest; of a tile set, level k is of 1/2^k the size"),
+             drawing);
     in_group(add_number(
                  app, "--scale", o.scale, {kLeastScale},
                  "Size relative to the source's, for gouraud, wire and flat; the last two are antialiased at "
@@ -87,6 +92,10 @@ void add_options(CLI::App& app, Options& o) {
              drawing);
     in_group(add_choice(app, "--depth", o.depth, depth_choices(),
                         {"Type of the samples to write", "that of the source"}),
+             drawing);
+    in_group(add_value(app, "--crop", "X,Y,W,H",
+                       [&o](const std::string& text) { o.crop = parse_crop("--crop", text); },
+                       {"Part of a tile set's level to draw, in its pixels", "all"}),
              drawing);
     add_read_options(app, o.read, image, true);
     add_container_limits(app, o.limits);
@@ -186,6 +195,12 @@ bool writes_channels(const Options& o, const SourceInfo& source) {
 }
 
 Report draw_one(const Options& o, Context& context) {
+    if (is_tile_set(o.input))
+        return draw_set({o.input, o.output, o.mode, o.level, o.depth, o.crop, o.limits},
+                        name_of(mode_choices(), o.mode), context);
+    if (o.crop)
+        throw Error(ErrorKind::kBadArgument,
+                    cat("--crop: ", o.input, " is no tile set; containers are drawn whole"));
     const bool svg = lower_extension(o.output) == ".svg";
     check_output(o.output, context.overwrite);
 
@@ -259,9 +274,9 @@ int main(int argc, char** argv) {
     Options options;
     return tool_main<Options>(
         {.name = "imgmesh-reconstruct",
-         .description = "Draw the images of containers.",
+         .description = "Draw the images of containers and tile sets.",
          .input_name = "CONTAINER",
-         .input_help = "Containers to read (.glb, .gltf)",
+         .input_help = "Containers to read (.glb, .gltf), or folders of tile sets",
          .output_help =
              "Image to write (.png, .exr, .tif, .jpg, ...; .svg of wire and flat), or a folder, ended "
              "by /, for NAME.png of each container",

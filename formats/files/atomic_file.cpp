@@ -163,6 +163,7 @@ class AtomicFile::Temporary {
     const std::string& path() const { return path_; }
     void share_as(const std::string& path);
     void write_parts(std::span<const std::span<const std::uint8_t>> parts);
+    void write_at(std::uint64_t offset, std::span<const std::uint8_t> bytes);
     void flush() {
         if (::fsync(claim_) != 0) fail(path_, "cannot write", errno);
     }
@@ -206,6 +207,16 @@ void AtomicFile::Temporary::write_parts(std::span<const std::span<const std::uin
             if (n < 0) fail(path_, "cannot write", errno);
             bytes = bytes.subspan(static_cast<std::size_t>(n));
         }
+}
+
+void AtomicFile::Temporary::write_at(std::uint64_t offset, std::span<const std::uint8_t> bytes) {
+    while (!bytes.empty()) {
+        const ssize_t n = ::pwrite(claim_, bytes.data(), bytes.size(), static_cast<off_t>(offset));
+        if (n < 0 && errno == EINTR) continue;
+        if (n < 0) fail(path_, "cannot write", errno);
+        bytes = bytes.subspan(static_cast<std::size_t>(n));
+        offset += static_cast<std::uint64_t>(n);
+    }
 }
 
 void AtomicFile::Temporary::check_rename() const {
@@ -252,6 +263,10 @@ void AtomicFile::share_as(const std::string& path) {
 
 void AtomicFile::write_parts(std::span<const std::span<const std::uint8_t>> parts) {
     file_->write_parts(parts);
+}
+
+void AtomicFile::write_at(std::uint64_t offset, std::span<const std::uint8_t> bytes) {
+    file_->write_at(offset, bytes);
 }
 
 void AtomicFile::commit() {

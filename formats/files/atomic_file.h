@@ -32,6 +32,9 @@ class AtomicFile {
     void write(std::span<const std::uint8_t> bytes) { write_parts({&bytes, 1}); }
     /// The same for several parts, one after the other.
     void write_parts(std::span<const std::span<const std::uint8_t>> parts);
+    /// Writes bytes from `offset` on and leaves the others, for a file that is too long for memory. Not into
+    /// a stream: throws Error(kIo).
+    void write_at(std::uint64_t offset, std::span<const std::uint8_t> bytes);
     /// While JointFiles live in this thread, they do the renaming.
     void commit();
     /// Like commit(), but at once, and until keep() destruction removes the file, which has its own name

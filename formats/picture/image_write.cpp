@@ -217,15 +217,23 @@ bool can_write_image(const std::string& path) {
     return find_format(path) != nullptr;
 }
 
-std::vector<std::uint8_t> encode_image(const std::string& path, const Image& image,
-                                       std::optional<SampleType> sample_type, const ExrMetadata& metadata) {
+StoredImage stored_image(const std::string& path, const Image& image, std::optional<SampleType> sample_type) {
     const Format* format = find_format(path);
     if (!format) throw unknown_format(path);
     const SampleType type = choose_type(path, *format, image, sample_type);
     check_shape(path, *format, image);
-    if (holds_values(*format, type, image)) return encode_tiff_values(image);
-    Image stored = without_alpha(path, *format, image);
-    convert(stored, choose_space(*format, type, image));
+    StoredImage stored{without_alpha(path, *format, image), type};
+    convert(stored.image, choose_space(*format, type, image));
+    return stored;
+}
+
+std::vector<std::uint8_t> encode_image(const std::string& path, const Image& image,
+                                       std::optional<SampleType> sample_type, const ExrMetadata& metadata) {
+    const Format* format = find_format(path);
+    if (!format) throw unknown_format(path);
+    if (holds_values(*format, choose_type(path, *format, image, sample_type), image))
+        return encode_tiff_values(image);
+    auto [stored, type] = stored_image(path, image, sample_type);
     if (format->extension == ".webp") return encode_webp(stored);
     if (format->extension == ".png") return encode_png(stored, type);
     if (format->extension == ".jpg" || format->extension == ".jpeg") return encode_jpeg(stored);

@@ -88,4 +88,17 @@ GridSize level_size(const TileGrid& grid, const TileName& tile) {
     return {((rect.width() - 1) >> tile.level) + 1, ((rect.height() - 1) >> tile.level) + 1};
 }
 
+GridSize level_size(const TileGrid& grid, int level) {
+    return {((grid.width() - 1) >> level) + 1, ((grid.height() - 1) >> level) + 1};
+}
+
+PixelRect own_level_rect(const TileGrid& grid, const TileName& tile) {
+    const GridSize all = level_size(grid, tile.level);
+    const int left = tile.column * grid.step(), top = tile.row * grid.step();
+    const bool last_column = tile.column + 1 == grid.columns(tile.level),
+               last_row = tile.row + 1 == grid.rows(tile.level);
+    return {left, top, last_column ? all.width : left + grid.step(),
+            last_row ? all.height : top + grid.step()};
+}
+
 }  // namespace imgmesh

@@ -58,8 +58,12 @@ class TileGrid {
     int width_, height_, step_, levels_;
 };
 
-/// Returns the size of the picture's part on a tile at 1 / 2^level of its size: of the pixels there whose
-/// centres lie on the tile.
+/// Returns the size of the picture at 1 / 2^level of its size: of the pixels whose centres lie on it.
+GridSize level_size(const TileGrid& grid, int level);
+/// The same of a tile alone, with the lines that it shares.
 GridSize level_size(const TileGrid& grid, const TileName& tile);
+/// Returns where in level_size(grid, tile.level) the pixels are that belong to a tile alone: of a shared line
+/// the tile to the right of it, or below it, has them.
+PixelRect own_level_rect(const TileGrid& grid, const TileName& tile);
 
 }  // namespace imgmesh

@@ -73,6 +73,17 @@ TEST_CASE("coarse_image: a tile of a coarser level is a picture at half the size
     CHECK(level_size(grid, {0, 0, 0}) == GridSize{33, 33});
     CHECK(level_size(grid, {0, 3, 1}) == GridSize{4, 28});
     CHECK(level_size(grid, {1, 1, 0}) == GridSize{18, 30});  // of 36 x 60 pixels
+    CHECK(level_size(grid, 1) == GridSize{50, 30});
+    // Each pixel of a level belongs to one tile.
+    for (int level = 0; level < grid.levels(); ++level) {
+        std::vector<int> owners(level_size(grid, level).pixel_count());
+        for (const TileName& tile : grid.tiles(level)) {
+            const PixelRect own = own_level_rect(grid, tile);
+            for (int y = own.top; y < own.bottom; ++y)
+                for (int x = own.left; x < own.right; ++x) ++owners[level_size(grid, level).index(x, y)];
+        }
+        CHECK(std::ranges::all_of(owners, [](int n) { return n == 1; }));
+    }
     const MeshImage image = sample_tile(grid, {1, 1, 0});
     CHECK(!image.source.has_mask);
     for (int y = 0; y < 30; ++y)

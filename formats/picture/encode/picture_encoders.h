@@ -2,12 +2,23 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "formats/exr/exr_metadata.h"
 #include "libcore/image/image.h"
 
 namespace imgmesh {
+
+/// An image as a format holds it.
+struct StoredImage {
+    Image image;
+    SampleType type;
+};
+/// Returns what write_image() stores in a file of that name, but for a float TIFF of values. Throws as it
+/// does.
+StoredImage stored_image(const std::string& path, const Image& image, std::optional<SampleType> sample_type);
 
 /// Each returns the bytes of a file of an image that is ready for it. EXR: `image` is linear with associated
 /// alpha, `type` kHalf or kFloat, and becomes what WriteImageOptions::metadata says. WebP: sRGB, 8 bit,
