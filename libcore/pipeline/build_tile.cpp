@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <utility>
 
 #include "libcore/base/error.h"
@@ -37,15 +38,41 @@ BuildParams tile_params(BuildParams params, const TileCommon& common) {
     return params;
 }
 
-void check_side(const Side& side, int length, int channels) {
-    const bool sound = !side.vertices.empty() && side.vertices.front() == 0 &&
-                       side.vertices.back() == length - 1 &&
-                       side.features.size() == side.vertices.size() * as_index(channels) &&
-                       (side.shifts.empty() || as_int(side.shifts.size()) == length) &&
-                       std::ranges::is_sorted(side.vertices);
+// Checks a side of so many pixels. A masked line need not have all of them, nor its ends.
+void check_side(const Side& side, int length, int channels, bool masked) {
+    const auto& [vertices, features, shifts] = side;
+    const auto ends = [&](int first, int last) { return first == 0 && last == length - 1; };
+    bool sound = features.size() == vertices.size() * as_index(channels) &&
+                 std::ranges::adjacent_find(vertices, std::greater_equal()) == vertices.end() &&
+                 (shifts.empty() || as_int(shifts.size()) == length);
+    if (vertices.empty())
+        sound = sound && masked;
+    else
+        sound = sound && vertices.front() >= 0 && vertices.back() < length &&
+                (masked || ends(vertices.front(), vertices.back()));
+    if (!shifts.empty()) sound = sound && shifts.front() == 0 && shifts.back() == 0;
+    for (std::size_t k = 1; sound && k < shifts.size(); ++k)
+        sound = 1 + shifts[k] - shifts[k - 1] > 0 && 8 * shifts[k] == std::round(8 * shifts[k]);
     if (!sound)
-        throw Error(ErrorKind::kBadArgument,
-                    cat("a side of a tile is not one of ", length, " pixels with ", channels, " features"));
+        throw Error(ErrorKind::kBadArgument, cat("the side of a tile is none of ", length, " pixels with ",
+                                                 channels, " features whose places ascend by eighths"));
+}
+
+// Shifts along a side only shear the cells beside it: with the pixels inside at rest, none folds. Where two
+// sides meet, the diagonal from one to the other has to pass the pixel inside.
+void check_corners(const TileSides& sides) {
+    // How far the pixel next to an end is shifted away from it.
+    const auto from_first = [](const Side& s) { return s.shifts.empty() ? 0.0f : s.shifts[1]; };
+    const auto from_last = [](const Side& s) {
+        return s.shifts.empty() ? 0.0f : -s.shifts[s.shifts.size() - 2];
+    };
+    for (const auto& [s, t] : {std::pair(from_first(sides.top), from_first(sides.left)),
+                               {from_last(sides.top), from_first(sides.right)},
+                               {from_first(sides.bottom), from_last(sides.left)},
+                               {from_last(sides.bottom), from_last(sides.right)}})
+        if (!(s * t < 1))
+            throw Error(ErrorKind::kBadArgument, cat("pixels beside a corner of a tile are shifted by ", s,
+                                                     " and ", t, " pixels, expected a product below 1"));
 }
 
 }  // namespace
@@ -76,12 +103,17 @@ void round_tile_features(std::span<float> features, const BuildParams& params, c
     const std::optional<std::int64_t> count = tile_params(params, common).color_levels;
     std::optional<ColorLevels> levels;
     if (count) levels.emplace(static_cast<int>(*count));
+    // An alpha above 1 or below 0 means nothing.
+    const auto found = std::ranges::find(space.auxiliary, "A");
+    const auto alpha = 3 + static_cast<std::size_t>(found - space.auxiliary.begin());
     const float weight = space.color_weight;
     for (std::size_t i = 0; i + 2 < features.size(); i += as_index(space.features())) {
         const Vec3f color = Vec3f(&features[i]) / weight;
         const Vec3f rounded =
             weight * (levels ? levels->rounded(color) : quantized_color(color, space.gamut));
         std::copy(rounded.data(), rounded.data() + 3, &features[i]);
+        if (found != space.auxiliary.end())
+            features[i + alpha] = std::clamp(features[i + alpha], 0.0f, space.weight(as_int(alpha)));
     }
 }
 
@@ -91,8 +123,10 @@ BuildResult build_tile(Image&& image, const BuildParams& params, const TileSides
     mask = checked_mask(image, std::move(mask));
     require(image.width >= 2 && image.height >= 2, "a tile is at least two pixels wide and high");
     const int channels = common.space.features();
-    for (const Side* side : {&sides.top, &sides.bottom}) check_side(*side, image.width, channels);
-    for (const Side* side : {&sides.left, &sides.right}) check_side(*side, image.height, channels);
+    const bool masked = !mask.empty();
+    for (const Side* side : {&sides.top, &sides.bottom}) check_side(*side, image.width, channels, masked);
+    for (const Side* side : {&sides.left, &sides.right}) check_side(*side, image.height, channels, masked);
+    check_corners(sides);
     image.sample_type = common.sample_type;
     BuildPlan plan;
     plan.space = common.space;

@@ -43,8 +43,9 @@ void round_tile_features(std::span<float> features, const BuildParams& params, c
 ///         of an image decides in build_mesh_image() is decided for the set: smoothing, the step of
 ///         positions, and kCompactLevels levels of colours. Weights are floats unless params.bary says more,
 ///         so that both tiles put a pixel of their line at the same place
-/// sides   features as round_tile_features() leaves them. The first and the last shift but the ends' are so
-///         small that no cell in a corner folds: the product of the two there is at most 0.95
+/// sides   features as round_tile_features() leaves them. Pixels beside a corner are shifted by less than a
+///         pixel, or at least the product of the two there is below 1: then no cell folds. Up to 3/4 they
+///         keep the area that moving pixels keep (least_moving_area)
 /// mask    the pixels to mesh. Where it cuts a side, all pixels inside are vertices
 ///
 /// Throws as build_mesh_image() and check_tile_params() do, and Error(kBadArgument) for sides of other
