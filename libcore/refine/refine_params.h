@@ -19,7 +19,7 @@ struct RefineParams {
     double exchange = 0;
     int anneal = 0;          ///< sweeps of random moves between the exchanges, and then twice as many rounds
     bool keep_faces = true;  ///< exchanges keep the number of faces too, by that of boundary vertices
-    /// The image is a tile of a larger one (mesh/tile_sides.h): vertices on its sides keep places and
+    /// The image is a tile of a larger one: vertices on its sides keep their places and
     /// colours.
     bool keep_sides = false;
     float position_step = 1.0f / 32;  ///< new positions are multiples of this power of two [pixels]

@@ -236,6 +236,64 @@ TEST_CASE("tiles: a line of pixels has the features that it has in the tile") {
     }
 }
 
+// Of a line that the mask cuts all pixels inside are vertices, in their own colours, and they rest.
+TEST_CASE("tiles: masks may cross the common line") {
+    for (const NamedMask& sample : sample_masks(40)) {
+        const Mask& mask = sample.mask;
+        if (std::min(mask.width, mask.height) < 5) continue;
+        INFO(sample.name);
+        const Image picture = sample_picture(Kind::kNoise, mask.width, mask.height);
+        const BuildParams params = by_error({});
+        const TileCommon common = common_of(picture, params);
+        const auto tile_at = [&](const PixelRect& rect) {
+            const auto [left, top, right, bottom] = rect;
+            const Mask part = mask_where(rect.width(), rect.height(), [&, l = left, t = top](int x, int y) {
+                return mask.at(l + x, t + y) != 0;
+            });
+            const auto side_at = [&](const PixelRect& line) {
+                const FeatureImage feature = tile_features(crop(picture, line), common);
+                const int length = std::max(line.width(), line.height());
+                const bool across = line.height() == 1;
+                Side side;
+                for (int k = 0; k < length; ++k) {
+                    if (!mask.at(line.left + (across ? k : 0), line.top + (across ? 0 : k))) continue;
+                    side.vertices.push_back(k);
+                    const float* f = feature.pixel(across ? k : 0, across ? 0 : k);
+                    side.features.insert(side.features.end(), f, f + 3);
+                }
+                round_tile_features(side.features, params, common);
+                return side;
+            };
+            Tile tile{crop(picture, rect),
+                      {side_at({left, top, right, top + 1}), side_at({left, bottom - 1, right, bottom}),
+                       side_at({left, top, left + 1, bottom}), side_at({right - 1, top, right, bottom})},
+                      {}};
+            if (part.count() == 0) return tile;
+            Image image = tile.image;
+            tile.level =
+                build_tile(std::move(image), params, tile.sides, common, {}, part).mesh_image.levels.at(0);
+            return tile;
+        };
+        const int middle = mask.width / 2;
+        const Tile a = tile_at({0, 0, middle + 1, mask.height}),
+                   b = tile_at({middle, 0, mask.width, mask.height});
+        for (const Tile* tile : {&a, &b}) {
+            if (tile->level.map.empty()) continue;
+            const MeshQuality mesh = mesh_quality(tile->level.mesh);
+            CHECK(mesh.flipped_faces + mesh.nonmanifold_edges + mesh.nonmanifold_vertices == 0);
+            const MapQuality map = map_quality(tile->level.mesh, tile->level.map, true);
+            CHECK(map.flipped_triangles + map.unmapped + map.outside_simplex == 0);
+        }
+        // The pixels on the line rest in both; those of strips one pixel wide up to the rounding of weights.
+        for (const auto& [tile, x] : {std::pair(&a, middle), std::pair(&b, 0)}) {
+            if (tile->level.map.empty()) continue;
+            const std::vector<Vec2d> at = mapped_positions(tile->level.mesh, tile->level.map);
+            for (int y = 0; y < mask.height; ++y)
+                if (mask.at(middle, y)) CHECK((at[tile->image.index(x, y)] - Vec2d(x, y)).norm() < 1e-5);
+        }
+    }
+}
+
 TEST_CASE("tiles: what is not for tiles is refused") {
     const Image picture = photograph(30, 20);
     const auto kind_of = [&](const BuildParams& params, auto&& change) {

@@ -143,7 +143,8 @@ std::vector<float> random_shifts(int length, std::mt19937& random) {
 TEST_CASE("relax: pixels of a tile's sides stay where they are put, and no triangle folds") {
     std::mt19937 random(5);
     for (const Kind kind : kAllKinds)
-        for (const auto& [w, h] : {std::pair{33, 26}, {70, 21}, {2, 30}, {3, 3}, {40, 2}}) {
+        for (const std::pair<int, int>& size : {std::pair{33, 26}, {70, 21}, {2, 30}, {3, 3}, {40, 2}}) {
+            const int w = size.first, h = size.second;
             INFO(name_of(kind) << " " << w << " x " << h);
             Scene s = scene(sample_feature(kind, w, h), std::max(4, w * h / 20));
             TileSides sides;
