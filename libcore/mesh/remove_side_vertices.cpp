@@ -8,7 +8,7 @@
 #include <cassert>
 #include <cstddef>
 
-#include "libcore/mesh/edit_mesh.h"
+#include "libcore/mesh/fan_chain.h"
 
 namespace imgmesh {
 namespace {
@@ -23,7 +23,7 @@ class SideRemoval {
 
     void remove(Id v) {
         std::vector<Id> old = faces_at_[slot_[v]];
-        std::vector<Id> chain = chain_of(v, old);
+        std::vector<Id> chain = fan_chain(mesh_, v, old);
         for (const Id f : old) detach(f);
         while (chain.size() > 2) {
             const std::size_t k = best_corner(chain);
@@ -65,38 +65,12 @@ class SideRemoval {
             if (slot_[v] != kNone) std::erase(faces_at_[slot_[v]], f);
     }
 
-    // The neighbours of v, counter-clockwise.
-    std::vector<Id> chain_of(Id v, const std::vector<Id>& faces) const {
-        std::vector<std::pair<Id, Id>> steps;
-        for (const Id f : faces) {
-            const Face& face = mesh_.faces[f];
-            const std::size_t c = corner_of(face, v);
-            steps.emplace_back(face[(c + 1) % 3], face[(c + 2) % 3]);
-        }
-        std::vector<Id> chain;
-        for (const auto& [from, to] : steps) {
-            const Id first = from;
-            if (std::none_of(steps.begin(), steps.end(), [&](const auto& s) { return s.second == first; }))
-                chain.push_back(first);
-        }
-        assert(chain.size() == 1);
-        while (chain.size() <= steps.size())
-            chain.push_back(std::find_if(steps.begin(), steps.end(), [&](const auto& s) {
-                                return s.first == chain.back();
-                            })->second);
-        return chain;
-    }
-
     // Of the inner ones of a chain, by twice the area over the square of the longest edge.
     std::size_t best_corner(const std::vector<Id>& chain) const {
         std::size_t best = 0;
         double best_shape = 0;
         for (std::size_t k = 1; k + 1 < chain.size(); ++k) {
-            const Vec2f &a = mesh_.position[chain[k - 1]], &b = mesh_.position[chain[k]],
-                        &c = mesh_.position[chain[k + 1]];
-            const double longest =
-                std::max({(b - a).squaredNorm(), (c - b).squaredNorm(), (a - c).squaredNorm()});
-            const double shape = signed_area2(a, b, c) / longest;
+            const double shape = corner_shape(mesh_, chain[k - 1], chain[k], chain[k + 1]);
             if (shape > best_shape) {
                 best_shape = shape;
                 best = k;

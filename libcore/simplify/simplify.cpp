@@ -9,7 +9,9 @@
 
 #include "libcore/base/error.h"
 #include "libcore/image/channel_count.h"
+#include "libcore/mesh/mesh_rings.h"
 #include "libcore/simplify/kernel/simplifier.h"
+#include "libcore/simplify/simplify_mesh.h"
 
 namespace imgmesh {
 
@@ -79,6 +81,20 @@ std::unique_ptr<AnySimplifier> make_simplifier(const GridMesh& grid, const Simpl
 
 const SimplifyHooks kNoHooks;
 
+// A mesh whose vertices have the features of `mesh`, and its faces' quadrics.
+template <class Q>
+QuadricMesh<Q> quadric_mesh(const BaseMesh& mesh, RingMesh rings, float lambda) {
+    const std::vector<float> features = with_channels(mesh.feature, mesh.channels, Q::kChannels);
+    std::vector<Q> points(rings.size());
+    for (std::size_t v = 0; v < rings.size(); ++v) {
+        points[v].px = rings[v].x;
+        points[v].py = rings[v].y;
+        std::copy_n(features.data() + v * Q::kChannels, Q::kChannels, points[v].s);
+    }
+    std::vector<Q> quadrics = current_quadrics(rings, points, lambda);
+    return {std::move(rings), std::move(quadrics), {}};
+}
+
 }  // namespace
 
 SimplifyRun::SimplifyRun(const GridMesh& grid, const SimplifyParams& params)
@@ -98,6 +114,32 @@ std::vector<SimplifyResult> simplify(const GridMesh& grid, const SimplifyParams&
         if (hooks.reached) hooks.reached(levels.size() - 1, levels.back());
     }
     return levels;
+}
+
+SimplifyResult simplify_mesh(const BaseMesh& mesh, int width, int height,
+                             const std::vector<Id>& side_vertices, const SimplifyParams& params,
+                             const SimplifyTarget& target) {
+    if (mesh.channels < 1 || mesh.channels > kMaxFeatures)
+        throw Error(ErrorKind::kBadArgument, cat(mesh.channels, " features, expected 1 to ", kMaxFeatures));
+    if (params.metric != Metric::kFlattened || params.solver != Solver::kClosed)
+        throw Error(ErrorKind::kUnsupported, "a mesh is simplified by the first metric and solver alone");
+    BaseMesh fitted = mesh;
+    fit_for_rings(fitted);
+    RingMesh rings = mesh_rings(fitted, width, height);
+    for (const Id v : side_vertices)
+        if (rings[v].border()) rings[v].fixed = kFixedX | kFixedY;
+    return with_padded_features(mesh.channels, [&](auto padded) {
+        using Q = Quadric<padded()>;
+        GridMesh frame;
+        frame.feature = {width, height, Q::kChannels, {}};
+        SimplifyResult result =
+            Simplifier<Q>(frame, params, kNoHooks,
+                          quadric_mesh<Q>(fitted, std::move(rings), params.geometry_weight))
+                .to(target, {});
+        result.mesh.channels = mesh.channels;
+        result.mesh.feature = with_channels(result.mesh.feature, Q::kChannels, mesh.channels);
+        return result;
+    });
 }
 
 SimplifyResult simplify(const GridMesh& grid, const SimplifyParams& params, const SimplifyTarget& target,

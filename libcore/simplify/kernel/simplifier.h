@@ -11,6 +11,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "libcore/mesh/remove_side_vertices.h"
@@ -58,6 +59,24 @@ class Simplifier : public AnySimplifier {
         // A follower is told of one step at a time, and vertices have the grid's numbers.
         if (hooks.before) params_.tiles = false;
         rules_.sides_decided = !grid.side_vertices.empty();
+    }
+
+    /// From a mesh in the place of the dense one, whose sides are decided. Of `frame` only the size and the
+    /// number of channels count.
+    Simplifier(const GridMesh& frame, const SimplifyParams& params, const SimplifyHooks& hooks,
+               QuadricMesh<Q> mesh)
+        : Simplifier(frame, params, hooks) {
+        mesh_ = std::move(mesh);
+        rules_.sides_decided = true;
+        const auto count = [&](const auto& which) {
+            return std::count_if(mesh_.rings.begin(), mesh_.rings.end(), which);
+        };
+        const std::int64_t going = count([](const Ring& ring) { return ring.live() && must_go(ring); });
+        dense_vertices_ = count([](const Ring& ring) { return ring.live(); });
+        vertices_ = dense_vertices_ - going;
+        faces_ = face_count(mesh_.rings) - going;
+        next_rebuild_ = vertices_ / 2;
+        threshold_ = first_threshold();
     }
 
     SimplifyResult to(const SimplifyTarget& target, const Progress& progress) override {
