@@ -215,6 +215,20 @@ TEST_CASE("tiles: neighbours agree with other maps, objectives, channels and col
     }
 }
 
+TEST_CASE("tiles: one threshold gives more vertices where there is more to see") {
+    const Image picture = photograph(110, 60);
+    const BuildParams params = by_error({});
+    TileCommon common = common_of(picture, params);
+    std::size_t before = 0;
+    for (const double threshold : {3000.0, 300.0, 30.0}) {
+        common.max_increment = threshold;
+        const Tile tile = tile_of(picture, {0, 0, 110, 60}, params, common);
+        check_sound(tile);
+        CHECK(tile.level.mesh.vertex_count() > before);
+        before = tile.level.mesh.vertex_count();
+    }
+}
+
 // The conversion works on several pixels at once, wherever they are in a row.
 TEST_CASE("tiles: a line of pixels has the features that it has in the tile") {
     const Image picture = with_alpha(photograph(61, 40));
