@@ -161,6 +161,7 @@ class AtomicFile::Temporary {
     Temporary& operator=(const Temporary&) = delete;
 
     const std::string& path() const { return path_; }
+    int descriptor() const { return claim_; }
     void share_as(const std::string& path);
     void write_parts(std::span<const std::span<const std::uint8_t>> parts);
     void write_at(std::uint64_t offset, std::span<const std::uint8_t> bytes);
@@ -267,6 +268,10 @@ void AtomicFile::write_parts(std::span<const std::span<const std::uint8_t>> part
 
 void AtomicFile::write_at(std::uint64_t offset, std::span<const std::uint8_t> bytes) {
     file_->write_at(offset, bytes);
+}
+
+int AtomicFile::descriptor() const {
+    return file_->descriptor();
 }
 
 void AtomicFile::commit() {

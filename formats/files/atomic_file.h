@@ -35,6 +35,8 @@ class AtomicFile {
     /// Writes bytes from `offset` on and leaves the others, for a file that is too long for memory. Not into
     /// a stream: throws Error(kIo).
     void write_at(std::uint64_t offset, std::span<const std::uint8_t> bytes);
+    /// The temporary file's descriptor, for content that comes piece by piece; it stays the file's own.
+    int descriptor() const;
     /// While JointFiles live in this thread, they do the renaming.
     void commit();
     /// Like commit(), but at once, and until keep() destruction removes the file, which has its own name

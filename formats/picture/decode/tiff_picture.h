@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "formats/picture/decode/picture_decoders.h"
+#include "formats/picture/decode/spool_tag.h"
 #include "formats/picture/decode/tiff_layout.h"
 
 namespace imgmesh {
@@ -25,12 +26,14 @@ class TiffPicture {
     DecodedPicture zero_pixel();
 
   private:
+    DecodedPicture spooled(const TiffLayout& layout, std::vector<float> samples);
     DecodedPicture picture(int width, int height, std::vector<float> samples);
 
     TiffFile& file_;
     const ReadImageOptions& options_;
     TiffLayout layout_;
     std::optional<double> nodata_;  ///< as the file names it
+    std::optional<SpoolInfo> spool_;
     std::vector<std::string> warnings_;
 };
 

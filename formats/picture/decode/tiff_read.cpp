@@ -86,6 +86,7 @@ TiffPicture::TiffPicture(TiffFile& file, const ReadImageOptions& options, const 
     layout_ = tiff_layout(file, limits, options.limits);
     check_block_count(file, layout_);
     nodata_ = nodata_of(file);
+    spool_ = spool_info(file);
 }
 
 DecodedPicture TiffPicture::read(const PixelRect& area) {
@@ -102,6 +103,7 @@ DecodedPicture TiffPicture::picture(int width, int height, std::vector<float> sa
     TiffLayout layout = layout_;  // of what has been read
     layout.width = width;
     layout.height = height;
+    if (spool_) return spooled(layout, std::move(samples));
     DecodedPicture out;
     out.warnings = warnings_;
     const std::optional<double> nodata = options_.nodata || !options_.file_nodata ? options_.nodata : nodata_;
@@ -118,6 +120,17 @@ DecodedPicture TiffPicture::picture(int width, int height, std::vector<float> sa
                                    ", is 1"));
     out.orientation = file_.defaulted_tag<std::uint16_t>(TIFFTAG_ORIENTATION, ORIENTATION_TOPLEFT);
     if (!options_.values) state_color(file_, layout, out);
+    return out;
+}
+
+// As the decoders of PNG and JPEG leave it.
+DecodedPicture TiffPicture::spooled(const TiffLayout& layout, std::vector<float> samples) {
+    DecodedPicture out;
+    image_from_samples(file_, layout, std::move(samples), out);
+    out.color = spool_->color;
+    if (spool_->inks_upside_down)
+        for (float& sample : out.image.data) sample = 1 - sample;
+    out.orientation = file_.tag<std::uint16_t>(TIFFTAG_ORIENTATION, 0);
     return out;
 }
 

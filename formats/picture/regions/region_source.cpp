@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <mutex>
+#include <span>
 
 #include "formats/files/random_file.h"
 #include "formats/picture/color/profile_convert.h"
@@ -12,6 +13,12 @@
 namespace imgmesh {
 namespace {
 
+// The header is the first chunk, and its last byte says it.
+bool is_interlaced_png(std::span<const std::uint8_t> start) {
+    constexpr std::size_t kInterlaced = 28;
+    return start.size() > kInterlaced && start[kInterlaced] == 1;
+}
+
 std::unique_ptr<RegionReader> open_regions(const std::string& path, const ReadImageOptions& options) {
     if (options.non_finite == NonFinite::kNearest)
         throw Error(ErrorKind::kBadArgument,
@@ -19,9 +26,14 @@ std::unique_ptr<RegionReader> open_regions(const std::string& path, const ReadIm
                         ": samples that are not finite cannot get the value of the nearest pixel where "
                         "a picture is read by parts, expected that they are refused or become 0"));
     constexpr std::size_t kStart = std::size_t{1} << 16;  // far more than signatures need
-    switch (probe_picture(path, RandomFile(path).bytes_at(0, kStart)).format) {
+    const std::vector<std::uint8_t> start = RandomFile(path).bytes_at(0, kStart);
+    switch (probe_picture(path, start).format) {
         case PictureFormat::kTiff:
             return open_tiff_regions(path, options);
+        case PictureFormat::kJpeg:
+            return open_jpeg_regions(path, options);
+        case PictureFormat::kPng:
+            return is_interlaced_png(start) ? open_whole(path, options) : open_png_regions(path, options);
         default:
             return open_whole(path, options);
     }

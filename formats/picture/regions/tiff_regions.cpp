@@ -7,10 +7,6 @@ namespace {
 
 // Samples of one block, which is read as a whole: above any tile, and memory for it is little.
 constexpr std::int64_t kMostInBlock = std::int64_t{1} << 26;
-// A square of 1024 pixels reads a thousand rows of strips, so at this width 32 times what it shows, which
-// takes about as long as the work on a hundredth of it.
-constexpr std::int64_t kWidestStrip = 32768;
-
 class TiffDecoder : public RegionDecoder {
   public:
     TiffDecoder(const std::string& path, const ReadImageOptions& options)
@@ -35,9 +31,7 @@ class TiffDecoder : public RegionDecoder {
         else if (samples > kMostInBlock)
             out.why =
                 cat("it is a TIFF in blocks of ", layout.block_width, "x", layout.block_height, " pixels");
-        else if (!layout.tiled && layout.width > kWidestStrip)
-            out.why = cat("it is a TIFF in strips of ", layout.width, " pixels");
-        if (!out.why.empty()) out.access = RegionAccess::kSpool;
+        if (!out.why.empty()) out.access = RegionAccess::kWhole;
         // As packed and unpacked, and places and lengths of all blocks.
         const auto bytes = static_cast<std::uint64_t>((samples * layout.bits + 7) / 8);
         const std::int64_t blocks =
