@@ -1,5 +1,5 @@
 // imgmesh-convert: a container as another file variant or with another compression, with fewer levels, or in
-// another format.
+// another format; a level of a tile set as one mesh.
 #include <algorithm>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -9,6 +9,7 @@
 #include "formats/files/extension.h"
 #include "formats/files/stream_file.h"
 #include "formats/picture/image_io.h"
+#include "formats/tileset/tile_set_files.h"
 #include "libcore/image/feature_space.h"
 #include "libcore/mesh/outer_edge.h"
 #include "libcore/mesh/outline_mesh.h"
@@ -30,6 +31,7 @@
 #include "tools/common/texture_options.h"
 #include "tools/common/tool_main.h"
 #include "tools/convert_level.h"
+#include "tools/tiles/set_convert.h"
 
 using namespace imgmesh;
 
@@ -129,8 +131,26 @@ LevelOptions level_options(const Options& o) {
     return {o.input, o.output, o.as, o.shading, o.outline_tolerance, o.outline_side, o.image};
 }
 
+// Of a tile set only the meshes of a level are joined.
+void check_set_options(const Options& o) {
+    const auto refuse = [&](bool given, const char* option) {
+        if (given)
+            throw Error(ErrorKind::kUnsupported,
+                        cat(option, ": ", o.input, " is a tile set, which becomes one mesh without a map; ",
+                            o.input, "/LEVEL/COLUMN_ROW.glb are ordinary containers"));
+    };
+    refuse(!o.levels.empty(), "--levels");
+    refuse(o.compression.layers.has_value(), "--layers");
+    refuse(o.precision == MeshPrecision::kCompact, "--mesh-precision");
+    refuse(o.texture.wanted.value_or(false), "--texture");
+    refuse(o.as.has_value(), "--as");
+    refuse(o.outline_tolerance.has_value(), "--outline-tolerance");
+    refuse(!o.image.empty(), "--image");
+}
+
 // Throws Error(kBadArgument) for mistakes that can be found before the container is read.
 void check_options(const Options& o) {
+    if (is_tile_set(o.input)) return check_set_options(o);
     const std::string extension = lower_extension(o.output);
     const auto only_for = [&](bool given, const char* option, bool fits, const char* what) {
         if (given && !fits)
@@ -275,6 +295,12 @@ LayerLayout chosen_layers(const Options& o, LayerLayout kept) {
 
 Report convert_one(const Options& given, Context& context) {
     Options o = given;
+    if (is_tile_set(o.input)) {
+        SetConvertOptions set{o.input, o.output, o.level.value_or(0), o.shading == Shading::kGradient,
+                              {},      o.limits};
+        compress(set.container, o.compression, DracoMode::kOff);
+        return convert_set(set, context);
+    }
     const bool obj = lower_extension(o.output) == ".obj";
     if (obj && !o.image.empty()) o.texture.wanted = true;
     check_output(o.output, context.overwrite);
@@ -383,9 +409,11 @@ int main(int argc, char** argv) {
     Options options;
     return tool_main<Options>(
         {.name = "imgmesh-convert",
-         .description = "Turn containers into another file variant or compression, or another format.",
+         .description = "Turn containers into another file variant or compression, or another format; levels "
+                        "of tile sets "
+                        "into one mesh.",
          .input_name = "CONTAINER",
-         .input_help = "Containers to read (.glb, .gltf)",
+         .input_help = "Containers to read (.glb, .gltf), or folders of tile sets",
          .output_help =
              "Container to write (.glb, .gltf), or a level of it as .svg, .ply, .obj, .json (a sprite's "
              "mesh), .tscn (a scene for Godot), .npz (arrays for numpy) or .png (24-bit face ids, red the "

@@ -31,8 +31,8 @@ struct ContainerOptions {
     bool overwrite = true;  ///< replace the file at the path; other files are never replaced
     /// Files that stay although the .gltf that is replaced refers to them, such as those just read.
     std::vector<std::string> keep = {};
-    /// kOff: a plain glTF asset that read_container() refuses. kCompact is for maps on a grid, as
-    /// build_mesh_image() makes them unless they are tracked.
+    /// kOff: a plain glTF asset that read_container() refuses; levels need no map. kCompact is for maps on a
+    /// grid, as build_mesh_image() makes them unless they are tracked.
     LayerLayout layers = LayerLayout::kExr;
     bool meshopt = false;       ///< EXT_meshopt_compression instead of Draco; only without layers
     Texture texture = {};       ///< with the coordinates of all vertices of all levels

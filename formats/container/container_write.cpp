@@ -21,13 +21,14 @@ namespace {
 
 constexpr const char* kVersion = "1.1";
 
-void check_writable(const MeshImage& image, const Texture& texture) {
+void check_writable(const MeshImage& image, const Texture& texture, bool with_layers) {
     const SourceInfo& source = image.source;
     const auto pixels = static_cast<std::size_t>(source.width) * static_cast<std::size_t>(source.height);
     bool fits = source.width >= 1 && source.height >= 1 &&
                 std::max(source.width, source.height) <= kMaxCoordinate && !image.levels.empty() &&
                 (image.visits.empty() || image.visits.size() == pixels);
     for (const Level& level : image.levels) {
+        if (!with_layers && level.map.empty()) continue;
         fits = fits && level.map.width == source.width && level.map.height == source.height &&
                level.map.size() == pixels;
         for (const PixelCoord& c : level.map)
@@ -215,7 +216,7 @@ WrittenContainer write_container(const std::string& path, const MeshImage& mesh_
     const bool with_layers = options.layers != LayerLayout::kOff;
     if (options.meshopt && with_layers)
         throw Error(ErrorKind::kInternal, "a container with pixel maps cannot have meshopt compression");
-    check_writable(mesh_image, options.texture);
+    check_writable(mesh_image, options.texture, with_layers);
     const SourceInfo& source = mesh_image.source;
     const std::string fault = exr_metadata_fault(options.metadata, source.width, source.height);
     if (!fault.empty()) throw Error(ErrorKind::kInternal, cat("cannot store the metadata: ", fault));
