@@ -107,4 +107,8 @@ struct Container {
 /// ...".
 Container read_container(const std::string& path, const ContainerLimits& limits = {});
 
+/// The same for the meshes alone: the pixel maps are neither decoded nor checked, and are empty. Takes
+/// O(bytes + faces) time.
+MeshImage read_meshes(const std::string& path, const ContainerLimits& limits = {});
+
 }  // namespace imgmesh

@@ -100,9 +100,11 @@ void add_level_facts(const Asset& asset, View buffer, ContainerFacts& facts) {
     if (asset.levels[0].is_draco) facts.draco = draco_mode(cut(buffer, asset.levels[0].draco));
 }
 
+enum class Wanted { kAll, kMeshes };
+
 // Returns all levels whose meshes and parts can be checked.
-void read_levels(const Asset& asset, View buffer, StoredLayers& layers, Findings& findings, MeshImage& image,
-                 std::vector<std::vector<Vec2f>>& coords) {
+void read_levels(const Asset& asset, View buffer, StoredLayers& layers, Wanted wanted, Findings& findings,
+                 MeshImage& image, std::vector<std::vector<Vec2f>>& coords) {
     for (std::size_t k = 0; k < asset.levels.size(); ++k) {
         const AssetLevel& level = asset.levels[k];
         BaseMesh mesh;
@@ -122,7 +124,8 @@ void read_levels(const Asset& asset, View buffer, StoredLayers& layers, Findings
                          cat(layers.name(k), " was made for a mesh of hash ", layers.topology(k),
                              ", the mesh has ", level.topology),
                          at_part(layers.name(k)));
-        PixelMap map = other_mesh ? PixelMap() : layers.take_map(k, mesh, findings);
+        PixelMap map =
+            other_mesh || wanted == Wanted::kMeshes ? PixelMap() : layers.take_map(k, mesh, findings);
         image.levels.push_back({std::move(mesh), std::move(map), level.error});
     }
 }
@@ -150,7 +153,7 @@ void read_texture(const Asset& asset, View buffer, Findings& findings, Container
     throw Error(ErrorKind::kBadFile, cat(path, ": ", what));
 }
 
-Container read(const std::string& path, const ContainerLimits& limits, Findings& findings) {
+Container read(const std::string& path, const ContainerLimits& limits, Wanted wanted, Findings& findings) {
     const std::filesystem::path folder = std::filesystem::path(path).parent_path();
     FileReader files(limits.max_bytes);
     const Bytes main = files.read(path, FileKind::kStream);
@@ -200,11 +203,11 @@ Container read(const std::string& path, const ContainerLimits& limits, Findings&
         return container;
     if (!is_whole) return container;
     MeshImage& image = container.mesh_image;
-    read_levels(asset, buffer, maps, findings, image, container.texture.coords);
+    read_levels(asset, buffer, maps, wanted, findings, image, container.texture.coords);
     if (findings.errors() > 0) return container;
     read_texture(asset, buffer, findings, container);
     add_level_facts(asset, buffer, container.facts);
-    image.visits = maps.take_visits();
+    if (wanted == Wanted::kAll) image.visits = maps.take_visits();
     container.metadata = std::move(asset.metadata);
     image.source = std::move(asset.source);
     image.generator = std::move(asset.generator);
@@ -212,12 +215,10 @@ Container read(const std::string& path, const ContainerLimits& limits, Findings&
     return container;
 }
 
-}  // namespace
-
-Container read_container(const std::string& path, const ContainerLimits& limits) {
+Container read_strictly(const std::string& path, const ContainerLimits& limits, Wanted wanted) {
     try {
         Findings findings = Findings::strict();
-        return read(path, limits, findings);
+        return read(path, limits, wanted, findings);
     } catch (const FindingError& finding) {
         // Names from the file are quoted unchanged; the message stays one line.
         throw Error(finding.error_kind(),
@@ -225,9 +226,19 @@ Container read_container(const std::string& path, const ContainerLimits& limits)
     }
 }
 
+}  // namespace
+
+Container read_container(const std::string& path, const ContainerLimits& limits) {
+    return read_strictly(path, limits, Wanted::kAll);
+}
+
+MeshImage read_meshes(const std::string& path, const ContainerLimits& limits) {
+    return read_strictly(path, limits, Wanted::kMeshes).mesh_image;
+}
+
 std::vector<Issue> validate_container(const std::string& path, const ContainerLimits& limits) {
     Findings findings = Findings::collecting();
-    findings.attempt("", [&] { read(path, limits, findings); });
+    findings.attempt("", [&] { read(path, limits, Wanted::kAll, findings); });
     return std::move(findings.issues());
 }
 
