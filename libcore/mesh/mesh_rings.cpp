@@ -121,12 +121,12 @@ class ValenceLimit {
 };
 
 // What a vertex on the boundary keeps, between its neighbours along it.
-std::uint8_t kept_axes(const Vec2f& at, const Vec2f& before, const Vec2f& after, int width, int height) {
-    const auto along = [](float p, float q, float r, int last) {
-        return p == q && p == r && (p == 0 || p == static_cast<float>(last));
+std::uint8_t kept_axes(const Vec2f& at, const Vec2f& before, const Vec2f& after, const Vec2f& corner) {
+    const auto along = [](float p, float q, float r, float last) {
+        return p == q && p == r && (p == 0 || p == last);
     };
-    if (along(at.x(), before.x(), after.x(), width - 1)) return kFixedX;
-    if (along(at.y(), before.y(), after.y(), height - 1)) return kFixedY;
+    if (along(at.x(), before.x(), after.x(), corner.x())) return kFixedX;
+    if (along(at.y(), before.y(), after.y(), corner.y())) return kFixedY;
     return kFixedX | kFixedY;
 }
 
@@ -138,7 +138,7 @@ void fit_for_rings(BaseMesh& mesh) {
     ValenceLimit(mesh, at).run();
 }
 
-RingMesh mesh_rings(const BaseMesh& mesh, int width, int height) {
+RingMesh mesh_rings(const BaseMesh& mesh, const Vec2f& corner) {
     const std::vector<std::vector<Id>> at = faces_by_vertex(mesh);
     RingMesh rings(mesh.vertex_count());
     for (Id v = 0; v < rings.size(); ++v) {
@@ -151,7 +151,7 @@ RingMesh mesh_rings(const BaseMesh& mesh, int width, int height) {
         ring.valence = static_cast<std::uint8_t>(chain.size());
         if (chain.size() > at[v].size())
             ring.fixed = kept_axes(mesh.position[v], mesh.position[chain.front()],
-                                   mesh.position[chain.back()], width, height);
+                                   mesh.position[chain.back()], corner);
     }
     return rings;
 }

@@ -14,8 +14,8 @@ namespace imgmesh {
 void fit_for_rings(BaseMesh& mesh);
 
 /// Returns the rings of such a mesh, with its numbers; a vertex in no face is removed. On a straight stretch
-/// of the boundary along a side of the rectangle [0, width - 1] x [0, height - 1] a vertex keeps one
+/// of the boundary along a side of the rectangle from (0, 0) to `corner` a vertex keeps one
 /// coordinate, elsewhere on the boundary both.
-RingMesh mesh_rings(const BaseMesh& mesh, int width, int height);
+RingMesh mesh_rings(const BaseMesh& mesh, const Vec2f& corner);
 
 }  // namespace imgmesh

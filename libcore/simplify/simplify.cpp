@@ -116,22 +116,22 @@ std::vector<SimplifyResult> simplify(const GridMesh& grid, const SimplifyParams&
     return levels;
 }
 
-SimplifyResult simplify_mesh(const BaseMesh& mesh, int width, int height,
-                             const std::vector<Id>& side_vertices, const SimplifyParams& params,
-                             const SimplifyTarget& target) {
+SimplifyResult simplify_mesh(const BaseMesh& mesh, const Vec2f& corner, const std::vector<Id>& side_vertices,
+                             const SimplifyParams& params, const SimplifyTarget& target) {
     if (mesh.channels < 1 || mesh.channels > kMaxFeatures)
         throw Error(ErrorKind::kBadArgument, cat(mesh.channels, " features, expected 1 to ", kMaxFeatures));
     if (params.metric != Metric::kFlattened || params.solver != Solver::kClosed)
         throw Error(ErrorKind::kUnsupported, "a mesh is simplified by the first metric and solver alone");
     BaseMesh fitted = mesh;
     fit_for_rings(fitted);
-    RingMesh rings = mesh_rings(fitted, width, height);
+    RingMesh rings = mesh_rings(fitted, corner);
     for (const Id v : side_vertices)
         if (rings[v].border()) rings[v].fixed = kFixedX | kFixedY;
     return with_padded_features(mesh.channels, [&](auto padded) {
         using Q = Quadric<padded()>;
         GridMesh frame;
-        frame.feature = {width, height, Q::kChannels, {}};
+        frame.feature = {
+            static_cast<int>(corner.x()) + 1, static_cast<int>(corner.y()) + 1, Q::kChannels, {}};
         SimplifyResult result =
             Simplifier<Q>(frame, params, kNoHooks,
                           quadric_mesh<Q>(fitted, std::move(rings), params.geometry_weight))

@@ -7,7 +7,7 @@
 
 namespace imgmesh {
 
-/// Collapses edges of a mesh of the rectangle [0, width - 1] x [0, height - 1] as simplify() does those of
+/// Collapses edges of a mesh of the rectangle from (0, 0) to `corner` as simplify() does those of
 /// the dense mesh. Quadrics are those of the mesh's faces and its vertices' features. On the rectangle's
 /// sides `side_vertices` and the corners are left, with the features that their quadrics have for them; where
 /// the mesh has other boundaries, as that of a mask, all of their vertices are left.
@@ -17,7 +17,7 @@ namespace imgmesh {
 ///
 /// Throws Error: kUnsupported for another metric or solver than the first, kBadArgument for the number of
 /// features as simplify() does. O(n). Deterministic, with any number of threads.
-SimplifyResult simplify_mesh(const BaseMesh& mesh, int width, int height,
+SimplifyResult simplify_mesh(const BaseMesh& mesh, const Vec2f& corner,
                              const std::vector<Id>& side_vertices, const SimplifyParams& params,
                              const SimplifyTarget& target);
 

@@ -128,8 +128,10 @@ TEST_CASE("simplified meshes: four joined tiles become one, with the vertices on
                 const std::vector<Id> kept = some_side_vertices(joined, size, one_in, 7);
                 const auto target = static_cast<std::int64_t>(joined.vertex_count() / 4);
                 const auto collapsed = [&](std::int64_t to) {
-                    return simplify_mesh(joined, size.width, size.height, kept, plain_params(),
-                                         {.vertices = to});
+                    return simplify_mesh(
+                        joined,
+                        Vec2f(static_cast<float>(size.width - 1), static_cast<float>(size.height - 1)), kept,
+                        plain_params(), {.vertices = to});
                 };
                 const BaseMesh mesh = collapsed(target).mesh;
                 check_sound(mesh, size);
@@ -146,9 +148,9 @@ TEST_CASE("simplified meshes: four joined tiles become one, with the vertices on
 TEST_CASE("simplified meshes: nothing collapses where the target is reached") {
     const Size size{65, 65};
     const BaseMesh joined = joined_tiles(Kind::kDisc, 33, 300);
-    const BaseMesh mesh =
-        simplify_mesh(joined, 65, 65, all_side_vertices(joined, size), plain_params(), {.vertices = 100000})
-            .mesh;
+    const BaseMesh mesh = simplify_mesh(joined, Vec2f(64, 64), all_side_vertices(joined, size),
+                                        plain_params(), {.vertices = 100000})
+                              .mesh;
     CHECK(mesh.position == joined.position);
     CHECK(mesh.faces.size() == joined.faces.size());
     float farthest = 0;
@@ -165,7 +167,7 @@ TEST_CASE("simplified meshes: vertices with many neighbours") {
         check_sound(mesh, size);
         CHECK(most_neighbors(mesh) > 30);
         const BaseMesh small =
-            simplify_mesh(mesh, 17, 17, some_side_vertices(mesh, size, 3, 1), plain_params(), {}).mesh;
+            simplify_mesh(mesh, Vec2f(16, 16), some_side_vertices(mesh, size, 3, 1), plain_params(), {}).mesh;
         check_sound(small, size);
         fit_for_rings(mesh);
         check_sound(mesh, size);
@@ -179,9 +181,9 @@ TEST_CASE("simplified meshes: fans are parted and boundaries inside stay") {
     mesh.position = {{1, 1}, {1, 3}, {3, 3}, {5, 5}, {5, 3}};
     mesh.faces = {{0, 1, 2}, {2, 3, 4}};
     mesh.feature.assign(15, 1.0f);
-    const BaseMesh out = simplify_mesh(mesh, 9, 9, {}, plain_params(), {}).mesh;
+    const BaseMesh out = simplify_mesh(mesh, Vec2f(8, 8), {}, plain_params(), {}).mesh;
     CHECK(out.vertex_count() == 6);
     CHECK(out.faces.size() == 2);
     CHECK(mesh_quality(out).components == 2);
-    CHECK_THROWS_AS(simplify_mesh(mesh, 9, 9, {}, plain_params(Metric::kHoppe), {}), Error);
+    CHECK_THROWS_AS(simplify_mesh(mesh, Vec2f(8, 8), {}, plain_params(Metric::kHoppe), {}), Error);
 }
