@@ -1,0 +1,50 @@
+// The threshold at which a whole set of tiles has the wanted density: found on samples of the picture,
+// because each tile is then built by itself.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "libcore/image/image.h"
+#include "libcore/image/mask.h"
+#include "libcore/pipeline/build_tile.h"
+#include "libcore/simplify/simplify_params.h"
+#include "libcore/tiles/tile_grid.h"
+
+namespace imgmesh {
+
+/// Returns the parameters of the collapse of each tile of a set, as build_tile() has them.
+SimplifyParams tile_collapse(const BuildParams& params, const TileCommon& common);
+
+/// How many vertices parts of the picture keep at each of the thresholds.
+struct DensitySample {
+    double pixels = 0;          ///< of the parts, inside the mask; a side shared with a neighbour counts half
+    double border = 0;          ///< length of the parts' sides [steps]
+    std::vector<double> inner;  ///< vertices that are on no side, at each of sample_thresholds()
+    std::vector<double> on_sides;  ///< and those on sides
+
+    /// Adds another one's parts.
+    void add(const DensitySample& other);
+};
+
+/// The thresholds of samples, rising: powers of the square root of two [feature^2 px^2].
+std::span<const double> sample_thresholds();
+
+/// Collapses a part of the picture. Its sides are simplified as those of tiles.
+///
+/// params   of the collapse, as for the tiles
+/// density  that is wanted [vertices in 100 pixels]
+DensitySample sample_density(FeatureImage part, Mask mask, const SimplifyParams& params, double density);
+
+/// Returns the parts of a row of tiles that are sampled: all of them, whole, while the picture has at most
+/// kSampledWhole pixels. Of larger ones windows that are spread evenly, an eighth of the pixels, at least
+/// about so many.
+inline constexpr std::int64_t kSampledWhole = std::int64_t{1} << 25;
+std::vector<PixelRect> sampled_parts(const TileGrid& grid, int row);
+
+/// Returns the threshold at which a picture of that size has `vertices` vertices, by interpolation between
+/// those of the samples.
+double threshold_for(const DensitySample& samples, const TileGrid& grid, double vertices);
+
+}  // namespace imgmesh

@@ -1,0 +1,127 @@
+#include "libcore/tiles/join_tiles.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <utility>
+
+#include "libcore/base/index.h"
+#include "libcore/mesh/round_positions.h"
+#include "libcore/mesh/tile_sides.h"
+
+#include "libcore/simplify/simplify_mesh.h"
+#include "libcore/tiles/simplify_side.h"
+
+namespace imgmesh {
+namespace {
+
+// A side of the parent: which coordinate is fixed, where, and the length along it.
+struct Line {
+    int axis;  // the fixed coordinate: 0 for x, 1 for y
+    float at;
+};
+
+// Returns the vertices of a mesh on a line, along it.
+std::vector<Id> vertices_on(const BaseMesh& mesh, const Line& line) {
+    std::vector<Id> found;
+    for (Id v = 0; v < mesh.vertex_count(); ++v)
+        if (mesh.position[v][line.axis] == line.at) found.push_back(v);
+    const int along = 1 - line.axis;
+    std::ranges::sort(found, {}, [&](Id v) { return std::pair(mesh.position[v][along], v); });
+    return found;
+}
+
+// The side with all of its vertices, in whole pixels.
+Side side_of(const BaseMesh& mesh, std::span<const Id> vertices, int along) {
+    Side side;
+    for (const Id v : vertices) {
+        side.vertices.push_back(static_cast<int>(std::lround(mesh.position[v][along])));
+        side.features.insert(side.features.end(), mesh.feature_of(v), mesh.feature_of(v) + mesh.channels);
+    }
+    return side;
+}
+
+using Place = std::pair<float, float>;
+Place place_of(const Vec2f& place) {
+    return {place.x(), place.y()};
+}
+
+// The collapse has mixed the colours of sides with what lies beside them, and the neighbour would mix others.
+void set_features(BaseMesh& mesh, const std::map<Place, const float*>& features) {
+    for (Id v = 0; v < mesh.vertex_count(); ++v)
+        if (const auto at = features.find(place_of(mesh.position[v])); at != features.end())
+            std::copy_n(at->second, mesh.channels, mesh.feature_of(v));
+}
+
+void scale(BaseMesh& mesh, float factor) {
+    for (Vec2f& place : mesh.position) place *= factor;
+}
+
+}  // namespace
+
+BaseMesh join_meshes(std::span<const TileMesh> parts) {
+    BaseMesh whole;
+    std::map<Place, Id> on_sides;
+    for (const TileMesh& part : parts) {
+        whole.channels = part.mesh.channels;
+        std::vector<Id> number(part.mesh.vertex_count());
+        for (Id v = 0; v < number.size(); ++v) {
+            const Vec2f own = part.mesh.position[v];
+            const Vec2f place = own + Vec2f(static_cast<float>(part.left), static_cast<float>(part.top));
+            number[v] = as_id(whole.vertex_count());
+            if (on_side(own, part.width, part.height)) {
+                const auto [entry, is_new] = on_sides.emplace(place_of(place), number[v]);
+                number[v] = entry->second;
+                if (!is_new) continue;
+            }
+            whole.position.push_back(place);
+            whole.feature.insert(whole.feature.end(), part.mesh.feature_of(v),
+                                 part.mesh.feature_of(v) + part.mesh.channels);
+        }
+        for (const Face& face : part.mesh.faces)
+            whole.faces.push_back({number[face[0]], number[face[1]], number[face[2]]});
+    }
+    return whole;
+}
+
+BaseMesh coarser_tile(std::span<const TileMesh> children, int level, int width, int height,
+                      const SimplifyParams& params) {
+    const BaseMesh joined = join_meshes(children);
+    const auto right = static_cast<float>(width - 1), bottom = static_cast<float>(height - 1);
+    std::vector<Id> kept;
+    for (const Line& line : {Line{1, 0}, Line{1, bottom}, Line{0, 0}, Line{0, right}}) {
+        const int along = 1 - line.axis;
+        const std::vector<Id> vertices = vertices_on(joined, line);
+        const Side whole = side_of(joined, vertices, along);
+        const Side half = coarser_side(whole, joined.channels);
+        std::size_t next = 0;
+        for (std::size_t v = 0; v < vertices.size(); ++v) {
+            if (next >= half.vertices.size() || whole.vertices[v] != half.vertices[next]) continue;
+            kept.push_back(vertices[v]);
+            ++next;
+        }
+    }
+    std::ranges::sort(kept);
+    kept.erase(std::unique(kept.begin(), kept.end()), kept.end());
+    std::map<Place, const float*> on_sides;
+    for (const Id v : kept) on_sides.emplace(place_of(joined.position[v]), joined.feature_of(v));
+    // Levels look alike at their own scale. A power of two loses nothing.
+    const float unit = std::ldexp(1.0f, -level);
+    BaseMesh mesh = joined;
+    scale(mesh, unit);
+    const auto goal = static_cast<std::int64_t>(mesh.vertex_count() / 4);
+    // Meshes have quadrics of one kind alone.
+    SimplifyParams own = params;
+    own.metric = SimplifyParams().metric;
+    own.solver = SimplifyParams().solver;
+    SimplifyResult coarse = simplify_mesh(mesh, unit * Vec2f(right, bottom), kept, own,
+                                          {.vertices = std::max<std::int64_t>(4, goal)});
+    // Vertices that have met no other are on the finer grid of the children.
+    round_positions(coarse.mesh, kPositionStep);
+    scale(coarse.mesh, 1 / unit);
+    set_features(coarse.mesh, on_sides);
+    return std::move(coarse.mesh);
+}
+
+}  // namespace imgmesh
