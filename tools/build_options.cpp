@@ -157,6 +157,7 @@ void add_build_options(CLI::App& app, BuildOptions& o) {
     add_compression_options(app, o.compression, "edgebreaker; with --no-map none",
                             "compact with --map-rate or the preset small, else exr; exr with a texture");
     add_texture_options(app, o.texture, "Put the image on the meshes, for engines and viewers", false);
+    add_tile_options(app, o.tiles);
     add_strict_option(app, o.strict);
     after_parsing(app, [&] {
         o.density = given(app, "--density");
@@ -171,6 +172,7 @@ void add_build_options(CLI::App& app, BuildOptions& o) {
                 "--values and --alpha keep: alpha is a mask beside values, or with --channels one of them");
         check_contradictions(app, o.params);
         check_compression(o.compression, !o.no_map);
+        if (o.tiles.size) check_tile_options(app);
         o.layers = layers_of(o);
         if (!o.no_map) return;
         check_no_map(app, o.params);

@@ -10,6 +10,7 @@
 #include "libcore/pipeline/build_source.h"
 #include "tools/common/compression_options.h"
 #include "tools/common/texture_options.h"
+#include "tools/tiles/tile_options.h"
 
 namespace imgmesh {
 
@@ -28,6 +29,7 @@ struct BuildOptions {
     TextureOptions texture;
     bool density = false;  ///< whether a density was asked for: it is not only the default
     bool strict = false;
+    TileOptions tiles;
 };
 
 /// Adds every option, those of BuildParams from param_table(). They are checked together when all have been

@@ -19,6 +19,7 @@
 #include "tools/common/read_options.h"
 #include "tools/common/targets.h"
 #include "tools/common/tool_main.h"
+#include "tools/tiles/tile_set_build.h"
 
 using namespace imgmesh;
 
@@ -62,6 +63,7 @@ ContainerPlan container_plan(const BuildParams& params, const Image& image, cons
 }
 
 void check_options(const BuildOptions& o) {
+    if (o.tiles.size) return;
     if (!is_container(o.output))
         throw Error(ErrorKind::kBadArgument,
                     cat("-o ", o.output, ": expected a name in .glb or .gltf, or a folder",
@@ -70,6 +72,7 @@ void check_options(const BuildOptions& o) {
 }
 
 Report build_one(const BuildOptions& given, Context& context) {
+    if (given.tiles.size) return build_tile_set(given, context);
     BuildOptions o = given;
     o.read.limits.max_memory = context.max_memory;
     o.read.limits.work_bytes = build_bytes_of_pixel(o.params);
@@ -156,10 +159,19 @@ Report build_one(const BuildOptions& given, Context& context) {
     return report;
 }
 
+// A report of a tile set has its size, one of an image its vertices.
+void print_report(const Report& report, std::ostream& out) {
+    report.contains("vertices") ? print_build(report, out) : print_tile_set(report, out);
+}
+std::string line_of(const Report& report) {
+    return report.contains("vertices") ? build_line(report) : "";
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
     BuildOptions options;
+    options.tiles.command.assign(argv, argv + argc);
     return tool_main<BuildOptions>(
         {.name = "imgmesh-build",
          .description = "Turn images into containers: a small triangle mesh and a pixel map.",
@@ -169,7 +181,8 @@ int main(int argc, char** argv) {
              "Container to write (.glb, .gltf), or a folder, ended by /, for NAME.glb of each image",
          .type = [] { return "glb"; },
          .sources = {"--mask"},
+         .fills_output = [&] { return options.tiles.size.has_value(); },
          .list = "images",
          .always_list = true},
-        {add_build_options, check_options, build_one, print_build, build_line}, options, argc, argv);
+        {add_build_options, check_options, build_one, print_report, line_of}, options, argc, argv);
 }

@@ -37,6 +37,11 @@ std::string side_of(const SideFile& side, const std::string& type, const std::st
 std::string output_of(const Tool& tool, const FileOptions& files, const std::string& input,
                       std::size_t count) {
     if (files.output.empty()) return "";
+    if (tool.fills_output && tool.fills_output()) {
+        if (count > 1)
+            throw Error(ErrorKind::kBadArgument, cat("-o ", files.output, ": is the folder of one input"));
+        return files.output;
+    }
     if (is_folder(files.output))
         return in_folder(files.output, input, files.type.empty() ? tool.type() : files.type);
     if (count > 1) throw Error(ErrorKind::kBadArgument, needs_folder("-o", files.output, count));
@@ -117,6 +122,7 @@ std::vector<Job> plan_jobs(const Tool& tool, const FileOptions& files) {
 }
 
 bool fills_folder(const Tool& tool, const FileOptions& files) {
+    if (tool.fills_output && tool.fills_output()) return false;
     return is_folder(files.output) ||
            std::ranges::any_of(tool.sides, [](const SideFile& side) { return is_folder(*side.value); });
 }

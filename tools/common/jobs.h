@@ -28,7 +28,7 @@ std::string file_type(const std::string& name, const std::string& text);
 /// Returns whether `path` names a folder: it ends with a slash, or it is one.
 bool is_folder(const std::string& path);
 
-/// Returns whether the outputs go into a folder.
+/// Returns whether the outputs go into a folder, each by a name of its own.
 bool fills_folder(const Tool& tool, const FileOptions& files);
 
 /// Makes the folders that -o and the options of `tool` name.

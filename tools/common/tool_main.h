@@ -74,6 +74,8 @@ struct Tool {
     bool compares = false;  ///< the first of several inputs is compared with each of the others
     std::vector<SideFile> sides = {};
     std::vector<std::string> sources = {};  ///< options that name files to read, which count by their content
+    /// Whether -o is a folder that the work on one input fills, and not one for a file of each; may be empty.
+    std::function<bool()> fills_output = {};
     std::string list = "files";             ///< the report's member for several files
     bool always_list = false;               ///< the report is a list for one file, too
     std::function<void(CLI::App&)> add_options = {};

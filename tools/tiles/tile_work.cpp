@@ -1,0 +1,230 @@
+#include "tools/tiles/tile_work.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "formats/container/container.h"
+#include "formats/picture/regions/spool.h"
+#include "formats/tileset/tile_set_files.h"
+#include "formats/tileset/tile_view.h"
+#include "formats/tileset/tileset_json.h"
+#include "libcore/pipeline/params.h"
+#include "libcore/tiles/density.h"
+#include "libcore/tiles/join_tiles.h"
+#include "libcore/tiles/sides_of_tile.h"
+#include "libcore/tiles/tile_errors.h"
+#include "libcore/tiles/tile_units.h"
+#include "tools/build_memory.h"
+#include "tools/common/in_file.h"
+#include "tools/common/output.h"
+#include "tools/tiles/threshold_files.h"
+#include "tools/tiles/tile_pixels.h"
+
+namespace imgmesh {
+namespace {
+
+PixelRect within(const PixelRect& part, const PixelRect& whole) {
+    return {part.left - whole.left, part.top - whole.top, part.right - whole.left, part.bottom - whole.top};
+}
+
+// Those that are not on a side that is counted with the next tile.
+std::int64_t own_vertices(const BaseMesh& mesh, int level, const PixelRect& rect, bool has_right,
+                          bool has_below) {
+    const auto scaled = [&](int pixels) { return std::ldexp(static_cast<float>(pixels), -level); };
+    const float right = scaled(rect.width() - 1), bottom = scaled(rect.height() - 1);
+    return std::ranges::count_if(mesh.position, [&](const Vec2f& place) {
+        return !(has_right && place.x() == right) && !(has_below && place.y() == bottom);
+    });
+}
+
+bool has_none(const PixelPart& part) {
+    return !part.mask.empty() && part.mask.count() == 0;
+}
+
+}  // namespace
+
+TileWork::TileWork(const PlannedTileSet& planned, const BuildOptions& options, Context& context)
+    : planned_(planned),
+      options_(options),
+      context_(context),
+      folder_(options.output),
+      key_(plan_key(planned.plan)) {}
+
+TileWork::~TileWork() = default;
+
+TilePixels& TileWork::pixels() {
+    if (!pixels_) pixels_ = std::make_unique<TilePixels>(planned_.picture, options_.mask, planned_.read);
+    return *pixels_;
+}
+
+void TileWork::run(const TileJob& job, const Progress& progress) {
+    switch (job.kind) {
+        case TileJob::Kind::kSpool:
+            return spool(progress);
+        case TileJob::Kind::kSample:
+            return sample(job.tile.row, progress);
+        case TileJob::Kind::kThreshold:
+            return find_threshold();
+        case TileJob::Kind::kTile:
+            return make(job.tile, progress);
+        case TileJob::Kind::kIndex:
+            return index();
+    }
+}
+
+void TileWork::spool(const Progress& progress) {
+    const std::string copy = in_set(folder_, spool_file());
+    // It appears as a whole, so what is there is complete.
+    if (std::filesystem::exists(copy)) return;
+    make_folder(in_set(folder_, kWorkFolder));
+    progress(0, "copy");
+    spool_picture(options_.input, copy, planned_.read);
+}
+
+void TileWork::sample(int row, const Progress& progress) {
+    if (has_threshold(folder_, key_) || has_sample(folder_, row, key_)) return;
+    const TileGrid& grid = planned_.jobs.grid;
+    const SimplifyParams params = tile_collapse(planned_.params, planned_.common);
+    const std::vector<PixelRect> parts = sampled_parts(grid, row);
+    DensitySample sum;
+    for (std::size_t n = 0; n < parts.size(); ++n) {
+        progress(static_cast<double>(n) / static_cast<double>(parts.size()), "sample");
+        try {
+            PixelPart part = pixels().read(parts[n], planned_.mask);
+            if (has_none(part)) continue;
+            FeatureImage feature = tile_features(part.image, planned_.common, part.mask);
+            sum.add(
+                sample_density(std::move(feature), std::move(part.mask), params, planned_.common.density));
+        } catch (const Error& error) {
+            // The tile says so when it is built.
+            if (error.kind() != ErrorKind::kBadFile) throw;
+        }
+    }
+    write_sample(folder_, row, key_, sum);
+}
+
+void TileWork::find_threshold() {
+    if (has_threshold(folder_, key_)) return;
+    const TileGrid& grid = planned_.jobs.grid;
+    DensitySample sum;
+    for (int row = 0; row < grid.rows(0); ++row) sum.add(read_sample(folder_, row, key_));
+    write_threshold(folder_, key_,
+                    in_file(options_.input, [&] { return threshold_for(sum, grid, planned_.vertices); }));
+}
+
+TileCommon TileWork::common() const {
+    TileCommon common = planned_.common;
+    if (planned_.jobs.first_pass) common.max_increment = read_threshold(folder_, key_);
+    return common;
+}
+
+void TileWork::make(const TileName& tile, const Progress& progress) {
+    if (is_finished(folder_, tile, key_)) {
+        ++kept_;
+        return;
+    }
+    make_level_folders(folder_, tile.level);
+    TileRecord record;
+    record.tile = tile;
+    record.key = key_;
+    try {
+        if (tile.level == 0)
+            build(record, progress);
+        else
+            coarsen(record);
+    } catch (const Error& error) {
+        if (error.kind() != ErrorKind::kBadFile) throw;
+        record = {};
+        record.tile = tile;
+        record.key = key_;
+
+        context_.warnings.push_back(cat("tile ", tile_text(tile), " is left out: ", error.what()));
+    }
+    write_record(folder_, record);
+    ++made_;
+}
+
+void TileWork::build(TileRecord& record, const Progress& progress) {
+    const TileGrid& grid = planned_.jobs.grid;
+    const TileName tile = record.tile;
+    const PixelRect rect = grid.rect(tile);
+    PixelPart part = pixels().read(rect, planned_.mask);
+    if (has_none(part)) return;
+    const TileCommon shared = common();
+    const TileSides sides = sides_of_tile(part.image, planned_.params, shared, part.mask);
+    const FeatureImage feature = tile_features(part.image, shared, part.mask);
+    BuildResult built =
+        build_tile(std::move(part.image), planned_.params, sides, shared, progress, std::move(part.mask));
+    const Level& level = built.mesh_image.levels.front();
+    const TileErrors errors = tile_errors(
+        level, feature, within(grid.own_rect(tile), rect),
+        {tile.column > 0, tile.row > 0, tile.column + 1 < grid.columns(0), tile.row + 1 < grid.rows(0)});
+    record.pixels = errors.pixels;
+    record.map_squares = errors.squares;
+    const double gouraud = built.report.levels.front().gouraud_rms;
+    record.gouraud_squares = gouraud * gouraud * static_cast<double>(errors.pixels);
+    record.seam_pixels = errors.seam_pixels;
+    record.seam_squares = errors.seam_squares;
+    write(record, std::move(built.mesh_image), tile_layers(options_));
+}
+
+void TileWork::write(TileRecord& record, MeshImage mesh_image, LayerLayout layers) const {
+    const TileName& tile = record.tile;
+    const TileGrid& grid = planned_.jobs.grid;
+    mesh_image.generator = context_.generator;
+    const BaseMesh& mesh = mesh_image.levels.front().mesh;
+    record.vertices = static_cast<std::int64_t>(mesh.vertex_count());
+    record.faces = static_cast<std::int64_t>(mesh.faces.size());
+    const PixelRect rect = grid.rect(tile);
+    record.own_vertices = own_vertices(mesh, tile.level, rect, tile.column + 1 < grid.columns(tile.level),
+                                       tile.row + 1 < grid.rows(tile.level));
+    ContainerOptions container;
+    compress(container, options_.compression, DracoMode::kEdgebreaker);
+    container.layers = layers;
+    write_container(in_set(folder_, tile_container(tile)), mesh_image, container);
+    write_tile_view(mesh, mesh_image.source, grid, tile, context_.generator,
+                    in_set(folder_, tile_view(tile)));
+    record.files = {file_facts(folder_, tile_container(tile)), file_facts(folder_, tile_view(tile))};
+}
+
+void TileWork::coarsen(TileRecord& record) {
+    const TileGrid& grid = planned_.jobs.grid;
+    const PixelRect rect = grid.rect(record.tile);
+    std::vector<TileMesh> children;
+    SourceInfo source;
+    for (const TileName& child : grid.children(record.tile)) {
+        if (read_record(folder_, child).files.empty()) continue;  // missing, or outside the mask
+        MeshImage part = read_meshes(in_set(folder_, tile_container(child)));
+        source = part.source;
+        const PixelRect own = grid.rect(child);
+        children.push_back({in_pixels(std::move(part.levels.front().mesh), child.level), own.left - rect.left,
+                            own.top - rect.top, own.width(), own.height()});
+    }
+    if (children.empty()) return;
+    const BaseMesh mesh = coarser_tile(children, record.tile.level, rect.width(), rect.height(),
+                                       tile_collapse(planned_.params, planned_.common));
+    write(record, coarse_image(mesh, source, grid, record.tile), LayerLayout::kCompact);
+}
+
+void TileWork::index() {
+    TileSetIndex index;
+    index.plan = planned_.plan;
+    index.threshold = planned_.jobs.first_pass ? read_threshold(folder_, key_) : 0;
+    const TileGrid& grid = planned_.jobs.grid;
+    for (int level = 0; level < grid.levels(); ++level)
+        for (const TileName& tile : grid.tiles(level)) {
+            TileRecord record = read_record(folder_, tile);
+            if (record.missing.empty())
+                index.tiles.push_back(std::move(record));
+            else
+                index.missing.push_back({tile, std::move(record.missing)});
+        }
+    std::ranges::sort(index.tiles, comes_before, &TileRecord::tile);
+    write_tileset(folder_, index);
+    write_index(folder_, index);
+    std::filesystem::remove_all(in_set(folder_, kWorkFolder));
+}
+
+}  // namespace imgmesh
