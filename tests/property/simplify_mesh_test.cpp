@@ -119,7 +119,8 @@ std::size_t most_neighbors(const BaseMesh& mesh) {
 
 TEST_CASE("simplified meshes: four joined tiles become one, with the vertices on its sides that are given") {
     for (const Kind kind : kAllKinds)
-        for (const auto& [n, vertices] : {std::pair(33, 200), std::pair(6, 20), std::pair(120, 6000)}) {
+        for (const auto& [side, vertices] : {std::pair(33, 200), std::pair(6, 20), std::pair(120, 6000)}) {
+            const int n = side;
             const Size size{2 * n - 1, 2 * n - 1};
             const BaseMesh joined = joined_tiles(kind, n, vertices);
             check_sound(joined, size);

@@ -14,7 +14,7 @@
 #include <utility>
 #include <vector>
 
-#include "libcore/mesh/remove_side_vertices.h"
+#include "libcore/simplify/kernel/collapsed_mesh.h"
 #include "libcore/simplify/kernel/edge_collapser.h"
 #include "libcore/simplify/kernel/round_in_tiles.h"
 #include "libcore/simplify/kernel/start_in_tiles.h"
@@ -113,27 +113,8 @@ class Simplifier : public AnySimplifier {
     }
 
     SimplifyResult snapshot() const {
-        SimplifyResult result{{}, error_, dense_vertices_ - vertices_, increment_};
-        std::vector<Id> order = live_list(mesh_.rings);
-        if (!mesh_.pixel.empty())
-            std::sort(order.begin(), order.end(),
-                      [&](Id a, Id b) { return mesh_.pixel[a] < mesh_.pixel[b]; });
-        const auto channels = static_cast<std::size_t>(rules_.channels);
-        result.mesh.channels = rules_.channels;
-        result.mesh.feature.resize(order.size() * channels);
-        float* feature = result.mesh.feature.data();
-        result.mesh.faces = ring_faces(mesh_.rings, order);
-        std::vector<Id> gone;
-        for (const Id v : order) {
-            const Ring& ring = mesh_.rings[v];
-            if (rules_.sides_decided && must_go(ring))
-                gone.push_back(static_cast<Id>(result.mesh.position.size()));
-            result.mesh.position.emplace_back(ring.x, ring.y);
-            mesh_.quadrics[v].features(ring.x, ring.y, feature);
-            feature += channels;
-        }
-        remove_side_vertices(result.mesh, gone);
-        return result;
+        return {collapsed_mesh(mesh_, rules_.channels, rules_.sides_decided), error_,
+                dense_vertices_ - vertices_, increment_};
     }
 
     // Edges that cost as much or more are not looked at for now.
