@@ -36,12 +36,15 @@ class DecodedRegions : public RegionReader {
         facts_.warnings = zero.warnings;
         space_ = zero.image.color_space;
         // A space that follows the wish is one that integers of a foreign profile are converted to.
-        facts_.fits_colors = finished_zero(ColorSpace::kDisplayP3).image.color_space !=
-                             finished_zero(ColorSpace::kAdobeRgb).image.color_space;
+        foreign_ = finished_zero(ColorSpace::kDisplayP3).image.color_space !=
+                   finished_zero(ColorSpace::kAdobeRgb).image.color_space;
+        facts_.fits_colors = foreign_ && facts_.access == RegionAccess::kDirect;
     }
 
     const PictureFacts& facts() const override { return facts_; }
-    ColorSpace color_space() const override { return space_; }
+    ColorSpace color_space() const override {
+        return foreign_ && !facts_.fits_colors ? whole().color_space() : space_;
+    }
 
     ReadImage read(const PixelRect& region, ColorSpace fitting) const override {
         if (facts_.access != RegionAccess::kDirect) return whole().read(region, fitting);
@@ -105,6 +108,7 @@ class DecodedRegions : public RegionReader {
     Orientation orientation_;
     PictureFacts facts_;
     ColorSpace space_ = ColorSpace::kSrgb;
+    bool foreign_ = false;  ///< integers of a profile that is none of ours
     mutable std::mutex mutex_;
     mutable std::vector<std::unique_ptr<RegionDecoder>> idle_;
     mutable std::unique_ptr<RegionReader> whole_;

@@ -24,6 +24,9 @@ class RegionReader {
     virtual std::uint64_t read_bytes(int width, int height) const = 0;
 };
 
+/// One picture file, in the way that its format allows.
+std::unique_ptr<RegionReader> open_picture_regions(const std::string& path, const ReadImageOptions& options);
+
 /// A picture that is held as a whole.
 std::unique_ptr<RegionReader> open_whole(const std::string& path, const ReadImageOptions& options);
 

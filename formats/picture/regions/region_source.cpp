@@ -1,6 +1,7 @@
 #include "formats/picture/regions/region_source.h"
 
 #include <algorithm>
+#include <filesystem>
 #include <mutex>
 #include <span>
 
@@ -8,6 +9,7 @@
 #include "formats/picture/color/profile_convert.h"
 #include "formats/picture/decode/picture_probe.h"
 #include "formats/picture/regions/decoded_regions.h"
+#include "formats/picture/regions/tile_list.h"
 #include "libcore/base/error.h"
 
 namespace imgmesh {
@@ -25,6 +27,21 @@ std::unique_ptr<RegionReader> open_regions(const std::string& path, const ReadIm
                     cat(path,
                         ": samples that are not finite cannot get the value of the nearest pixel where "
                         "a picture is read by parts, expected that they are refused or become 0"));
+    std::error_code ignored;
+    if (std::filesystem::is_directory(path, ignored))
+        return open_list(path, list_folder(path, options), options);
+    if (is_vrt(path)) return open_list(path, read_vrt(path), options);
+    if (is_json_list(path)) return open_list(path, read_json_list(path), options);
+    return open_picture_regions(path, options);
+}
+
+std::string span_text(const PixelRect& r) {
+    return cat("columns ", r.left, " to ", r.right - 1, ", rows ", r.top, " to ", r.bottom - 1);
+}
+
+}  // namespace
+
+std::unique_ptr<RegionReader> open_picture_regions(const std::string& path, const ReadImageOptions& options) {
     constexpr std::size_t kStart = std::size_t{1} << 16;  // far more than signatures need
     const std::vector<std::uint8_t> start = RandomFile(path).bytes_at(0, kStart);
     switch (probe_picture(path, start).format) {
@@ -38,12 +55,6 @@ std::unique_ptr<RegionReader> open_regions(const std::string& path, const ReadIm
             return open_whole(path, options);
     }
 }
-
-std::string span_text(const PixelRect& r) {
-    return cat("columns ", r.left, " to ", r.right - 1, ", rows ", r.top, " to ", r.bottom - 1);
-}
-
-}  // namespace
 
 struct RegionSource::State {
     std::string path;
