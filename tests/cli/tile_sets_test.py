@@ -1,0 +1,112 @@
+"""Tile sets as the tools read them: facts, verdicts, pictures, meshes."""
+import json
+import shutil
+import subprocess
+
+import picture_files
+from support import BIN, CliCase, main
+
+
+class TileSets(CliCase):
+    """A set of 4 x 2 tiles of 32 steps over a picture of 100 x 60 pixels, and of two coarser levels."""
+
+    def setUp(self):
+        super().setUp()
+        subprocess.run([BIN / "write-samples", self.folder / "samples"], check=True)
+        shutil.move(self.folder / "samples" / "set", self.folder / "set")
+        shutil.rmtree(self.folder / "samples")
+
+    def drawn(self, *args, output="out.png"):
+        self.run_ok("imgmesh-reconstruct", *args, "-o", output)
+        return picture_files.read(self.folder / output)
+
+    def test_facts(self):
+        for name in ("set", "set/", "set/index.json"):
+            facts = self.report("imgmesh-info", name)
+            self.assertEqual((facts["width"], facts["height"], facts["tile"]), (100, 60, 32))
+            self.assertEqual([level["tiles"] for level in facts["levels"]], [8, 2, 1])
+            self.assertEqual(facts["missing"], [])
+        self.assertIn("4 x 2 tiles", self.run_ok("imgmesh-info", "set").stdout)
+
+    def test_verdict(self):
+        self.assertTrue(self.report("imgmesh-info", "set", "--validate")["valid"])
+        self.report("imgmesh-info", "set/1/1_0.glb")  # an ordinary container
+        shutil.copy(self.folder / "set/0/0_0.glb", self.folder / "set/0/1_0.glb")
+        report = self.report("imgmesh-info", "set", "--validate", code=4)
+        self.assertEqual([finding["code"] for finding in report["findings"]], ["set.file"])
+        self.assertIn("0/1_0.glb", report["findings"][0]["message"])
+        result = self.run_tool("imgmesh-info", "set", "--validate")
+        self.assert_error_lines("imgmesh-info", result, 4, 1)
+
+    def test_broken_index(self):
+        path = self.folder / "set" / "index.json"
+        index = json.loads(path.read_text())
+        index["tiles"][0]["files"][0]["path"] = "../../c.glb"
+        path.write_text(json.dumps(index))
+        for tool, *args in (("imgmesh-info", "set"), ("imgmesh-reconstruct", "set", "-o", "a.png"),
+                            ("imgmesh-convert", "set", "-o", "a.glb")):
+            self.assert_error(tool, args, 4, "index.json", "/tiles/0/files/0/path")
+        index["version"] = 2
+        path.write_text(json.dumps(index))
+        self.assert_error("imgmesh-info", ["set"], 5, "version 2")
+        self.report("imgmesh-info", "set", "--validate", code=5)
+
+    def test_pictures(self):
+        """A pixel of a line that two tiles share is drawn from the one to the right of it, or below."""
+        whole = self.drawn("set")
+        self.assertEqual(whole.shape[:2], (60, 100))
+        tile = self.drawn("set/0/1_0.glb")
+        self.assertEqual(tile.shape[:2], (33, 33))
+        self.assert_same(whole[:32, 32:64], tile[:32, :32])
+        self.assert_same(self.drawn("set", "--crop", "20,10,50,40"), whole[10:50, 20:70])
+        half = self.drawn("set", "--level", "1")
+        self.assertEqual(half.shape[:2], (30, 50))
+        self.assert_same(half[:, 32:], self.drawn("set/1/1_0.glb"))
+        self.drawn("set/index.json", "--mode", "gouraud")
+        self.assert_same(self.drawn("set", output="a.tif"), whole)
+        self.assert_same(self.drawn("set", "--crop", "7,9,90,50", output="a.tif"), whole[9:59, 7:97])
+
+    def assert_same(self, a, b):
+        self.assertEqual(a.tolist(), b.tolist())
+
+    def test_missing_tile(self):
+        """The picture has a transparent place, and says so."""
+        path = self.folder / "set" / "index.json"
+        index = json.loads(path.read_text())
+        gone = index["tiles"].pop(0)
+        index["missing"] = [{"tile": gone["tile"], "reason": "a broken strip"}]
+        level = index["levels"][0]
+        level["tiles"] -= 1
+        level["bytes"] -= sum(file["bytes"] for file in gone["files"])
+        for name in ("vertices", "own_vertices", "faces", "pixels"):
+            level[name] -= gone[name]
+        path.write_text(json.dumps(index))
+        result = self.run_tool("imgmesh-reconstruct", "set", "-o", "gap.png")
+        self.assertEqual(result.returncode, 0)
+        self.assertIn("1 tile of level 0 could not be made", result.stderr)
+        gap = picture_files.read(self.folder / "gap.png")
+        self.assertEqual((gap[0, 0, 3], gap[0, 32, 3]), (0, 1))
+        self.assertEqual(self.report("imgmesh-info", "set")["missing"], index["missing"])
+
+    def test_meshes(self):
+        for level, vertices, faces in ((0, 126, 208), (1, 40, 56), (2, 15, 16)):
+            for output in ("a.glb", "a.gltf", "a.ply", "a.obj", "a.svg"):
+                report = self.report("imgmesh-convert", "set", "-o", output, "--level", level)
+                self.assertEqual((report["vertices"], report["faces"]), (vertices, faces))
+        self.assert_error("imgmesh-info", ["a.glb"], 4, "ext.missing")
+
+    def test_what_cannot_be(self):
+        for mode in ("wire", "patches", "flat", "visits", "smooth"):
+            self.assert_error("imgmesh-reconstruct", ["set", "-o", "a.png", "--mode", mode], 5, mode, "map or gouraud")
+        for tool, output in (("imgmesh-reconstruct", "a.png"), ("imgmesh-convert", "a.ply")):
+            self.assert_error(tool, ["set", "-o", output, "--level", "3"], 2, "--level 3", "0 to 2")
+        self.assert_error("imgmesh-reconstruct", ["set", "-o", "a.png", "--crop", "90,0,20,20"], 2, "--crop", "100x60")
+        self.assert_error("imgmesh-reconstruct", ["set", "-o", "a.png", "--crop", "1,2,3"], 2, "--crop")
+        self.assert_error("imgmesh-reconstruct", ["set/0/0_0.glb", "-o", "a.png", "--crop", "0,0,2,2"], 2, "--crop")
+        self.assert_error("imgmesh-convert", ["set", "-o", "a.npz"], 5, "a.npz")
+        self.assert_error("imgmesh-convert", ["set", "-o", "a.glb", "--texture"], 5, "--texture")
+        self.assert_error("imgmesh-convert", ["set", "-o", "a.ply", "--max-memory", "1M"], 4, "level 0 as one mesh")
+
+
+if __name__ == "__main__":
+    main()
