@@ -409,9 +409,8 @@ int main(int argc, char** argv) {
     Options options;
     return tool_main<Options>(
         {.name = "imgmesh-convert",
-         .description = "Turn containers into another file variant or compression, or another format; levels "
-                        "of tile sets "
-                        "into one mesh.",
+         .description =
+             "Turn containers and levels of tile sets into another file variant, compression or format.",
          .input_name = "CONTAINER",
          .input_help = "Containers to read (.glb, .gltf), or folders of tile sets",
          .output_help =

@@ -133,3 +133,20 @@ TEST_CASE("validate_tile_set: a tile of another place or with another count") {
     write_index(set.path, set.index);
     CHECK(codes(set.path) == std::set<std::string>{"set.counts"});
 }
+
+TEST_CASE("kSetFindings: the page lists them all") {
+    const std::vector<std::uint8_t> bytes = load(IMGMESH_DOCS "/tile-sets.md");
+    const std::string page(bytes.begin(), bytes.end());
+    std::size_t rows = 0;
+    for (std::size_t at = page.find("\n| `set."); at != std::string::npos;
+         at = page.find("\n| `set.", at + 1))
+        ++rows;
+    CHECK(rows == std::size(kSetFindings));
+    for (const Finding& f : kSetFindings) {
+        const std::string row = "| `" + std::string(f.code) + "` | " +
+                                (f.severity == Severity::kError ? "error" : "warning") + " | " +
+                                std::string(f.meaning) + " |\n";
+        INFO(row);
+        CHECK(page.find(row) != std::string::npos);
+    }
+}
