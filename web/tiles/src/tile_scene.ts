@@ -1,15 +1,13 @@
 // The tiles of a set, drawn straight from the front by three.js and the 3D Tiles renderer of NASA-AMMOS.
 import { TilesRenderer, type Tile } from "3d-tiles-renderer";
-import { Box3, Mesh, type Object3D, OrthographicCamera, Scene, Vector3, WebGLRenderer } from "three";
+import { Box3, type Object3D, OrthographicCamera, Scene, Vector3, WebGLRenderer } from "three";
 import { DRACOLoader } from "three/addons/loaders/DRACOLoader.js";
 import { GLTFLoader } from "three/addons/loaders/GLTFLoader.js";
 import type { Transform } from "../../studio/src/view/transform";
 import { type Levels, levelsOf, sizeOf, type TilesetFile } from "./levels";
 import { pathInSet, type SetSource } from "./set_source";
-import { addWire, wireMaterial } from "./wire";
+import { addWire, pictureMeshes, wireMaterial } from "./wire";
 
-/** Free depth before and behind the picture's plane, for skirts [px]. */
-const kDepth = 256;
 /** Zooms such as 50 % are a little more or less than they say. */
 const kRounding = 1e-4;
 
@@ -43,6 +41,8 @@ export class TileScene {
   private tiles: TilesRenderer | null = null;
   private levels: Levels = { spacing: 1, of: () => 0 };
   private known = new WeakMap<Tile, ShownTile>();
+  private readonly numbers = new WeakMap<Tile, number>(); // levels
+  private depth = 1; // of the set's box [px]: how far skirts may lie behind the picture
   private loaded = 0;
   private broken: string[] = [];
 
@@ -51,9 +51,6 @@ export class TileScene {
     this.events = events;
     this.renderer = new WebGLRenderer({ canvas, antialias: true, alpha: true });
     this.renderer.setClearAlpha(0);
-    this.camera.position.z = kDepth;
-    this.camera.near = 0;
-    this.camera.far = 2 * kDepth;
     const decoder = new DRACOLoader();
     const file = (name: string): string => new URL(name, import.meta.url).href;
     decoder.setDecoderPath({ js: file("draco_wasm_wrapper.js"), wasm: file("draco_decoder.wasm") });
@@ -79,7 +76,7 @@ export class TileScene {
     tiles.addEventListener("load-root-tileset", ({ tileset }) => this.start(tiles, tileset as unknown as TilesetFile));
     tiles.addEventListener("load-model", ({ scene, tile }) => {
       this.loaded += 1;
-      this.known.set(tile, this.describe(tiles, scene, tile));
+      this.known.set(tile, this.describe(scene, tile));
       addWire(scene, this.lines);
       this.events.changed();
     });
@@ -99,7 +96,8 @@ export class TileScene {
     renderer.setSize(width, height, false);
     // What lies at the middle of the view is near 0 for the camera, where floats are finest.
     const middle = transform.toImage({ x: width / 2, y: height / 2 });
-    camera.position.set(middle.x, -middle.y, kDepth);
+    camera.position.set(middle.x, -middle.y, this.depth);
+    [camera.near, camera.far] = [0, 2 * this.depth];
     [camera.left, camera.right] = [-width / 2 / scale, width / 2 / scale];
     [camera.bottom, camera.top] = [-height / 2 / scale, height / 2 / scale];
     camera.updateProjectionMatrix();
@@ -139,32 +137,30 @@ export class TileScene {
   private start(tiles: TilesRenderer, tileset: TilesetFile): void {
     if (tiles !== this.tiles) return;
     this.levels = levelsOf(tileset);
-    // 3D Tiles have z up, so the picture stands there as a wall, seen from the front; another program's set may
-    // lie on the ground instead.
-    const size = this.boxOf(tiles).getSize(new Vector3());
-    if (size.y <= size.z) tiles.group.rotation.x = -Math.PI / 2;
-    tiles.group.updateMatrixWorld(true);
-    const { x, y } = this.boxOf(tiles).applyMatrix4(tiles.group.matrixWorld).getSize(new Vector3());
-    this.events.opened(sizeOf(tileset, { x, y }));
-  }
-
-  private boxOf(tiles: TilesRenderer): Box3 {
     const box = new Box3();
     tiles.getBoundingBox(box);
-    return box;
+    const size = box.getSize(new Vector3());
+    this.depth = Math.max(size.z, 1);
+    this.events.opened(sizeOf(tileset, size));
   }
 
-  private describe(tiles: TilesRenderer, scene: Object3D, tile: Tile): ShownTile {
-    let triangles = 0;
-    scene.traverse((part) => {
-      if (part instanceof Mesh) triangles += (part.geometry.index ?? part.geometry.attributes["position"]).count / 3;
-    });
-    const { boundingVolume } = (tile as unknown as { engineData: { boundingVolume: { getAABB(box: Box3): void } } }).engineData;
+  private describe(scene: Object3D, tile: Tile): ShownTile {
     const box = new Box3();
-    boundingVolume.getAABB(box);
-    box.applyMatrix4(tiles.group.matrixWorld);
-    const level = this.known.get(tile)?.level ?? this.levels.of(tile);
-    return { level, triangles, left: box.min.x, right: box.max.x, top: -box.max.y, bottom: -box.min.y };
+    let triangles = 0;
+    scene.updateMatrixWorld(true);
+    for (const { geometry, matrixWorld } of pictureMeshes(scene)) {
+      geometry.computeBoundingBox();
+      box.union(geometry.boundingBox!.clone().applyMatrix4(matrixWorld));
+      triangles += (geometry.index ?? geometry.attributes["position"]!).count / 3;
+    }
+    return { level: this.levelOf(tile), triangles, left: box.min.x, right: box.max.x, top: -box.max.y, bottom: -box.min.y };
+  }
+
+  /** Is asked before fail() changes a tile's error. */
+  private levelOf(tile: Tile): number {
+    const level = this.numbers.get(tile) ?? this.levels.of(tile);
+    this.numbers.set(tile, level);
+    return level;
   }
 
   private fail(source: SetSource, tile: Tile | null, url: string): void {
@@ -173,7 +169,10 @@ export class TileScene {
       return;
     }
     // Its parent stays: a coarser picture is better than a hole.
-    if (tile.parent) tile.parent.geometricError = 0;
+    if (tile.parent) {
+      this.levelOf(tile.parent);
+      tile.parent.geometricError = 0;
+    }
     this.broken.push(pathInSet(source, url));
     const [first, ...others] = this.broken;
     const which = others.length > 0 ? `${this.broken.length} tiles, ${first} the first of them,` : `The tile ${first}`;

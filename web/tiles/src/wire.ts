@@ -31,13 +31,19 @@ export function wireMaterial(): ShaderMaterial {
   });
 }
 
-/** Puts lines before every mesh below `scene`. They use its geometry, and are seen while the material is visible. */
-export function addWire(scene: Object3D, material: Material): void {
+/** The meshes below `scene`, but for skirts. */
+export function pictureMeshes(scene: Object3D): Mesh[] {
   const meshes: Mesh[] = [];
   scene.traverse((part) => {
-    if (part instanceof Mesh && part.geometry.attributes["color"] && part.name !== "skirt") meshes.push(part);
+    if (part instanceof Mesh && part.name !== "skirt") meshes.push(part);
   });
-  for (const mesh of meshes) {
+  return meshes;
+}
+
+/** Puts lines before every mesh below `scene`. They use its geometry, and are seen while the material is visible. */
+export function addWire(scene: Object3D, material: Material): void {
+  for (const mesh of pictureMeshes(scene)) {
+    if (!mesh.geometry.attributes["color"]) continue;
     const lines = new Mesh(mesh.geometry, material);
     lines.position.z = kLift;
     lines.frustumCulled = false;
