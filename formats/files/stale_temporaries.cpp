@@ -15,6 +15,7 @@
 namespace imgmesh {
 namespace {
 
+// For file systems whose locks do not reach other machines.
 constexpr std::time_t kUntouchedSeconds = 3600;
 
 // ".imgmesh-123-4.png"
@@ -36,11 +37,11 @@ bool same_file(const struct stat& a, const struct stat& b) {
     return a.st_dev == b.st_dev && a.st_ino == b.st_ino;
 }
 
-void remove_if_stale(int folder, const char* name) {
+void remove_if_stale(int folder, const char* name, std::time_t untouched) {
     struct stat named = {};
     if (::fstatat(folder, name, &named, AT_SYMLINK_NOFOLLOW) != 0) return;
     if (!S_ISREG(named.st_mode) || named.st_uid != ::geteuid() ||
-        std::time(nullptr) - named.st_mtime < kUntouchedSeconds)
+        std::time(nullptr) - named.st_mtime < untouched)
         return;
     // For writing: a network file system locks nothing else.
     const int fd = ::openat(folder, name, O_WRONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
@@ -61,6 +62,22 @@ bool is_new(const struct stat& folder) {
     return seen.emplace(folder.st_dev, folder.st_ino).second;
 }
 
+// Closes the descriptor.
+void remove_all_stale(int folder, std::time_t untouched) {
+    DIR* const entries = ::fdopendir(folder);
+    if (!entries) {
+        ::close(folder);
+        return;
+    }
+    while (const dirent* entry = ::readdir(entries))
+        if (is_temporary(entry->d_name)) remove_if_stale(folder, entry->d_name, untouched);
+    ::closedir(entries);
+}
+
+int open_folder(const std::string& folder) {
+    return ::open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+}
+
 }  // namespace
 
 bool claim_temporary(int fd, const std::string& path) {
@@ -75,17 +92,18 @@ bool is_named(int fd, const std::string& path) {
 }
 
 void remove_stale_temporaries(const std::string& folder) {
-    const int fd = ::open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    const int fd = open_folder(folder);
     if (fd < 0) return;
     struct stat info = {};
-    DIR* entries = ::fstat(fd, &info) == 0 && is_new(info) ? ::fdopendir(fd) : nullptr;
-    if (!entries) {
+    if (::fstat(fd, &info) == 0 && is_new(info))
+        remove_all_stale(fd, kUntouchedSeconds);
+    else
         ::close(fd);
-        return;
-    }
-    while (const dirent* entry = ::readdir(entries))
-        if (is_temporary(entry->d_name)) remove_if_stale(fd, entry->d_name);
-    ::closedir(entries);  // and fd
+}
+
+void remove_unclaimed_temporaries(const std::string& folder) {
+    const int fd = open_folder(folder);
+    if (fd >= 0) remove_all_stale(fd, 0);
 }
 
 }  // namespace imgmesh

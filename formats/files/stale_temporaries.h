@@ -24,4 +24,7 @@ bool is_named(int fd, const std::string& path);
 /// and does nothing if anything fails.
 void remove_stale_temporaries(const std::string& folder);
 
+/// The same at any time and whatever the age, for a folder to which runs on other machines write no more.
+void remove_unclaimed_temporaries(const std::string& folder);
+
 }  // namespace imgmesh

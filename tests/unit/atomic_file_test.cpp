@@ -8,7 +8,9 @@
 
 #include <csignal>
 #include <filesystem>
+#include <fstream>
 
+#include "formats/files/stale_temporaries.h"
 #include "libcore/base/error.h"
 #include "tests/support/temporary_folder.h"
 
@@ -138,6 +140,22 @@ TEST_CASE("atomic file: a killed process leaves nothing behind") {
         CHECK(WTERMSIG(status) == signal);
         CHECK(entries(folder.path()) == 0);
     }
+}
+
+TEST_CASE(
+    "temporaries that nobody has claimed go at once, those of a living run and other hidden files stay") {
+    const TemporaryFolder folder;
+    const std::string left = folder / ".imgmesh-12-3.json", other = folder / ".imgmesh-done.jsonl";
+    for (const std::string& path : {left, other}) std::ofstream(path) << "{}";
+    AtomicFile living(folder / "x.json", true);
+    living.write(Bytes{1});
+    remove_stale_temporaries(folder.path().string());
+    CHECK(fs::exists(left));  // a run on another machine may have it
+    remove_unclaimed_temporaries(folder.path().string());
+    CHECK_FALSE(fs::exists(left));
+    CHECK(fs::exists(other));
+    living.commit();
+    CHECK(entries(folder.path()) == 2);
 }
 
 TEST_CASE("read_file: limits and errors") {
