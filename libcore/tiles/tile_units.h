@@ -6,9 +6,11 @@
 
 namespace imgmesh {
 
-/// Returns the mesh in units of 2^level pixels, each position rounded to the nearest multiple of
-/// kPositionStep of them: the grid of positions is as fine beside the distance of vertices at every level,
-/// and no coordinate of a tile becomes too large for a file. Neighbours that agree on a side still do.
+/// Returns the mesh in units of 2^level pixels, with all positions on multiples of kPositionStep of them: the
+/// grid of positions is as fine beside the distance of vertices at every level, and no coordinate of a tile
+/// becomes too large for a file. Vertices on the outermost lines go to the nearest point, so that neighbours
+/// that agree on a side still do; others to the nearest where no face loses its area, if there is one within
+/// a quarter of a unit.
 BaseMesh in_level_units(BaseMesh mesh, int level);
 /// The inverse: in pixels of level 0. Exact.
 BaseMesh in_pixels(BaseMesh mesh, int level);

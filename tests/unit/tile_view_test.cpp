@@ -100,6 +100,22 @@ TEST_CASE("coarse_image: a tile of a coarser level is a picture at half the size
     CHECK((again == mesh.position));
 }
 
+TEST_CASE("in_level_units: a face so thin that its nearest points lie on a line keeps its area") {
+    // A square with two vertices inside, of which one lies just above the line between the other and the
+    // right side. At level 3 the grid has steps of a quarter of a pixel.
+    BaseMesh mesh;
+    mesh.position = {{0, 0}, {64, 0}, {0, 64}, {64, 64}, {16, 32}, {40, 31.875f}, {64, 32}};
+    mesh.feature.assign(3 * mesh.position.size(), 0);
+    mesh.faces = {{0, 4, 5}, {0, 5, 1}, {1, 5, 6}, {4, 6, 5}, {0, 2, 4}, {2, 3, 4}, {3, 6, 4}};
+    const BaseMesh level = in_level_units(mesh, 3);
+    for (const Face& f : level.faces)
+        CHECK(signed_area2(level.position[f[0]], level.position[f[1]], level.position[f[2]]) > 0);
+    for (const Vec2f& p : level.position) CHECK(p.x() / kPositionStep == std::floor(p.x() / kPositionStep));
+    for (const Vec2f& p : level.position) CHECK(p.y() / kPositionStep == std::floor(p.y() / kPositionStep));
+    CHECK((8 * level.position[5] - mesh.position[5]).norm() < 0.3f);
+    CHECK((level.position[6]) == Vec2f(8, 4));
+}
+
 TEST_CASE("coarse_image: pixels beside the mesh are outside of the mask") {
     const TileGrid grid(65, 65, 32);
     BaseMesh mesh = sample_mesh(grid, {1, 0, 0});
