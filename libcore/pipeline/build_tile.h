@@ -42,7 +42,8 @@ void round_tile_features(std::span<float> features, const BuildParams& params, c
 /// params  of check_tile_params(). StopParams count only as said at TileCommon. What the density or the error
 ///         of an image decides in build_mesh_image() is decided for the set: smoothing, the step of
 ///         positions, and kCompactLevels levels of colours. Weights are floats unless params.bary says more,
-///         so that both tiles put a pixel of their line at the same place
+///         so that both tiles put a pixel of their line at the same place.
+///         min_quality does not hold at sides: what has to go there goes, whatever triangles that leaves
 /// sides   features as round_tile_features() leaves them. Pixels beside a corner are shifted by less than a
 ///         pixel, or at least the product of the two there is below 1: then no cell folds. Up to 3/4 they
 ///         keep the area that moving pixels keep (least_moving_area)

@@ -64,6 +64,10 @@ Side side_of(const Image& picture, const PixelRect& line, const BuildParams& par
     return side;
 }
 
+struct Size {
+    int width, height;
+};
+
 struct Tile {
     Image image;
     TileSides sides;
@@ -159,6 +163,23 @@ TEST_CASE("tiles: neighbours agree on their common line after every preset, with
             if (compact) params.mesh_precision = MeshPrecision::kCompact;
             check_neighbors(picture, params, common_of(picture, params));
         }
+}
+
+TEST_CASE("tiles: of any size and of difficult pictures they are sound") {
+    for (const Kind kind : kAllKinds)
+        for (const Size& size : {Size{2, 2}, {2, 17}, {3, 3}, {17, 16}, {90, 3}, {64, 50}})
+            for (const double exchange : {0.0, 0.3}) {
+                INFO(name_of(kind) << " " << size.width << " x " << size.height << " " << exchange);
+                const Image picture = sample_picture(kind, size.width, size.height);
+                BuildParams params = by_error({});
+                params.exchange = exchange;
+                params.anneal = exchange > 0 ? 10 : 0;
+                TileCommon common = common_of(picture, params);
+                for (const double threshold : {1.0, 1e3, 1e9}) {
+                    common.max_increment = threshold;
+                    check_sound(tile_of(picture, {0, 0, size.width, size.height}, params, common));
+                }
+            }
 }
 
 TEST_CASE("tiles: neighbours agree with other maps, objectives, channels and colours") {
