@@ -90,8 +90,8 @@ set(IMGMESH_PUBLIC_HEADERS
   formats/gltf/layer_layout.h
   formats/gltf/region_gltf.h
   formats/picture/image_io.h
-  formats/picture/regions/region_source.h
-  formats/picture/regions/spool.h
+  formats/picture/region_source.h
+  formats/picture/spool.h
   formats/picture/texture_file.h)
 
 # cmake -DSOURCE=ROOT -DOUT=FOLDER -P cmake/public_headers.cmake: writes them below FOLDER/imgmesh under their public

@@ -6,7 +6,7 @@
 #include <cstring>
 #include <string>
 
-#include "formats/picture/regions/region_source.h"
+#include "formats/picture/region_source.h"
 
 namespace imgmesh {
 

@@ -1,7 +1,7 @@
 // Parts of a picture are what the whole picture has there.
 #include <doctest/doctest.h>
 
-#include "formats/picture/regions/region_source.h"
+#include "formats/picture/region_source.h"
 #include "libcore/base/error.h"
 #include "tests/support/region_checks.h"
 #include "tests/support/temporary_folder.h"

@@ -5,7 +5,7 @@
 #include <cstring>
 #include <string>
 
-#include "formats/picture/regions/region_source.h"
+#include "formats/picture/region_source.h"
 #include "libcore/base/error.h"
 #include "tests/support/icc_bytes.h"
 #include "tests/support/region_checks.h"

@@ -3,7 +3,7 @@
 
 #include <random>
 
-#include "formats/picture/regions/spool.h"
+#include "formats/picture/spool.h"
 #include "libcore/base/error.h"
 #include "tests/support/jpeg_writer.h"
 #include "tests/support/png_writer.h"

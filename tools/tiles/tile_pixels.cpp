@@ -1,6 +1,6 @@
 #include "tools/tiles/tile_pixels.h"
 
-#include "formats/picture/regions/region_source.h"
+#include "formats/picture/region_source.h"
 #include "libcore/base/error.h"
 
 namespace imgmesh {

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "formats/picture/regions/region_source.h"
+#include "formats/picture/region_source.h"
 #include "formats/tileset/tile_set_files.h"
 #include "libcore/pipeline/param_table.h"
 #include "tools/common/in_file.h"

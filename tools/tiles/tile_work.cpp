@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "formats/container/container.h"
-#include "formats/picture/regions/spool.h"
+#include "formats/picture/spool.h"
 #include "formats/tileset/tile_set_files.h"
 #include "formats/tileset/tile_view.h"
 #include "formats/tileset/tileset_json.h"

@@ -3,7 +3,7 @@
 
 #include <memory>
 
-#include "formats/picture/regions/region_source.h"
+#include "formats/picture/region_source.h"
 
 namespace imgmesh {
 

@@ -1,4 +1,4 @@
-#include "formats/picture/regions/region_source.h"
+#include "formats/picture/region_source.h"
 
 #include <algorithm>
 #include <filesystem>

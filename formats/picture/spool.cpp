@@ -1,4 +1,4 @@
-#include "formats/picture/regions/spool.h"
+#include "formats/picture/spool.h"
 
 #include <fcntl.h>
 #include <unistd.h>
