@@ -38,7 +38,7 @@ void check_coverage(const std::string& path, const TileList& list) {
         edges.push_back(tile.y + tile.height);
     }
     std::ranges::sort(edges);
-    edges.erase(std::ranges::unique(edges).begin(), edges.end());
+    edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
     std::vector<std::size_t> order(list.tiles.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
     std::ranges::stable_sort(order, {},
