@@ -67,7 +67,8 @@ TEST_CASE("spool: PNG of every kind") {
         for (const int bits : depths)
             for (const bool transparent : {false, true}) {
                 if (transparent && type & PNG_COLOR_MASK_ALPHA) continue;
-                INFO("type " << type << ", " << bits << " bits, transparent " << transparent);
+                const int color_type = type;  // clang 14 captures no structured binding
+                INFO("type " << color_type << ", " << bits << " bits, transparent " << transparent);
                 write_png(folder / "k.png", 301, 270, {type, bits, false, transparent}, 3);
                 check_spooled(folder / "k.png", folder / "k.tif", 150);
                 check_spooled(folder / "k.png", folder / "k.tif", 150, {.values = true});
