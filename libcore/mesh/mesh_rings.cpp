@@ -61,7 +61,7 @@ class ValenceLimit {
             const Id v = waiting_.front();
             waiting_.pop_front();
             while (valence(v) > kMost)
-                if (left-- == 0 || !flip_one(v))
+                if (left-- == 0 || !(flip_one(v) || split(v)))
                     throw Error(ErrorKind::kUnsupported, cat("vertex ", v, " has ", valence(v),
                                                              " neighbours, expected at most ", kMost));
         }
@@ -72,25 +72,87 @@ class ValenceLimit {
 
     std::size_t valence(Id v) const { return at_[v].size() + open_[v]; }
 
-    // The edge whose flip makes the best triangles, if possible without too many neighbours elsewhere.
+    // Flips the edge that leaves the best triangles, if there is one whose flip makes too many neighbours
+    // nowhere.
     bool flip_one(Id v) {
         const std::vector<Id> chain = fan_chain(mesh_, v, at_[v]);
         const std::size_t n = chain.size();
         double best = 0;
-        bool best_fits = false;
         std::size_t corner = n;
         for (std::size_t k = open_[v]; k + open_[v] < n; ++k) {
             const Id a = chain[(k + n - 1) % n], b = chain[k], c = chain[(k + 1) % n];
             const double shape = std::min(corner_shape(mesh_, a, b, c), corner_shape(mesh_, v, a, c));
-            const bool fits = valence(a) < kMost && valence(c) < kMost;
-            if (shape <= 0 || (fits == best_fits ? shape <= best : best_fits)) continue;
+            if (shape <= best || valence(a) >= kMost || valence(c) >= kMost) continue;
             best = shape;
-            best_fits = fits;
             corner = k;
         }
         if (corner == n) return false;
         flip(v, chain[(corner + n - 1) % n], chain[corner], chain[(corner + 1) % n]);
         return true;
+    }
+
+    // Gives half of the edges to a new vertex beside v, where no edge can be flipped: beside a long edge of
+    // the boundary its ends alone are seen.
+    bool split(Id v) {
+        const std::vector<Id> chain = fan_chain(mesh_, v, at_[v]);
+        // Seen from v, the new vertex lies among the neighbours that it takes: less than half a turn.
+        const std::size_t count = chain.size() / 2 + 1,
+                          ways = open_[v] ? chain.size() - count + 1 : chain.size();
+        for (std::size_t first = 0; first < ways; ++first) {
+            std::vector<Id> taken;
+            for (std::size_t k = 0; k < count; ++k) taken.push_back(chain[(first + k) % chain.size()]);
+            Vec2f middle = Vec2f::Zero();
+            for (const Id n : taken)
+                middle += (mesh_.position[n] - mesh_.position[v]) / static_cast<float>(count);
+            for (float share = 0.5f; share > 1e-3f; share /= 2)
+                if (split(v, taken, mesh_.position[v] + share * middle)) return true;
+        }
+        return false;
+    }
+    bool split(Id v, const std::vector<Id>& taken, const Vec2f& place) {
+        const auto at = [&](Id n) { return mesh_.position[n]; };
+        if (!(signed_area2(at(v), at(taken.front()), place) > 0) ||
+            !(signed_area2(at(v), place, at(taken.back())) > 0))
+            return false;
+        for (std::size_t k = 0; k + 1 < taken.size(); ++k)
+            if (!(signed_area2(place, at(taken[k]), at(taken[k + 1])) > 0)) return false;
+        const Id added = as_id(mesh_.vertex_count());
+        const std::vector<float> feature = feature_at(v, taken, place);
+        mesh_.position.push_back(place);
+        mesh_.feature.insert(mesh_.feature.end(), feature.begin(), feature.end());
+        at_.emplace_back();
+        open_.push_back(false);
+        for (std::size_t k = 0; k + 1 < taken.size(); ++k) {
+            const Id f = face_with(v, taken[k]);
+            mesh_.faces[f] = {added, taken[k], taken[k + 1]};
+            std::erase(at_[v], f);
+            at_[added].push_back(f);
+        }
+        for (const Face& face : {Face{v, taken.front(), added}, Face{v, added, taken.back()}}) {
+            const Id f = as_id(mesh_.faces.size());
+            mesh_.faces.push_back(face);
+            for (const Id corner : face) at_[corner].push_back(f);
+        }
+        for (const Id n : {taken.front(), taken.back(), added})
+            if (valence(n) > kMost) waiting_.push_back(n);
+        return true;
+    }
+    // What the mesh has at a place in one of the faces between v and the neighbours taken.
+    std::vector<float> feature_at(Id v, const std::vector<Id>& taken, const Vec2f& place) const {
+        std::vector<float> feature(mesh_.feature_of(v), mesh_.feature_of(v) + mesh_.channels);
+        for (std::size_t k = 0; k + 1 < taken.size(); ++k) {
+            const Vec2f &o = mesh_.position[v], &a = mesh_.position[taken[k]],
+                        &b = mesh_.position[taken[k + 1]];
+            const double all = signed_area2(o, a, b), u = signed_area2(o, place, b) / all,
+                         w = signed_area2(o, a, place) / all;
+            if (u < 0 || w < 0) continue;
+            for (int c = 0; c < mesh_.channels; ++c)
+                feature[as_index(c)] = static_cast<float>((1 - u - w) * double{mesh_.feature_of(v)[c]} +
+                                                          u * double{mesh_.feature_of(taken[k])[c]} +
+                                                          w * double{mesh_.feature_of(taken[k + 1])[c]});
+            break;
+        }
+        return feature;
     }
 
     // Faces (v, a, b) and (v, b, c) become (a, b, c) and (v, a, c).

@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "libcore/base/index.h"
-#include "libcore/mesh/round_positions.h"
 #include "libcore/mesh/tile_sides.h"
 
 #include "libcore/simplify/simplify_mesh.h"
@@ -117,8 +116,6 @@ BaseMesh coarser_tile(std::span<const TileMesh> children, int level, int width, 
     own.solver = SimplifyParams().solver;
     SimplifyResult coarse = simplify_mesh(mesh, unit * Vec2f(right, bottom), kept, own,
                                           {.vertices = std::max<std::int64_t>(4, goal)});
-    // Vertices that have met no other are on the finer grid of the children.
-    round_positions(coarse.mesh, kPositionStep);
     scale(coarse.mesh, 1 / unit);
     set_features(coarse.mesh, on_sides);
     return std::move(coarse.mesh);
