@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "formats/container/container.h"
+#include "formats/files/stale_temporaries.h"
 #include "formats/picture/spool.h"
 #include "formats/tileset/tile_set_files.h"
 #include "formats/tileset/tile_view.h"
@@ -120,11 +121,22 @@ TileCommon TileWork::common() const {
     return common;
 }
 
+// Coarser tiles of an earlier run were made without this one if it could not be made then.
+void TileWork::forget_coarser(TileName tile) const {
+    const TileGrid& grid = planned_.jobs.grid;
+    while (tile.level + 1 < grid.levels()) {
+        tile = grid.parent(tile);
+        std::error_code is_not_there;
+        std::filesystem::remove(in_set(folder_, tile_record(tile)), is_not_there);
+    }
+}
+
 void TileWork::make(const TileName& tile, const Progress& progress) {
     if (is_finished(folder_, tile, key_)) {
         ++kept_;
         return;
     }
+    forget_coarser(tile);
     make_level_folders(folder_, tile.level);
     TileRecord record;
     record.tile = tile;
@@ -208,6 +220,16 @@ void TileWork::coarsen(TileRecord& record) {
     write(record, coarse_image(mesh, source, grid, record.tile), LayerLayout::kCompact);
 }
 
+std::vector<std::string> TileWork::folders_of_set() const {
+    std::vector<std::string> folders = {folder_};
+    for (int level = 0; level < planned_.jobs.grid.levels(); ++level) {
+        const TileName tile{level, 0, 0};
+        for (const std::string& file : {tile_record(tile), tile_view(tile)})
+            folders.push_back(std::filesystem::path(in_set(folder_, file)).parent_path().string());
+    }
+    return folders;
+}
+
 void TileWork::index() {
     TileSetIndex index;
     index.plan = planned_.plan;
@@ -224,7 +246,9 @@ void TileWork::index() {
     std::ranges::sort(index.tiles, comes_before, &TileRecord::tile);
     write_tileset(folder_, index);
     write_index(folder_, index);
-    std::filesystem::remove_all(in_set(folder_, kWorkFolder));
+    for (const std::string& folder : folders_of_set()) remove_unclaimed_temporaries(folder);
+    std::error_code done_by_another;  // process that does the same job
+    std::filesystem::remove_all(in_set(folder_, kWorkFolder), done_by_another);
 }
 
 }  // namespace imgmesh

@@ -32,9 +32,11 @@ class TileWork {
     void spool(const Progress& progress);
     void sample(int row, const Progress& progress);
     void find_threshold();
+    void forget_coarser(TileName tile) const;
     void make(const TileName& tile, const Progress& progress);
     void build(TileRecord& record, const Progress& progress);
     void coarsen(TileRecord& record);
+    std::vector<std::string> folders_of_set() const;
     void index();
     TileCommon common() const;
     void write(TileRecord& record, MeshImage mesh_image, LayerLayout layers) const;
