@@ -10,6 +10,7 @@
 #include "libcore/mesh/tile_sides.h"
 
 #include "libcore/simplify/simplify_mesh.h"
+#include "libcore/tiles/settle_positions.h"
 #include "libcore/tiles/simplify_side.h"
 
 namespace imgmesh {
@@ -116,6 +117,7 @@ BaseMesh coarser_tile(std::span<const TileMesh> children, int level, int width, 
     own.solver = SimplifyParams().solver;
     SimplifyResult coarse = simplify_mesh(mesh, unit * Vec2f(right, bottom), kept, own,
                                           {.vertices = std::max<std::int64_t>(4, goal)});
+    settle_positions(coarse.mesh);
     scale(coarse.mesh, 1 / unit);
     set_features(coarse.mesh, on_sides);
     return std::move(coarse.mesh);
