@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "formats/container/container.h"
+#include "formats/files/stream_file.h"
 #include "formats/picture/image_io.h"
 #include "libcore/base/stopwatch.h"
 #include "libcore/mesh/outer_edge.h"
@@ -63,7 +64,13 @@ ContainerPlan container_plan(const BuildParams& params, const Image& image, cons
 }
 
 void check_options(const BuildOptions& o) {
-    if (o.tiles.size) return;
+    if (o.tiles.size) {
+        // A folder of such a name would be taken for a container, or for standard output.
+        if (stream_descriptor(o.output) >= 0 || is_container(o.output))
+            throw Error(ErrorKind::kBadArgument,
+                        cat("-o ", o.output, ": a tile set is a folder, expected a name as in out/"));
+        return;
+    }
     if (!is_container(o.output))
         throw Error(ErrorKind::kBadArgument,
                     cat("-o ", o.output, ": expected a name in .glb or .gltf, or a folder",

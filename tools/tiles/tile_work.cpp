@@ -20,6 +20,7 @@
 #include "tools/build_memory.h"
 #include "tools/common/in_file.h"
 #include "tools/common/output.h"
+#include "tools/common/text.h"
 #include "tools/tiles/threshold_files.h"
 #include "tools/tiles/tile_pixels.h"
 
@@ -151,7 +152,7 @@ void TileWork::make(const TileName& tile, const Progress& progress) {
         record = {};
         record.tile = tile;
         record.key = key_;
-
+        record.missing = printable_line(error.what());
         context_.warnings.push_back(cat("tile ", tile_text(tile), " is left out: ", error.what()));
     }
     write_record(folder_, record);

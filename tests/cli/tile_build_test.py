@@ -1,0 +1,55 @@
+"""Tile sets as imgmesh-build makes them: broken pictures, outputs that are no folder."""
+import json
+import shutil
+
+import picture_files
+from support import CliCase, main
+
+
+class TileBuild(CliCase):
+    def setUp(self):
+        super().setUp()
+        self.picture = picture_files.png(self.folder / "a.png", picture_files.ramp(101, 77))
+
+    def build_set(self, *args, picture="a.png", code=0):
+        result = self.run_tool("imgmesh-build", picture, "-o", "set/", "--tiles", 32, *args)
+        self.assertEqual(result.returncode, code, result.stderr)
+        return result
+
+    def test_sizes(self):
+        for width, height in ((2, 2), (100, 2), (31, 31), (33, 33), (34, 65), (101, 77)):
+            with self.subTest(size=(width, height)):
+                picture_files.png(self.folder / "a.png", picture_files.ramp(width, height))
+                self.build_set()
+                self.assertTrue(self.report("imgmesh-info", "set", "--validate")["valid"])
+                self.run_ok("imgmesh-reconstruct", "set", "-o", "b.png")
+                self.assertEqual(picture_files.read(self.folder / "b.png").shape[:2], (height, width))
+                shutil.rmtree(self.folder / "set")
+
+    def test_output_is_a_folder(self):
+        for name in ("-", "out.glb", "out.gltf"):
+            self.assert_error("imgmesh-build", ["a.png", "-o", name, "--tiles", 32], 2, "folder")
+
+    def test_missing_tiles(self):
+        """Tiles that cannot be read are named with the reason, the rest is done, and a later run mends them."""
+        parts = self.folder / "parts"
+        parts.mkdir()
+        whole = picture_files.ramp(150, 150)
+        for row in range(3):
+            for column in range(3):
+                picture_files.png(parts / f"{column}_{row}.png",
+                                  whole[50 * row:50 * row + 50, 50 * column:50 * column + 50])
+        sound = (parts / "2_2.png").read_bytes()
+        (parts / "2_2.png").write_bytes(b"not a picture" + bytes(100))
+        self.assertIn("is missing", self.build_set(picture="parts", code=4).stderr)
+        index = json.loads((self.folder / "set/index.json").read_text())
+        self.assertIn("0/4_4", [tile["tile"] for tile in index["missing"]])
+        for tile in index["missing"]:
+            self.assertIn("2_2.png", tile["reason"])
+        (parts / "2_2.png").write_bytes(sound)
+        self.build_set(picture="parts")
+        self.assertEqual(json.loads((self.folder / "set/index.json").read_text())["missing"], [])
+
+
+if __name__ == "__main__":
+    main()
