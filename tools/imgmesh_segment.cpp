@@ -9,6 +9,7 @@
 #include "formats/files/extension.h"
 #include "formats/gltf/region_gltf.h"
 #include "formats/picture/image_io.h"
+#include "formats/tileset/tile_set_files.h"
 #include "libcore/image/color.h"
 #include "libcore/image/feature_space.h"
 #include "libcore/segment/contour_hierarchy.h"
@@ -32,6 +33,7 @@
 #include "tools/common/tool_main.h"
 #include "tools/segment_options.h"
 #include "tools/segment_report.h"
+#include "tools/tiles/set_segment.h"
 
 using namespace imgmesh;
 
@@ -59,6 +61,7 @@ double bytes_a_pixel(const SegmentOptions& o, const Level& level) {
 }
 
 Report segment_one(const SegmentOptions& o, Context& context) {
+    if (is_tile_set(o.input)) return segment_set(o, context);
     for (const std::string& output : outputs_of(o)) check_output(output, context.overwrite);
 
     context.progress(0, "read");
@@ -73,11 +76,7 @@ Report segment_one(const SegmentOptions& o, Context& context) {
     const Level& level = mesh_image.levels[static_cast<std::size_t>(o.level)];
 
     context.memory.take_for(o.input, mesh_image, bytes_a_pixel(o, level));
-    SegmentParams params = o.params;
-    params.threshold = o.threshold.value_or(params.threshold);
-    params.compactness = o.compactness.value_or(params.compactness);
-    params.distance = o.distance.value_or(params.distance);
-    params.quality = o.quality.value_or(params.quality);
+    const SegmentParams params = params_of(o);
     const FeatureImage picture = picture_of(o, mesh_image, level, context);
     const Segmentation result = segment(level, picture, params, [&](double f, std::string_view stage) {
         context.progress(0.3 + 0.4 * f, stage);
@@ -140,6 +139,8 @@ void print(const Report& report, std::ostream& out) {
     const bool superpixels = report["distance"] == "superpixels";  // which follow pixels, not patches
     table.add("regions", superpixels ? cat(report["regions"], " superpixels")
                                      : cat(report["regions"], " of ", report["cells"], " cells"));
+    if (report.contains("tiles"))
+        table.add("tiles", cat(report["tiles"], ", ", report["joined"], " regions in several"));
     table.add("sizes", cat(report["min_pixels"], " to ", report["max_pixels"], " pixels"));
     if (!superpixels)
         table.add("distance", cat(report["distance"].get<std::string>(), ", merged up to ",
@@ -161,7 +162,7 @@ int main(int argc, char** argv) {
         {.name = "imgmesh-segment",
          .description = "Cut the images of containers into regions.",
          .input_name = "CONTAINER",
-         .input_help = "Containers to read (.glb, .gltf)",
+         .input_help = "Containers to read (.glb, .gltf), or tile sets (a folder with index.json)",
          .output_help = "Labels to write, as .exr (UINT id), .tif (32 bit), .npy (uint32), .mat (segs) or "
                         ".png (16 bit), "
                         "or a folder, ended by /, for NAME.png "

@@ -146,6 +146,15 @@ void add_segment_options(CLI::App& app, SegmentOptions& o) {
                            files));
 }
 
+SegmentParams params_of(const SegmentOptions& o) {
+    SegmentParams params = o.params;
+    params.threshold = o.threshold.value_or(params.threshold);
+    params.compactness = o.compactness.value_or(params.compactness);
+    params.distance = o.distance.value_or(params.distance);
+    params.quality = o.quality.value_or(params.quality);
+    return params;
+}
+
 std::vector<std::string> outputs_of(const SegmentOptions& o) {
     std::vector<std::string> outputs = {o.output};
     for (const std::string* path :

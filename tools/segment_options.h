@@ -33,6 +33,9 @@ struct SegmentOptions {
 
 void add_segment_options(CLI::App& app, SegmentOptions& options);
 
+/// Returns the parameters with the usual values where none are given.
+SegmentParams params_of(const SegmentOptions& options);
+
 /// Returns all files that a run writes.
 std::vector<std::string> outputs_of(const SegmentOptions& options);
 

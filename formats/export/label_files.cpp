@@ -7,7 +7,6 @@
 #include "formats/export/mat_file.h"
 #include "formats/export/npy.h"
 #include "formats/exr/exr_parts.h"
-#include "formats/files/atomic_file.h"
 #include "formats/files/extension.h"
 #include "formats/picture/image_io.h"
 #include "libcore/base/error.h"
@@ -63,8 +62,8 @@ void write_labels(const std::string& path, int width, int height, std::span<cons
         return;
     }
     if (extension != ".png") {
-        AtomicFile file(path, overwrite);
-        file.write(tiff_from_labels(width, height, labels));
+        LabelTiff file(path, width, height, overwrite);
+        file.put(labels);
         file.commit();
         return;
     }

@@ -1,16 +1,35 @@
-// Labels as a TIFF of 32-bit integers.
+// Labels as a TIFF of 32-bit integers, of any size.
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <span>
-#include <vector>
+#include <string>
 
 #include "libcore/base/types.h"
 
 namespace imgmesh {
 
-/// Returns the bytes of a grey TIFF with one unsigned 32-bit label a pixel, width * height of them, packed by
-/// deflate. GDAL's tag names kNone as the value that is no data. Same bytes for the same labels.
-std::vector<std::uint8_t> tiff_from_labels(int width, int height, std::span<const Id> labels);
+/// Writes a grey TIFF with one unsigned 32-bit label a pixel, in strips packed by deflate; a BigTIFF where 4
+/// GB may not be enough. GDAL's tag names kNone as the value that is no data. Holds one strip. Same bytes for
+/// the same labels.
+class LabelTiff {
+  public:
+    /// The file appears at commit(). Throws Error(kIo) if it cannot be written, or if it exists and
+    /// `overwrite` is false.
+    LabelTiff(const std::string& path, int width, int height, bool overwrite);
+    ~LabelTiff();
+    LabelTiff(const LabelTiff&) = delete;
+    LabelTiff& operator=(const LabelTiff&) = delete;
+
+    /// Adds whole rows below those already there: a multiple of the width. Throws Error(kIo).
+    void put(std::span<const Id> labels);
+    /// After the last row. Throws Error(kIo).
+    void commit();
+
+  private:
+    class File;
+    std::unique_ptr<File> file_;
+};
 
 }  // namespace imgmesh
