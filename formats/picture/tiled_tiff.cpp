@@ -18,8 +18,24 @@ namespace {
 
 constexpr int kTile = 256;  // pixels
 
+int ignore(TIFF*, void*, const char*, const char*, va_list) {
+    return 1;
+}
+
+std::vector<std::uint8_t> codes_of(const StoredImage& stored) {
+    const std::vector<float>& samples = stored.image.data;
+    if (stored.type == SampleType::kUint8) return codes8_from_floats(samples);
+    const auto bytes = [](const auto& values) {
+        const auto* first = reinterpret_cast<const std::uint8_t*>(values.data());
+        return std::vector<std::uint8_t>(first, first + values.size() * sizeof(values[0]));
+    };
+    return stored.type == SampleType::kUint16 ? bytes(codes16_from_floats(samples)) : bytes(samples);
+}
+
+}  // namespace
+
 // libtiff's file: it writes anywhere, and reads only what it has written of its header.
-struct Target {
+struct TiledTiff::Target {
     AtomicFile file;
     std::uint64_t at = 0, size = 0;
     std::string fault = {};  // exceptions do not pass through libtiff
@@ -46,22 +62,6 @@ struct Target {
     static int close(thandle_t) { return 0; }
     static toff_t length(thandle_t file) { return self(file).size; }
 };
-
-int ignore(TIFF*, void*, const char*, const char*, va_list) {
-    return 1;
-}
-
-std::vector<std::uint8_t> codes_of(const StoredImage& stored) {
-    const std::vector<float>& samples = stored.image.data;
-    if (stored.type == SampleType::kUint8) return codes8_from_floats(samples);
-    const auto bytes = [](const auto& values) {
-        const auto* first = reinterpret_cast<const std::uint8_t*>(values.data());
-        return std::vector<std::uint8_t>(first, first + values.size() * sizeof(values[0]));
-    };
-    return stored.type == SampleType::kUint16 ? bytes(codes16_from_floats(samples)) : bytes(samples);
-}
-
-}  // namespace
 
 class TiledTiff::File {
   public:

@@ -36,6 +36,7 @@ class TiledTiff {
     void commit();
 
   private:
+    struct Target;
     class File;
     std::unique_ptr<File> file_;
 };

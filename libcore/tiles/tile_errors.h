@@ -18,15 +18,16 @@ struct TileErrors {
 /// Pixels that are at most so far from a shared line count as its seam.
 inline constexpr int kSeamReach = 2;
 
+/// Which sides of a tile another one shares.
+struct TileSeams {
+    bool left = false, top = false, right = false, bottom = false;
+};
+
 /// Returns the squared errors of the pixels that a tile owns, through its map.
 ///
 /// level    the tile's mesh and map, with the features of `feature`
 /// feature  of all pixels of the tile
 /// own      those that it owns, in its own coordinates
-/// seams    which sides are shared with a neighbour
-struct TileSeams {
-    bool left = false, top = false, right = false, bottom = false;
-};
 TileErrors tile_errors(const Level& level, const FeatureImage& feature, const PixelRect& own,
                        const TileSeams& seams);
 

@@ -7,13 +7,18 @@
 #include "formats/picture/region_source.h"
 #include "formats/tileset/tile_set_files.h"
 #include "libcore/pipeline/param_table.h"
-#include "tools/common/in_file.h"
 #include "tools/common/names.h"
 
 namespace fs = std::filesystem;
 
 namespace imgmesh {
 namespace {
+
+// What the work on a tile of so many pixels takes. Measured: docs/scale.md.
+double tile_bytes(double pixels) {
+    constexpr double kBytesOfPixel = 130, kOwnBytes = 120e6;
+    return kOwnBytes + kBytesOfPixel * pixels;
+}
 
 std::string option_text(std::string_view name, std::string_view value) {
     return cat("--", name, value.empty() ? "" : " ", value);
@@ -68,6 +73,9 @@ std::vector<std::pair<std::string, std::string>> parameters_of(const BuildOption
         all.emplace_back("fitting-space", color_space_name(*planned.read.fitting_space));
     all.emplace_back("light", planned.common.space.gamut == Gamut::kHdr ? "hdr" : "display");
     all.emplace_back("layers", name_of(layer_choices(), tile_layers(o)));
+    ContainerOptions container;
+    compress(container, o.compression, DracoMode::kEdgebreaker);
+    all.emplace_back("draco", name_of(draco_choices(), container.draco));
     return all;
 }
 
@@ -92,6 +100,20 @@ Gamut gamut_of_all(const BuildOptions& o, const TilePixels& pixels, const TileGr
     return Gamut::kDisplay;
 }
 
+// Any part that can be read: a picture whose first block is broken has tiles all the same.
+Image some_part(const RegionSource& source, const TileGrid& grid) {
+    const std::vector<TileName> tiles = grid.tiles(0);
+    for (const TileName& tile : tiles) {
+        const PixelRect rect = grid.rect(tile);
+        try {
+            return source.read({rect.left, rect.top, rect.left + 2, rect.top + 2});
+        } catch (const Error& error) {
+            if (tile == tiles.back()) throw;
+        }
+    }
+    return {};
+}
+
 // What becomes of alpha must not depend on the tile.
 AlphaUse alpha_of_all(const BuildOptions& o, bool has_alpha, Context& context) {
     if (!has_alpha) return AlphaUse::kIgnore;
@@ -103,6 +125,19 @@ AlphaUse alpha_of_all(const BuildOptions& o, bool has_alpha, Context& context) {
     return AlphaUse::kCut;
 }
 
+// Errors of readers have a file's name, others get that of the picture.
+template <class Work>
+auto in_input(const BuildOptions& o, const Work& work) {
+    try {
+        return work();
+    } catch (const Error& error) {
+        const std::string text = error.what();
+        for (const std::string& name : {o.input, o.mask, o.output})
+            if (!name.empty() && text.starts_with(name)) throw;
+        throw Error(error.kind(), cat(o.input, ": ", text));
+    }
+}
+
 }  // namespace
 
 LayerLayout tile_layers(const BuildOptions& o) {
@@ -110,7 +145,7 @@ LayerLayout tile_layers(const BuildOptions& o) {
 }
 
 PlannedTileSet plan_tile_set(const BuildOptions& o, Context& context) {
-    return in_file(o.input, [&] {
+    return in_input(o, [&] {
         ReadImageOptions read = o.read;
         read.channels = channels_to_read(o.params, false);
         const RegionSource source(o.input, read);
@@ -134,7 +169,7 @@ PlannedTileSet plan_tile_set(const BuildOptions& o, Context& context) {
         planned.mask.threshold = o.alpha.threshold.value_or(0.5);
         AlphaParams alpha{planned.mask.alpha, planned.mask.threshold};
         // The names of channels and the use of alpha are those of any part.
-        const Image corner = source.read({0, 0, std::min(2, facts.width), std::min(2, facts.height)});
+        const Image corner = some_part(source, grid);
         const SourcePlan taken = plan_source(corner, alpha, !o.mask.empty(), o.params, option_text);
         for (const std::string& warning : taken.warnings)
             context.warnings.push_back(cat(o.input, ": ", warning));
@@ -146,6 +181,8 @@ PlannedTileSet plan_tile_set(const BuildOptions& o, Context& context) {
         const TilePixels whole(o.input, o.mask, read);
         planned.common.space = tile_space(corner, planned.params, gamut_of_all(o, whole, grid, planned.mask));
         planned.common.sample_type = facts.sample_type;
+        const double side = *o.tiles.size + 1.0;
+        context.memory.take(cat("a tile of ", *o.tiles.size, " pixels"), tile_bytes(side * side));
         planned.common.density = planned.vertices > 0 ? 100 * planned.vertices / pixels : 1;
         planned.plan = {.generator = context.generator,
                         .source = source_of(o.input),
@@ -162,7 +199,7 @@ PlannedTileSet plan_tile_set(const BuildOptions& o, Context& context) {
 
 Report plan_report(const PlannedTileSet& planned, const BuildOptions& o) {
     // Measured: docs/scale.md.
-    constexpr double kBytesOfPixel = 130, kOwnBytes = 120e6, kSecondsOfMegapixel = 3, kStartSeconds = 2;
+    constexpr double kSecondsOfMegapixel = 3, kStartSeconds = 2;
     const TileGrid& grid = planned.jobs.grid;
     std::vector<std::string> base;
     for (std::size_t i = 0; i < o.tiles.command.size(); ++i) {
@@ -196,7 +233,7 @@ Report plan_report(const PlannedTileSet& planned, const BuildOptions& o) {
              {"needs", job.needs},
              {"output", job.output},
              {"command", command},
-             {"memory_mb", static_cast<int>((kOwnBytes + kBytesOfPixel * held) / 1e6) + 1},
+             {"memory_mb", static_cast<int>(tile_bytes(held) / 1e6) + 1},
              {"seconds", static_cast<int>(kStartSeconds + kSecondsOfMegapixel * pixels / 1e6) + 1}});
     }
     return {{"format", "imgmesh-tile-jobs"}, {"version", 1},          {"out", o.output},

@@ -71,6 +71,7 @@ class TileSetRun {
             const TileTotals totals = level_totals(index, level);
             levels.push_back({{"tiles", totals.tiles},
                               {"vertices", totals.vertices},
+                              {"own_vertices", totals.own_vertices},
                               {"faces", totals.faces},
                               {"bytes", totals.bytes}});
         }
@@ -135,8 +136,8 @@ void print_tile_set(const Report& report, std::ostream& out) {
     table.add("size", cat(report["width"], " x ", report["height"], " pixels"));
     table.add("tiles",
               cat(finest["tiles"], " of ", report["tile"], " pixels, ", report["levels"].size(), " levels"));
-    table.add("meshes", cat(finest["vertices"], " vertices, ", finest["faces"], " faces, ", number("density"),
-                            " % of the pixels"));
+    table.add("meshes", cat(finest["own_vertices"], " vertices, ", finest["faces"], " faces, ",
+                            number("density"), " % of the pixels"));
     table.add("error", cat("map ", number("map_rms"), ", at seams ", number("seam_rms"), ", Gouraud ",
                            number("gouraud_rms"), " L*u*v* RMS"));
     std::uint64_t bytes = 0;

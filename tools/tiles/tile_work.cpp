@@ -41,6 +41,36 @@ std::int64_t own_vertices(const BaseMesh& mesh, int level, const PixelRect& rect
     });
 }
 
+// Along a side each tile decides by itself which pixels have faces. All have some, and the same in both,
+// where the mask has no parts thinner than two pixels there.
+void check_sides(const Mask& mask, const TileSeams& seams) {
+    if (mask.empty()) return;
+    const auto is_thick = [&](int x, int y) {
+        for (const int top : {y - 1, y})
+            for (const int left : {x - 1, x})
+                if (mask.at(left, top) && mask.at(left + 1, top) && mask.at(left, top + 1) &&
+                    mask.at(left + 1, top + 1))
+                    return true;
+        return false;
+    };
+    const auto check = [&](int x, int y) {
+        if (mask.at(x, y) && !is_thick(x, y))
+            throw Error(
+                ErrorKind::kUnsupported,
+                cat("at pixel ", x, ',', y,
+                    " of it, on its side, the mask is thinner than two pixels, and neighbours would not "
+                    "agree there"));
+    };
+    for (int x = 0; x < mask.width; ++x) {
+        if (seams.top) check(x, 0);
+        if (seams.bottom) check(x, mask.height - 1);
+    }
+    for (int y = 0; y < mask.height; ++y) {
+        if (seams.left) check(0, y);
+        if (seams.right) check(mask.width - 1, y);
+    }
+}
+
 bool has_none(const PixelPart& part) {
     return !part.mask.empty() && part.mask.count() == 0;
 }
@@ -59,6 +89,15 @@ TileWork::~TileWork() = default;
 TilePixels& TileWork::pixels() {
     if (!pixels_) pixels_ = std::make_unique<TilePixels>(planned_.picture, options_.mask, planned_.read);
     return *pixels_;
+}
+
+PixelPart TileWork::read(const PixelRect& rect) {
+    try {
+        return pixels().read(rect, planned_.mask);
+    } catch (const Error& error) {
+        // A file of a list that is not there is like one that is broken: the other tiles can do without.
+        throw Error(error.kind() == ErrorKind::kIo ? ErrorKind::kBadFile : error.kind(), error.what());
+    }
 }
 
 void TileWork::run(const TileJob& job, const Progress& progress) {
@@ -94,7 +133,7 @@ void TileWork::sample(int row, const Progress& progress) {
     for (std::size_t n = 0; n < parts.size(); ++n) {
         progress(static_cast<double>(n) / static_cast<double>(parts.size()), "sample");
         try {
-            PixelPart part = pixels().read(parts[n], planned_.mask);
+            PixelPart part = read(parts[n]);
             if (has_none(part)) continue;
             FeatureImage feature = tile_features(part.image, planned_.common, part.mask);
             sum.add(
@@ -148,12 +187,16 @@ void TileWork::make(const TileName& tile, const Progress& progress) {
         else
             coarsen(record);
     } catch (const Error& error) {
+        if (error.kind() == ErrorKind::kUnsupported || error.kind() == ErrorKind::kInternal)
+            throw Error(error.kind(), cat(options_.input, ": tile ", tile_text(tile), ": ", error.what()));
         if (error.kind() != ErrorKind::kBadFile) throw;
         record = {};
         record.tile = tile;
         record.key = key_;
         record.missing = printable_line(error.what());
-        context_.warnings.push_back(cat("tile ", tile_text(tile), " is left out: ", error.what()));
+        // A run of all jobs tells of it at its end.
+        if (!options_.tiles.job.empty())
+            context_.warnings.push_back(cat("tile ", tile_text(tile), " is left out: ", error.what()));
     }
     write_record(folder_, record);
     ++made_;
@@ -163,8 +206,11 @@ void TileWork::build(TileRecord& record, const Progress& progress) {
     const TileGrid& grid = planned_.jobs.grid;
     const TileName tile = record.tile;
     const PixelRect rect = grid.rect(tile);
-    PixelPart part = pixels().read(rect, planned_.mask);
+    PixelPart part = read(rect);
     if (has_none(part)) return;
+    const TileSeams seams{tile.column > 0, tile.row > 0, tile.column + 1 < grid.columns(0),
+                          tile.row + 1 < grid.rows(0)};
+    check_sides(part.mask, seams);
     const TileCommon shared = common();
     const TileSides sides = sides_of_tile(part.image, planned_.params, shared, part.mask);
     const FeatureImage feature = tile_features(part.image, shared, part.mask);
