@@ -47,6 +47,7 @@ TileSide tile_side(const MeshImage& image, SideOf side) {
     const int place = side == SideOf::kLeft || side == SideOf::kTop ? 0 : last;
     const Line line{column ? 0 : 1, static_cast<float>(place)};
     TileSide out;
+    out.has_mask = size.has_mask;
     for (Id v = 0; v < mesh.vertex_count(); ++v)
         if (line.holds(mesh.position[v]))
             out.vertices.push_back(

@@ -25,8 +25,7 @@ struct TileSide {
     };
     std::vector<Vertex> vertices;  ///< in their order along the line
     std::vector<Pixel> pixels;
-
-    bool empty() const { return vertices.empty() && pixels.empty(); }
+    bool has_mask = false;  ///< the tile
 };
 
 enum class SideOf { kLeft, kTop, kRight, kBottom };

@@ -150,10 +150,11 @@ class SetValidator {
         const TileSide own = tile_side(image_, side);
         const std::string both =
             cat(tile_container(other), " and ", tile_container(tile), ": on their side ");
-        if (const std::string text = vertex_difference(of_other, own); !text.empty())
-            add("set.side", both + text);
-        if (const std::string text = pixel_difference(of_other, own); !text.empty())
-            add("set.pixels", both + text);
+        const std::string vertices = vertex_difference(of_other, own),
+                          pixels = pixel_difference(of_other, own);
+        const bool masked = of_other.has_mask || own.has_mask;
+        if (!vertices.empty()) add(masked ? "set.mask" : "set.side", both + vertices);
+        if (!pixels.empty()) add(masked ? "set.mask" : "set.pixels", both + pixels);
     }
 
     const std::string& folder_;

@@ -104,6 +104,12 @@ TEST_CASE("validate_tile_set: sides that do not agree") {
     set.replace(tile, coarse_image(moved, sound.source, grid, tile));
     CHECK(codes(set.path) == std::set<std::string>{"set.side", "set.pixels"});
 
+    // A lone pixel of a mask may be a square of its own in one tile.
+    MeshImage masked = coarse_image(moved, sound.source, grid, tile);
+    masked.source.has_mask = true;
+    set.replace(tile, masked);
+    CHECK(codes(set.path) == std::set<std::string>{"layers.mask_unused", "set.mask"});
+
     // A pixel of the side that lies elsewhere on it.
     image = sound;
     PixelCoord& c = image.levels[0].map[image.source.index(0, 3)];

@@ -41,33 +41,38 @@ std::int64_t own_vertices(const BaseMesh& mesh, int level, const PixelRect& rect
     });
 }
 
-// Along a side each tile decides by itself which pixels have faces. All have some, and the same in both,
-// where the mask has no parts thinner than two pixels there.
-void check_sides(const Mask& mask, const TileSeams& seams) {
+// Whether some cell of the tile has a triangle with the pixel.
+bool has_face(const Mask& mask, int x, int y) {
+    for (const int top : {y - 1, y})
+        for (const int left : {x - 1, x})
+            if (mask.at(left, top) + mask.at(left + 1, top) + mask.at(left, top + 1) +
+                    mask.at(left + 1, top + 1) >=
+                3)
+                return true;
+    return false;
+}
+
+// Takes the pixels out of a mask that lie on a shared side without a face in this tile: its neighbour has
+// them, and a strip along the side would lie half in that one.
+void leave_to_neighbor(Mask& mask, const TileSeams& seams) {
     if (mask.empty()) return;
-    const auto is_thick = [&](int x, int y) {
-        for (const int top : {y - 1, y})
-            for (const int left : {x - 1, x})
-                if (mask.at(left, top) && mask.at(left + 1, top) && mask.at(left, top + 1) &&
-                    mask.at(left + 1, top + 1))
-                    return true;
-        return false;
-    };
-    const auto check = [&](int x, int y) {
-        if (mask.at(x, y) && !is_thick(x, y))
-            throw Error(
-                ErrorKind::kUnsupported,
-                cat("at pixel ", x, ',', y,
-                    " of it, on its side, the mask is thinner than two pixels, and neighbours would not "
-                    "agree there"));
-    };
+    std::vector<std::pair<int, int>> line;
     for (int x = 0; x < mask.width; ++x) {
-        if (seams.top) check(x, 0);
-        if (seams.bottom) check(x, mask.height - 1);
+        if (seams.top) line.emplace_back(x, 0);
+        if (seams.bottom) line.emplace_back(x, mask.height - 1);
     }
     for (int y = 0; y < mask.height; ++y) {
-        if (seams.left) check(0, y);
-        if (seams.right) check(mask.width - 1, y);
+        if (seams.left) line.emplace_back(0, y);
+        if (seams.right) line.emplace_back(mask.width - 1, y);
+    }
+    // One that goes may leave another without a face.
+    for (bool changed = true; changed;) {
+        changed = false;
+        for (const auto& [x, y] : line)
+            if (mask.at(x, y) && !has_face(mask, x, y)) {
+                mask.Grid::at(x, y) = 0;
+                changed = true;
+            }
     }
 }
 
@@ -207,10 +212,10 @@ void TileWork::build(TileRecord& record, const Progress& progress) {
     const TileName tile = record.tile;
     const PixelRect rect = grid.rect(tile);
     PixelPart part = read(rect);
-    if (has_none(part)) return;
     const TileSeams seams{tile.column > 0, tile.row > 0, tile.column + 1 < grid.columns(0),
                           tile.row + 1 < grid.rows(0)};
-    check_sides(part.mask, seams);
+    leave_to_neighbor(part.mask, seams);
+    if (has_none(part)) return;
     const TileCommon shared = common();
     const TileSides sides = sides_of_tile(part.image, planned_.params, shared, part.mask);
     const FeatureImage feature = tile_features(part.image, shared, part.mask);
