@@ -22,13 +22,19 @@ constexpr int kFirstPower = -16;
 // have more, and the first part of the collapse takes the most time.
 constexpr double kMostDense = 8, kLeastShare = 0.1, kMostShare = 0.5;
 
-// Of larger pictures.
-constexpr int kWindow = 128;              // [steps]
-constexpr double kEach = kWindow * 2.83;  // one window in a square of this side: an eighth of the pixels
+// Of larger pictures: some thousand windows tell the density to a percent or two.
+constexpr int kWindow = 128;  // [steps]
+constexpr double kLeastSampled = 1.0 / 8;
 
-double inner_vertices(const BaseMesh& mesh, const GridSize& size) {
+// One window in a square of this side.
+double window_spacing(const TileGrid& grid) {
+    const double pixels = static_cast<double>(grid.width()) * grid.height();
+    return kWindow / std::sqrt(std::clamp(static_cast<double>(kSampledWhole) / pixels, kLeastSampled, 1.0));
+}
+
+double side_vertices(const BaseMesh& mesh, const GridSize& size) {
     return static_cast<double>(std::ranges::count_if(
-        mesh.position, [&](const Vec2f& place) { return !on_side(place, size.width, size.height); }));
+        mesh.position, [&](const Vec2f& place) { return on_side(place, size.width, size.height); }));
 }
 
 // The pixels of a column.
@@ -71,6 +77,7 @@ void DensitySample::add(const DensitySample& other) {
     border += other.border;
     add_to(inner, other.inner);
     add_to(on_sides, other.on_sides);
+    add_to(decided, other.decided);
 }
 
 std::span<const double> sample_thresholds() {
@@ -93,38 +100,41 @@ DensitySample sample_density(FeatureImage part, Mask mask, const SimplifyParams&
                                  : static_cast<double>(mask.count());
     sample.inner.resize(thresholds.size());
     sample.on_sides.resize(thresholds.size());
+    sample.decided.resize(thresholds.size());
     if (size.width < 2 || size.height < 2 || sample.pixels == 0) return sample;
     std::array<std::vector<float>, 4> lines;
     lines[0].assign(part.row(0).begin(), part.row(0).end());
     lines[1].assign(part.row(size.height - 1).begin(), part.row(size.height - 1).end());
     lines[2] = column_of(part, 0);
     lines[3] = column_of(part, size.width - 1);
-    for (std::size_t i = 0; i < thresholds.size(); ++i)
-        for (const std::vector<float>& line : lines)
-            sample.on_sides[i] +=
-                static_cast<double>(line_vertices(line, part.channels, thresholds[i]).size() - 1);
+    for (const std::vector<float>& line : lines) {
+        const std::vector<int> counts = line_vertex_counts(line, part.channels, thresholds);
+        for (std::size_t i = 0; i < counts.size(); ++i) sample.decided[i] += counts[i] - 1;
+    }
     const GridMesh grid = grid_mesh(std::move(part), std::move(mask));
     SimplifyRun run(grid, params);
     const double most = std::clamp(kMostDense * density / 100, kLeastShare, kMostShare) * sample.pixels;
     SimplifyResult reached = run.to({.vertices = std::max<std::int64_t>(4, std::llround(most))});
-    double inner = inner_vertices(reached.mesh, size);
+    double on_sides = side_vertices(reached.mesh, size);
     for (std::size_t i = 0; i < thresholds.size(); ++i) {
         if (reached.increment < thresholds[i] && reached.mesh.vertex_count() > 4) {
             reached = run.to({.vertices = 4, .max_increment = thresholds[i]});
-            inner = inner_vertices(reached.mesh, size);
+            on_sides = side_vertices(reached.mesh, size);
         }
-        sample.inner[i] = inner;
+        sample.inner[i] = static_cast<double>(reached.mesh.vertex_count()) - on_sides;
+        sample.on_sides[i] = on_sides;
     }
     return sample;
 }
 
 std::vector<PixelRect> sampled_parts(const TileGrid& grid, int row) {
     std::vector<PixelRect> parts;
+    const double spacing = window_spacing(grid);
     const bool whole = std::int64_t{grid.width()} * grid.height() <= kSampledWhole;
     for (int column = 0; column < grid.columns(0); ++column) {
         const PixelRect rect = grid.rect({0, column, row});
         const auto cells = [&](int pixels) {
-            return std::max(1, static_cast<int>(std::lround((pixels - 1) / kEach)));
+            return std::max(1, static_cast<int>(std::lround((pixels - 1) / spacing)));
         };
         const int across = cells(rect.width()), down = cells(rect.height());
         if (whole || rect.width() <= kWindow || rect.height() <= kWindow) {
@@ -156,12 +166,16 @@ double threshold_for(const DensitySample& samples, const TileGrid& grid, double 
     const std::span<const double> thresholds = sample_thresholds();
     if (samples.pixels == 0) throw Error(ErrorKind::kUnsupported, "no pixel of the picture is meshed");
     const double pixels = static_cast<double>(grid.width()) * grid.height();
-    const double border = 2.0 * (grid.width() + grid.height());
-    // Of two tiles that share a side each has half of its vertices. At the picture's own border there is none
-    // to share with.
+    const double outer = 2.0 * (grid.width() + grid.height());
+    const double shared = static_cast<double>(grid.width()) * (grid.rows(0) - 1) +
+                          static_cast<double>(grid.height()) * (grid.columns(0) - 1);
+    // A side of a part has half of its vertices for itself: the other half stands for what lies beyond. The
+    // sides of tiles have those that are decided instead, and the picture's own border has nothing beyond.
     const auto expected = [&](std::size_t i) {
-        const double shared = 0.5 * samples.on_sides[i];
-        return pixels * (samples.inner[i] + shared) / samples.pixels + border * shared / samples.border;
+        const double own = samples.on_sides[i] / samples.border,
+                     decided = samples.decided[i] / samples.border;
+        const double inside = (samples.inner[i] + 0.5 * samples.on_sides[i]) / samples.pixels;
+        return pixels * inside + shared * (decided - own) + outer * (decided - 0.5 * own);
     };
     if (expected(0) <= vertices) return thresholds[0];
     for (std::size_t i = 1; i < thresholds.size(); ++i) {

@@ -17,12 +17,13 @@ namespace imgmesh {
 /// Returns the parameters of the collapse of each tile of a set, as build_tile() has them.
 SimplifyParams tile_collapse(const BuildParams& params, const TileCommon& common);
 
-/// How many vertices parts of the picture keep at each of the thresholds.
+/// How many vertices parts of the picture keep at each of sample_thresholds(), collapsed by themselves.
 struct DensitySample {
     double pixels = 0;          ///< of the parts, inside the mask; a side shared with a neighbour counts half
     double border = 0;          ///< length of the parts' sides [steps]
-    std::vector<double> inner;  ///< vertices that are on no side, at each of sample_thresholds()
-    std::vector<double> on_sides;  ///< and those on sides
+    std::vector<double> inner;  ///< vertices that are on no side
+    std::vector<double> on_sides;  ///< vertices that the collapse leaves on sides
+    std::vector<double> decided;   ///< vertices that the sides would have as those of tiles
 
     /// Adds another one's parts.
     void add(const DensitySample& other);
@@ -31,7 +32,7 @@ struct DensitySample {
 /// The thresholds of samples, rising: powers of the square root of two [feature^2 px^2].
 std::span<const double> sample_thresholds();
 
-/// Collapses a part of the picture. Its sides are simplified as those of tiles.
+/// Collapses a part of the picture, with free sides, and counts.
 ///
 /// params   of the collapse, as for the tiles
 /// density  that is wanted [vertices in 100 pixels]

@@ -102,21 +102,39 @@ class LineErrors {
     std::vector<Sums> sums_;
 };
 
-// A mesh around a line gives way to it, but a line cannot give way to the mesh. Pixels at most two from a
-// side have the error that an ordinary mesh has there, at 0.25 to 4 % of the pixels
-// (docs/decisions/0051-tile-sets.md).
-constexpr double kShareOfThreshold = 1.0 / 16;
+// A mesh around a line gives way to it, but a line cannot give way to the mesh: it counts sixteen times. So
+// pixels at most two from a side have about the error that an ordinary mesh has there, at 0.25 to 4 % of the
+// pixels (docs/decisions/0051-tile-sets.md).
+constexpr double kWeightOfLines = 16;
+
+// What the removal of v from between a and b adds.
+double removal_cost(const LineErrors& errors, int a, int v, int b) {
+    return kWeightOfLines * (errors.of(a, b) - errors.of(a, v) - errors.of(v, b)) * 0.5 * (b - a);
+}
 
 }  // namespace
 
 std::vector<int> line_vertices(std::span<const float> line, int channels, double threshold) {
+    const LineErrors errors(line, channels);
+    return Chain(as_int(line.size()) / channels)
+        .reduce([&](int a, int v, int b) { return removal_cost(errors, a, v, b); },
+                [&](int, double added) { return added <= threshold; });
+}
+
+std::vector<int> line_vertex_counts(std::span<const float> line, int channels,
+                                    std::span<const double> thresholds) {
     const int count = as_int(line.size()) / channels;
     const LineErrors errors(line, channels);
-    const auto cost = [&](int a, int v, int b) {
-        return (errors.of(a, b) - errors.of(a, v) - errors.of(v, b)) * 0.5 * (b - a);
-    };
-    return Chain(count).reduce(cost,
-                               [&](int, double added) { return added <= kShareOfThreshold * threshold; });
+    std::vector<int> counts;
+    // A threshold ends where the first removal costs more.
+    Chain(count).reduce([&](int a, int v, int b) { return removal_cost(errors, a, v, b); },
+                        [&](int left, double added) {
+                            while (counts.size() < thresholds.size() && thresholds[counts.size()] < added)
+                                counts.push_back(left);
+                            return true;
+                        });
+    counts.resize(thresholds.size(), std::min(count, 2));
+    return counts;
 }
 
 std::vector<int> half_of_vertices(std::span<const int> places, std::span<const float> features,

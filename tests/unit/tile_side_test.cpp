@@ -56,6 +56,15 @@ TEST_CASE("the higher the threshold, the fewer vertices a line keeps") {
     CHECK(before == 2);
 }
 
+TEST_CASE("vertices are counted for many thresholds at once") {
+    const std::vector<float> line = noise(3 * 300, 2);
+    const std::vector<double> thresholds{0, 1e4, 1e5, 3e5, 1e6, 1e7, 1e12};
+    const std::vector<int> counts = line_vertex_counts(line, 3, thresholds);
+    REQUIRE(counts.size() == thresholds.size());
+    for (std::size_t i = 0; i < counts.size(); ++i)
+        CHECK((counts[i] == as_int(line_vertices(line, 3, thresholds[i]).size())));
+}
+
 TEST_CASE("a side's features are those of the line where vertices suffice") {
     const Side side = simplify_side(hat(), 1, {.threshold = 1});
     REQUIRE(side.vertices.size() == 3);

@@ -69,7 +69,8 @@ void write_sample(const std::string& folder, int row, const std::string& key, co
                                           {"pixels", sample.pixels},
                                           {"border", sample.border},
                                           {"inner", sample.inner},
-                                          {"on_sides", sample.on_sides}});
+                                          {"on_sides", sample.on_sides},
+                                          {"decided", sample.decided}});
 }
 
 DensitySample read_sample(const std::string& folder, int row, const std::string& key) {
@@ -82,6 +83,7 @@ DensitySample read_sample(const std::string& folder, int row, const std::string&
     if (sample.pixels == 0) return sample;
     sample.inner = numbers(path, json, "inner");
     sample.on_sides = numbers(path, json, "on_sides");
+    sample.decided = numbers(path, json, "decided");
     return sample;
 }
 
