@@ -69,6 +69,16 @@ class TileSets(CliCase):
     def assert_same(self, a, b):
         self.assertEqual(a.tolist(), b.tolist())
 
+    def test_regions(self):
+        """Labels of the whole picture without gaps; options about the whole picture are refused."""
+        report = self.report("imgmesh-segment", "set", "-o", "labels.tif")
+        self.assertEqual(report["tiles"], 8)
+        labels = picture_files.read(self.folder / "labels.tif")
+        self.assertEqual(labels.shape[:2], (60, 100))
+        found = {round(label * (2**32 - 1)) for label in labels.ravel().tolist()}
+        self.assertEqual(found, set(range(report["regions"])))
+        self.assert_error("imgmesh-segment", ["set", "-o", "a.tif", "--segments", "5"], 5, "--segments")
+
     def test_missing_tile(self):
         """The picture has a transparent place, and says so."""
         path = self.folder / "set" / "index.json"

@@ -1,0 +1,127 @@
+// Coarser tiles: whole, without folds, and alike on the sides that they share. And the threshold of a set.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "libcore/mesh/tile_sides.h"
+#include "libcore/tiles/density.h"
+#include "libcore/tiles/join_tiles.h"
+#include "libcore/tiles/tile_errors.h"
+#include "tests/support/sample_pictures.h"
+#include "tests/support/sample_tile_set.h"
+
+using namespace imgmesh;
+using namespace imgmesh::test;
+
+namespace {
+
+std::vector<TileMesh> children_of(const TileGrid& grid, const TileName& tile) {
+    const PixelRect parent = grid.rect(tile);
+    std::vector<TileMesh> children;
+    for (const TileName& child : grid.children(tile)) {
+        const PixelRect rect = grid.rect(child);
+        children.push_back({sample_mesh(grid, child), rect.left - parent.left, rect.top - parent.top,
+                            rect.width(), rect.height()});
+    }
+    return children;
+}
+
+double area_of(const BaseMesh& mesh) {
+    double area = 0;
+    for (const auto& [a, b, c] : mesh.faces) {
+        const double own = signed_area2(mesh.position[a], mesh.position[b], mesh.position[c]);
+        CHECK(own > 0);
+        area += own / 2;
+    }
+    return area;
+}
+
+// The colours of the vertices of a column of a mesh, by their y.
+std::map<float, std::vector<float>> column_of(const BaseMesh& mesh, float x) {
+    std::map<float, std::vector<float>> found;
+    for (Id v = 0; v < mesh.vertex_count(); ++v)
+        if (mesh.position[v].x() == x)
+            found[mesh.position[v].y()] = {mesh.feature_of(v), mesh.feature_of(v) + mesh.channels};
+    return found;
+}
+
+}  // namespace
+
+TEST_CASE("joined tiles have the vertices of a shared side once") {
+    const TileGrid grid(65, 65, 32);
+    const std::vector<TileMesh> parts = children_of(grid, {1, 0, 0});
+    REQUIRE(parts.size() == 4);
+    const BaseMesh whole = join_meshes(parts);
+    // 4 x 5^2 vertices, less the 8 that two tiles have and three times the one that four have.
+    CHECK(whole.vertex_count() == 81);
+    CHECK(area_of(whole) == 64.0 * 64);
+}
+
+TEST_CASE("coarser tiles cover their rectangle and agree on the side that they share") {
+    const TileGrid grid(257, 129, 64);
+    const auto coarse = [&](const TileName& tile) {
+        const PixelRect rect = grid.rect(tile);
+        return coarser_tile(children_of(grid, tile), tile.level, rect.width(), rect.height(), {});
+    };
+    const BaseMesh left = coarse({1, 0, 0}), right = coarse({1, 1, 0});
+    for (const BaseMesh* mesh : {&left, &right}) {
+        CHECK(area_of(*mesh) == 128.0 * 128);
+        CHECK(mesh->vertex_count() <= 17 * 17 / 4);
+    }
+    const auto a = column_of(left, 128), b = column_of(right, 0);
+    CHECK(a.size() == 17 / 2 + 1);
+    CHECK((a == b));
+}
+
+TEST_CASE("a coarser tile is made of the children that are there") {
+    const TileGrid grid(129, 129, 64);
+    std::vector<TileMesh> children = children_of(grid, {1, 0, 0});
+    children.erase(children.begin() + 1);
+    CHECK(area_of(coarser_tile(children, 1, 129, 129, {})) == 3 * 64.0 * 64);
+}
+
+TEST_CASE("the threshold of a set leaves the wanted number of vertices in its samples") {
+    const TileGrid grid(97, 97, 96);
+    const FeatureImage feature = sample_feature(Kind::kNoise, 97, 97);
+    const DensitySample sample = sample_density(feature, {}, {}, 4);
+    CHECK(sample.pixels == 96.0 * 96);
+    CHECK(sample.border == 4 * 96);
+    CHECK(std::ranges::is_sorted(sample.inner, std::greater()));
+    CHECK(std::ranges::is_sorted(sample.decided, std::greater()));
+    double before = 0;
+    for (const double vertices : {800.0, 400.0, 100.0}) {
+        const double threshold = threshold_for(sample, grid, vertices);
+        CHECK(threshold > before);
+        before = threshold;
+    }
+}
+
+TEST_CASE("small pictures are sampled as a whole, large ones in parts all over") {
+    const TileGrid small(1000, 700, 512), large(20000, 20000, 1024);
+    CHECK(sampled_parts(small, 0).size() == 2);
+    CHECK(sampled_parts(small, 1).front().bottom == 700);
+    std::int64_t pixels = 0;
+    for (int row = 0; row < large.rows(0); ++row)
+        for (const PixelRect& part : sampled_parts(large, row)) {
+            CHECK((part.left >= 0 && part.top >= 0 && part.right <= 20000 && part.bottom <= 20000));
+            pixels += std::int64_t{part.width() - 1} * (part.height() - 1);
+        }
+    CHECK(pixels > 20000LL * 20000 / 10);
+    CHECK(pixels < 20000LL * 20000 / 6);
+}
+
+TEST_CASE("the errors of tiles are those of the pixels that they own") {
+    const TileGrid grid(65, 33, 32);
+    FeatureImage feature{33, 33, 3, std::vector<float>(33 * 33 * 3, 0.0f)};
+    Level level;
+    level.mesh.position = {Vec2f(0, 0), Vec2f(32, 0), Vec2f(0, 32)};
+    level.mesh.feature.assign(9, 2.0f);
+    level.mesh.faces = {Face{0, 2, 1}};
+    level.map = PixelMap(33, 33, std::vector<PixelCoord>(33 * 33, PixelCoord{0, 0, 0}));
+    const TileErrors errors = tile_errors(level, feature, grid.own_rect({0, 0, 0}), {.right = true});
+    CHECK(errors.pixels == 32 * 33);
+    CHECK(errors.squares == 32 * 33 * 12.0);
+    CHECK(errors.seam_pixels == 2 * 33);
+}
