@@ -42,9 +42,10 @@ BuildParams tile_params(BuildParams params, const TileCommon& common) {
 void check_side(const Side& side, int length, int channels, bool masked) {
     const auto& [vertices, features, shifts] = side;
     const auto ends = [&](int first, int last) { return first == 0 && last == length - 1; };
-    bool sound = features.size() == vertices.size() * as_index(channels) &&
-                 std::ranges::adjacent_find(vertices, std::greater_equal()) == vertices.end() &&
-                 (shifts.empty() || as_int(shifts.size()) == length);
+    bool sound =
+        features.size() == vertices.size() * as_index(channels) &&
+        std::adjacent_find(vertices.begin(), vertices.end(), std::greater_equal()) == vertices.end() &&
+        (shifts.empty() || as_int(shifts.size()) == length);
     if (vertices.empty())
         sound = sound && masked;
     else

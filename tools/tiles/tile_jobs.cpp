@@ -15,8 +15,8 @@ std::string job_name(const TileName& tile) {
 
 }  // namespace
 
-std::string spool_file() {
-    return cat(kWorkFolder, "/source.tif");
+std::string spool_file(const std::string& key) {
+    return cat(kWorkFolder, "/source-", key.substr(0, 16), ".tif");
 }
 std::string sample_file(int row) {
     return cat(kWorkFolder, "/sample/", row, ".json");
@@ -26,8 +26,8 @@ std::vector<TileJob> tile_jobs(const TileJobsPlan& plan) {
     using Kind = TileJob::Kind;
     std::vector<TileJob> jobs;
     std::vector<std::string> first;  // what reading pixels needs
-    if (plan.spooled) {
-        jobs.push_back({Kind::kSpool, {}, kSpoolJob, {}, spool_file()});
+    if (!plan.copy.empty()) {
+        jobs.push_back({Kind::kSpool, {}, kSpoolJob, {}, plan.copy});
         first = {kSpoolJob};
     }
     if (plan.first_pass) {

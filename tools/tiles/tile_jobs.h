@@ -28,7 +28,7 @@ struct TileJob {
 /// What the list of jobs depends on.
 struct TileJobsPlan {
     TileGrid grid;
-    bool spooled = false;     ///< the picture cannot be read by parts
+    std::string copy = {};    ///< spool_file() if the picture cannot be read by parts, else ""
     bool first_pass = false;  ///< the threshold is not known beforehand
 };
 
@@ -38,7 +38,8 @@ std::vector<TileJob> tile_jobs(const TileJobsPlan& plan);
 // Files below a set's folder beside those of formats/tileset/tile_files.h.
 inline constexpr const char* kThresholdFile = "threshold.json";
 inline constexpr const char* kWorkFolder = "work";  ///< what is removed when the set is complete
-std::string spool_file();
+/// Of a plan: that of another picture must not be taken for it.
+std::string spool_file(const std::string& key);
 std::string sample_file(int row);
 
 }  // namespace imgmesh

@@ -100,18 +100,12 @@ Gamut gamut_of_all(const BuildOptions& o, const TilePixels& pixels, const TileGr
     return Gamut::kDisplay;
 }
 
-// Any part that can be read: a picture whose first block is broken has tiles all the same.
-Image some_part(const RegionSource& source, const TileGrid& grid) {
-    const std::vector<TileName> tiles = grid.tiles(0);
-    for (const TileName& tile : tiles) {
-        const PixelRect rect = grid.rect(tile);
-        try {
-            return source.read({rect.left, rect.top, rect.left + 2, rect.top + 2});
-        } catch (const Error& error) {
-            if (tile == tiles.back()) throw;
-        }
-    }
-    return {};
+// An image with the channels of the picture: what they are to a build does not depend on the pixels.
+Image image_like(const PictureFacts& facts) {
+    Image image = make_image(2, 2, static_cast<int>(facts.channel_names.size()));
+    image.channel_names = facts.channel_names;
+    image.sample_type = facts.sample_type;
+    return image;
 }
 
 // What becomes of alpha must not depend on the tile.
@@ -163,14 +157,11 @@ PlannedTileSet plan_tile_set(const BuildOptions& o, Context& context) {
             read.fitting_space = before ? parse_color_space(*before) : source.color_space();
         }
         planned.read = read;
-        planned.jobs.spooled = facts.access == RegionAccess::kSpool;
-        planned.picture = planned.jobs.spooled ? in_set(o.output, spool_file()) : o.input;
         planned.mask.alpha = alpha_of_all(o, std::ranges::count(facts.channel_names, "A") > 0, context);
         planned.mask.threshold = o.alpha.threshold.value_or(0.5);
         AlphaParams alpha{planned.mask.alpha, planned.mask.threshold};
-        // The names of channels and the use of alpha are those of any part.
-        const Image corner = some_part(source, grid);
-        const SourcePlan taken = plan_source(corner, alpha, !o.mask.empty(), o.params, option_text);
+        const Image like = image_like(facts);
+        const SourcePlan taken = plan_source(like, alpha, !o.mask.empty(), o.params, option_text);
         for (const std::string& warning : taken.warnings)
             context.warnings.push_back(cat(o.input, ": ", warning));
         planned.params = taken.params;
@@ -179,7 +170,7 @@ PlannedTileSet plan_tile_set(const BuildOptions& o, Context& context) {
         planned.vertices = wanted_vertices(planned.params, pixels);
         planned.jobs.first_pass = planned.vertices > 0;
         const TilePixels whole(o.input, o.mask, read);
-        planned.common.space = tile_space(corner, planned.params, gamut_of_all(o, whole, grid, planned.mask));
+        planned.common.space = tile_space(like, planned.params, gamut_of_all(o, whole, grid, planned.mask));
         planned.common.sample_type = facts.sample_type;
         const double side = *o.tiles.size + 1.0;
         context.memory.take(cat("a tile of ", *o.tiles.size, " pixels"), tile_bytes(side * side));
@@ -193,6 +184,11 @@ PlannedTileSet plan_tile_set(const BuildOptions& o, Context& context) {
                         .density = planned.jobs.first_pass ? planned.common.density : 0,
                         .threshold = {}};
         planned.plan.parameters = parameters_of(o, planned);
+        planned.picture = o.input;
+        if (facts.access == RegionAccess::kSpool) {
+            planned.jobs.copy = spool_file(plan_key(planned.plan));
+            planned.picture = in_set(o.output, planned.jobs.copy);
+        }
         return planned;
     });
 }

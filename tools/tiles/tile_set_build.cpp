@@ -32,6 +32,8 @@ class TileSetRun {
         const double pixels = static_cast<double>(planned_.jobs.grid.width()) * planned_.jobs.grid.height();
         double done = 0;
         for (const TileJob& job : tile_jobs(planned_.jobs)) {
+            // The first job that reads pixels makes the copy. Where all is done, none does.
+            if (job.kind == TileJob::Kind::kSpool) continue;
             const double share = job_pixels(job) / pixels;
             const Progress whole = context_.progress;
             work.run(job, [&, done](double fraction, std::string_view stage) {

@@ -92,6 +92,8 @@ TileWork::TileWork(const PlannedTileSet& planned, const BuildOptions& options, C
 TileWork::~TileWork() = default;
 
 TilePixels& TileWork::pixels() {
+    // A set that is complete but for a tile has no copy of its picture any more.
+    if (!planned_.jobs.copy.empty()) spool(context_.progress);
     if (!pixels_) pixels_ = std::make_unique<TilePixels>(planned_.picture, options_.mask, planned_.read);
     return *pixels_;
 }
@@ -121,12 +123,11 @@ void TileWork::run(const TileJob& job, const Progress& progress) {
 }
 
 void TileWork::spool(const Progress& progress) {
-    const std::string copy = in_set(folder_, spool_file());
     // It appears as a whole, so what is there is complete.
-    if (std::filesystem::exists(copy)) return;
+    if (std::filesystem::exists(planned_.picture)) return;
     make_folder(in_set(folder_, kWorkFolder));
     progress(0, "copy");
-    spool_picture(options_.input, copy, planned_.read);
+    spool_picture(options_.input, planned_.picture, planned_.read);
 }
 
 void TileWork::sample(int row, const Progress& progress) {
