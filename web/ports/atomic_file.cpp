@@ -51,6 +51,15 @@ class AtomicFile::Temporary {
                 fail(path_, "cannot write", errno);
         if (std::fflush(file.get()) != 0) fail(path_, "cannot write", errno);
     }
+    void write_at(std::uint64_t offset, std::span<const std::uint8_t> bytes) {
+        std::error_code error;
+        const FileHandle file = open_file(name_, fs::exists(name_, error) ? "r+b" : "wb");
+        // Memory of a page ends long before what an offset of C can say.
+        if (!file || std::fseek(file.get(), static_cast<long>(offset), SEEK_SET) != 0 ||
+            std::fwrite(bytes.data(), 1, bytes.size(), file.get()) != bytes.size() ||
+            std::fflush(file.get()) != 0)
+            fail(path_, "cannot write", errno);
+    }
     void rename() {
         check_free();
         if (std::rename(name_.c_str(), path_.c_str()) != 0) fail(path_, "cannot write", errno);
@@ -76,6 +85,10 @@ AtomicFile::AtomicFile(std::string path, bool overwrite)
 AtomicFile::~AtomicFile() = default;
 
 void AtomicFile::share_as(const std::string&) {}
+
+void AtomicFile::write_at(std::uint64_t offset, std::span<const std::uint8_t> bytes) {
+    file_->write_at(offset, bytes);
+}
 
 void AtomicFile::write_parts(std::span<const std::span<const std::uint8_t>> parts) {
     file_->write_parts(parts);
