@@ -17,8 +17,7 @@ namespace imgmesh {
 ///
 /// Throws Error: kUnsupported for another metric or solver than the first, kBadArgument for the number of
 /// features as simplify() does. O(n). Deterministic, with any number of threads.
-SimplifyResult simplify_mesh(const BaseMesh& mesh, const Vec2f& corner,
-                             const std::vector<Id>& side_vertices, const SimplifyParams& params,
-                             const SimplifyTarget& target);
+SimplifyResult simplify_mesh(const BaseMesh& mesh, const Vec2f& corner, const std::vector<Id>& side_vertices,
+                             const SimplifyParams& params, const SimplifyTarget& target);
 
 }  // namespace imgmesh

@@ -76,8 +76,8 @@ struct Tool {
     std::vector<std::string> sources = {};  ///< options that name files to read, which count by their content
     /// Whether -o is a folder that the work on one input fills, and not one for a file of each; may be empty.
     std::function<bool()> fills_output = {};
-    std::string list = "files";             ///< the report's member for several files
-    bool always_list = false;               ///< the report is a list for one file, too
+    std::string list = "files";  ///< the report's member for several files
+    bool always_list = false;    ///< the report is a list for one file, too
     std::function<void(CLI::App&)> add_options = {};
     std::function<void(const Job&)> check = {};            ///< before any work; may be empty
     std::function<Report(const Job&, Context&)> run = {};  ///< from several threads
