@@ -12,6 +12,7 @@
 #include "formats/picture/encode/picture_encoders.h"
 #include "formats/picture/sample_codes.h"
 #include "libcore/base/error.h"
+#include "libcore/base/index.h"
 
 namespace imgmesh {
 namespace {
@@ -73,7 +74,7 @@ class TiledTiff::File {
         one.color_space = shape.color_space;
         const StoredImage stored = stored_image(path, one, sample_type);
         const int sample = stored.type == SampleType::kUint8 ? 1 : stored.type == SampleType::kUint16 ? 2 : 4;
-        pixel_bytes_ = static_cast<std::size_t>(sample * shape.channels);
+        pixel_bytes_ = as_index(sample) * as_index(shape.channels);
         open(stored, sample);
     }
 

@@ -56,8 +56,7 @@ TileSide tile_side(const MeshImage& image, SideOf side) {
         return a.at != b.at ? a.at < b.at : a.features < b.features;
     });
     // Draco splits vertices at which a mask's outline meets itself.
-    const auto twice = std::ranges::unique(out.vertices);
-    out.vertices.erase(twice.begin(), twice.end());
+    out.vertices.erase(std::unique(out.vertices.begin(), out.vertices.end()), out.vertices.end());
     for (int i = 0; i < (column ? size.height : size.width); ++i) {
         const std::size_t pixel = column ? size.index(place, i) : size.index(i, place);
         out.pixels.push_back(pixel_on(line, mesh, image.levels[0].map[pixel]));
