@@ -20,7 +20,7 @@ void write_record(const std::string& folder, const TileRecord& record);
 TileRecord read_record(const std::string& folder, const TileName& tile);
 
 void write_index(const std::string& folder, const TileSetIndex& index);
-/// Takes about half a second for 100,000 tiles.
+/// Takes one to two seconds for 100,000 tiles.
 TileSetIndex read_index(const std::string& folder);
 
 /// Returns whether a tile needs no work: its record is there, has the key, does not tell that the tile is
