@@ -3,15 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numeric>
 #include <utility>
 
 #include "libcore/base/index.h"
 #include "libcore/mesh/tile_sides.h"
-
 #include "libcore/simplify/simplify_mesh.h"
 #include "libcore/tiles/settle_positions.h"
 #include "libcore/tiles/simplify_side.h"
+#include "libcore/tiles/tile_joiner.h"
 
 namespace imgmesh {
 namespace {
@@ -42,6 +41,10 @@ Side side_of(const BaseMesh& mesh, std::span<const Id> vertices, int along) {
     return side;
 }
 
+Vec2f point(int x, int y) {
+    return {static_cast<float>(x), static_cast<float>(y)};
+}
+
 using Place = std::pair<float, float>;
 Place place_of(const Vec2f& place) {
     return {place.x(), place.y()};
@@ -60,34 +63,12 @@ void scale(BaseMesh& mesh, float factor) {
 
 }  // namespace
 
-BaseMesh join_meshes(std::span<const TileMesh> parts) {
-    BaseMesh whole;
-    std::map<Place, Id> on_sides;
-    for (const TileMesh& part : parts) {
-        whole.channels = part.mesh.channels;
-        std::vector<Id> number(part.mesh.vertex_count());
-        for (Id v = 0; v < number.size(); ++v) {
-            const Vec2f own = part.mesh.position[v];
-            const Vec2f place = own + Vec2f(static_cast<float>(part.left), static_cast<float>(part.top));
-            number[v] = as_id(whole.vertex_count());
-            if (on_side(own, part.width, part.height)) {
-                const auto [entry, is_new] = on_sides.emplace(place_of(place), number[v]);
-                number[v] = entry->second;
-                if (!is_new) continue;
-            }
-            whole.position.push_back(place);
-            whole.feature.insert(whole.feature.end(), part.mesh.feature_of(v),
-                                 part.mesh.feature_of(v) + part.mesh.channels);
-        }
-        for (const Face& face : part.mesh.faces)
-            whole.faces.push_back({number[face[0]], number[face[1]], number[face[2]]});
-    }
-    return whole;
-}
-
-BaseMesh coarser_tile(std::span<const TileMesh> children, int level, int width, int height,
+BaseMesh coarser_tile(std::span<const ChildTile> children, int level, int width, int height,
                       const SimplifyParams& params) {
-    const BaseMesh joined = join_meshes(children);
+    TileJoiner joiner;
+    for (const ChildTile& child : children)
+        joiner.add(child.mesh, point(child.left, child.top), point(child.width - 1, child.height - 1));
+    const BaseMesh joined = joiner.take();
     const auto right = static_cast<float>(width - 1), bottom = static_cast<float>(height - 1);
     std::vector<Id> kept;
     for (const Line& line : {Line{1, 0}, Line{1, bottom}, Line{0, 0}, Line{0, right}}) {

@@ -9,15 +9,11 @@
 namespace imgmesh {
 
 /// The mesh of a tile, in its own coordinates, and where the tile lies in its parent [pixels of level 0].
-struct TileMesh {
+struct ChildTile {
     BaseMesh mesh;
     int left = 0, top = 0;
     int width = 0, height = 0;  ///< of the tile [pixels]; the mesh spans [0, width - 1] x [0, height - 1]
 };
-
-/// Returns one mesh in the coordinates of the parent. Vertices at the same place become one: neighbours have
-/// the same ones on the side that they share.
-BaseMesh join_meshes(std::span<const TileMesh> parts);
 
 /// Returns the mesh of a tile of the next level: that of its children with a quarter of their vertices. On
 /// each of its sides it has half of theirs, which depends on the vertices of that side alone, so that
@@ -25,7 +21,7 @@ BaseMesh join_meshes(std::span<const TileMesh> parts);
 ///
 /// level          of the result, at least 1: positions off the sides are multiples of kPositionStep 2^level
 /// width, height  of the tile [pixels of level 0]
-BaseMesh coarser_tile(std::span<const TileMesh> children, int level, int width, int height,
+BaseMesh coarser_tile(std::span<const ChildTile> children, int level, int width, int height,
                       const SimplifyParams& params);
 
 }  // namespace imgmesh

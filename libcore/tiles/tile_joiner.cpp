@@ -4,18 +4,16 @@
 
 namespace imgmesh {
 
-void TileJoiner::add(const TileName& tile, const BaseMesh& mesh) {
+void TileJoiner::add(const BaseMesh& mesh, const Vec2f& corner, const Vec2f& far) {
     if (mesh_.faces.empty()) mesh_.channels = mesh.channels;
     if (mesh.channels != mesh_.channels)
         throw Error(ErrorKind::kBadFile,
                     cat("a tile has ", mesh.channels, " features a vertex and another ", mesh_.channels));
-    const auto step = static_cast<float>(grid_.step());
-    const Vec2f corner(static_cast<float>(tile.column) * step, static_cast<float>(tile.row) * step);
     std::vector<Id> number(mesh.vertex_count());
     for (Id v = 0; v < number.size(); ++v) {
         const Vec2f own = mesh.position[v], place = corner + own;
         number[v] = as_id(mesh_.vertex_count());
-        if (own.x() == 0 || own.y() == 0 || own.x() == step || own.y() == step) {
+        if (own.x() == 0 || own.y() == 0 || own.x() == far.x() || own.y() == far.y()) {
             const auto [entry, is_new] = on_sides_.emplace(std::pair(place.x(), place.y()), number[v]);
             number[v] = entry->second;
             if (!is_new) continue;

@@ -1,11 +1,10 @@
-// Tiles of one level as one mesh.
+// Meshes of tiles as one mesh.
 #pragma once
 
 #include <map>
 #include <utility>
 
 #include "libcore/mesh/base_mesh.h"
-#include "libcore/tiles/tile_grid.h"
 
 namespace imgmesh {
 
@@ -13,16 +12,13 @@ namespace imgmesh {
 /// as neighbours have the same ones there.
 class TileJoiner {
   public:
-    explicit TileJoiner(const TileGrid& grid) : grid_(grid) {}
-
-    /// Adds a tile in units of its level (tile_units.h). Throws Error(kBadFile) if it has other features than
-    /// the first one.
-    void add(const TileName& tile, const BaseMesh& mesh);
-    /// Returns the whole, in units of the level from the picture's top-left pixel.
+    /// Adds a tile whose mesh spans the rectangle from (0, 0) to `far` in its own coordinates, and which lies
+    /// at `corner` in the whole. All tiles have one unit. Throws Error(kBadFile) if it has other features
+    /// than the first one.
+    void add(const BaseMesh& mesh, const Vec2f& corner, const Vec2f& far);
     BaseMesh take() { return std::move(mesh_); }
 
   private:
-    TileGrid grid_;
     BaseMesh mesh_;
     std::map<std::pair<float, float>, Id> on_sides_;
 };

@@ -9,6 +9,7 @@
 #include "libcore/tiles/density.h"
 #include "libcore/tiles/join_tiles.h"
 #include "libcore/tiles/tile_errors.h"
+#include "libcore/tiles/tile_joiner.h"
 #include "tests/support/sample_pictures.h"
 #include "tests/support/sample_tile_set.h"
 
@@ -17,9 +18,9 @@ using namespace imgmesh::test;
 
 namespace {
 
-std::vector<TileMesh> children_of(const TileGrid& grid, const TileName& tile) {
+std::vector<ChildTile> children_of(const TileGrid& grid, const TileName& tile) {
     const PixelRect parent = grid.rect(tile);
-    std::vector<TileMesh> children;
+    std::vector<ChildTile> children;
     for (const TileName& child : grid.children(tile)) {
         const PixelRect rect = grid.rect(child);
         children.push_back({sample_mesh(grid, child), rect.left - parent.left, rect.top - parent.top,
@@ -51,9 +52,13 @@ std::map<float, std::vector<float>> column_of(const BaseMesh& mesh, float x) {
 
 TEST_CASE("joined tiles have the vertices of a shared side once") {
     const TileGrid grid(65, 65, 32);
-    const std::vector<TileMesh> parts = children_of(grid, {1, 0, 0});
+    const std::vector<ChildTile> parts = children_of(grid, {1, 0, 0});
     REQUIRE(parts.size() == 4);
-    const BaseMesh whole = join_meshes(parts);
+    TileJoiner joiner;
+    for (const ChildTile& part : parts)
+        joiner.add(part.mesh, Vec2f(static_cast<float>(part.left), static_cast<float>(part.top)),
+                   Vec2f(32, 32));
+    const BaseMesh whole = joiner.take();
     // 4 x 5^2 vertices, less the 8 that two tiles have and three times the one that four have.
     CHECK(whole.vertex_count() == 81);
     CHECK(area_of(whole) == 64.0 * 64);
@@ -77,7 +82,7 @@ TEST_CASE("coarser tiles cover their rectangle and agree on the side that they s
 
 TEST_CASE("a coarser tile is made of the children that are there") {
     const TileGrid grid(129, 129, 64);
-    std::vector<TileMesh> children = children_of(grid, {1, 0, 0});
+    std::vector<ChildTile> children = children_of(grid, {1, 0, 0});
     children.erase(children.begin() + 1);
     CHECK(area_of(coarser_tile(children, 1, 129, 129, {})) == 3 * 64.0 * 64);
 }

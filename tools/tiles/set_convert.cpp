@@ -64,11 +64,15 @@ Report convert_set(const SetConvertOptions& o, Context& context) {
         throw Error(ErrorKind::kUnsupported, cat(o.input, ": the tile set has no colour to export"));
 
     const std::vector<TileName> tiles = grid.tiles(o.level);
-    TileJoiner joiner(grid);
+    // In units of the level every tile but the last ones spans the same.
+    const auto step = static_cast<float>(grid.step());
+    TileJoiner joiner;
     for (std::size_t i = 0; i < tiles.size(); ++i) {
         context.progress(0.8 * static_cast<double>(i) / static_cast<double>(tiles.size()), "read");
         const MeshImage image = set.read(tiles[i]);
-        if (!image.levels.empty()) joiner.add(tiles[i], image.levels[0].mesh);
+        if (image.levels.empty()) continue;
+        const Vec2f place(static_cast<float>(tiles[i].column), static_cast<float>(tiles[i].row));
+        joiner.add(image.levels[0].mesh, step * place, Vec2f(step, step));
     }
     Level& level = whole.levels.emplace_back();
     level.mesh = joiner.take();

@@ -257,7 +257,7 @@ void TileWork::write(TileRecord& record, MeshImage mesh_image, LayerLayout layer
 void TileWork::coarsen(TileRecord& record) {
     const TileGrid& grid = planned_.jobs.grid;
     const PixelRect rect = grid.rect(record.tile);
-    std::vector<TileMesh> children;
+    std::vector<ChildTile> children;
     SourceInfo source;
     for (const TileName& child : grid.children(record.tile)) {
         if (read_record(folder_, child).files.empty()) continue;  // missing, or outside the mask
