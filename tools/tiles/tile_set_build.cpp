@@ -1,7 +1,6 @@
 #include "tools/tiles/tile_set_build.h"
 
 #include <algorithm>
-#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <ostream>
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 
 #include "formats/container/container.h"
 #include "formats/files/stale_temporaries.h"
@@ -17,7 +16,6 @@
 #include "libcore/tiles/sides_of_tile.h"
 #include "libcore/tiles/tile_errors.h"
 #include "libcore/tiles/tile_units.h"
-#include "tools/build_memory.h"
 #include "tools/common/in_file.h"
 #include "tools/common/output.h"
 #include "tools/common/text.h"
