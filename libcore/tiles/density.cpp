@@ -22,19 +22,45 @@ constexpr int kFirstPower = -16;
 // have more, and the first part of the collapse takes the most time.
 constexpr double kMostDense = 8, kLeastShare = 0.1, kMostShare = 0.5;
 
-// Of larger pictures: some thousand windows tell the density to a percent or two.
-constexpr int kWindow = 128;  // [steps]
-constexpr double kLeastSampled = 1.0 / 8;
+// Of larger pictures: some thousand windows tell the density to a percent or two. Widths are in mean
+// distances of vertices; an effect of the sides is not seen beyond that margin.
+constexpr double kWindow = 16, kMargin = 1.6, kLeastSampled = 1.0 / 8;
+constexpr int kLeastWindow = 32;  // [steps]
 
-// One window in a square of this side.
-double window_spacing(const TileGrid& grid) {
+// The share of the pixels that is sampled.
+double sampled_share(const TileGrid& grid) {
     const double pixels = static_cast<double>(grid.width()) * grid.height();
-    return kWindow / std::sqrt(std::clamp(static_cast<double>(kSampledWhole) / pixels, kLeastSampled, 1.0));
+    return std::clamp(static_cast<double>(kSampledWhole) / pixels, kLeastSampled, 1.0);
 }
 
-double side_vertices(const BaseMesh& mesh, const GridSize& size) {
-    return static_cast<double>(std::ranges::count_if(
-        mesh.position, [&](const Vec2f& place) { return on_side(place, size.width, size.height); }));
+struct VertexCounts {
+    double counted = 0, on_sides = 0;
+};
+
+VertexCounts count_vertices(const BaseMesh& mesh, const GridSize& size, int margin) {
+    VertexCounts counts;
+    const float right = static_cast<float>(size.width - 1 - margin),
+                bottom = static_cast<float>(size.height - 1 - margin), left = static_cast<float>(margin);
+    for (const Vec2f& place : mesh.position) {
+        const bool side = on_side(place, size.width, size.height);
+        if (side) counts.on_sides += 1;
+        if (margin == 0)
+            counts.counted += side ? 0.5 : 1;
+        else if (place[0] >= left && place[0] < right && place[1] >= left && place[1] < bottom)
+            counts.counted += 1;
+    }
+    return counts;
+}
+
+// How many pixels are inside the mask and within the margin; without a mask steps.
+double counted_pixels(const GridSize& size, const Mask& mask, int margin) {
+    if (mask.empty())
+        return static_cast<double>(size.width - 1 - 2 * margin) * (size.height - 1 - 2 * margin);
+    if (margin == 0) return static_cast<double>(mask.count());
+    double pixels = 0;
+    for (int y = margin; y < size.height - 1 - margin; ++y)
+        for (int x = margin; x < size.width - 1 - margin; ++x) pixels += mask.at(x, y) ? 1 : 0;
+    return pixels;
 }
 
 // The pixels of a column.
@@ -75,7 +101,7 @@ SimplifyParams tile_collapse(const BuildParams& params, const TileCommon& common
 void DensitySample::add(const DensitySample& other) {
     pixels += other.pixels;
     border += other.border;
-    add_to(inner, other.inner);
+    add_to(counted, other.counted);
     add_to(on_sides, other.on_sides);
     add_to(decided, other.decided);
 }
@@ -91,14 +117,14 @@ std::span<const double> sample_thresholds() {
     return thresholds;
 }
 
-DensitySample sample_density(FeatureImage part, Mask mask, const SimplifyParams& params, double density) {
+DensitySample sample_density(FeatureImage part, Mask mask, int margin, const SimplifyParams& params,
+                             double density) {
     const std::span<const double> thresholds = sample_thresholds();
     const GridSize size = part;
     DensitySample sample;
     sample.border = 2.0 * (size.width - 1 + size.height - 1);
-    sample.pixels = mask.empty() ? static_cast<double>(size.width - 1) * (size.height - 1)
-                                 : static_cast<double>(mask.count());
-    sample.inner.resize(thresholds.size());
+    sample.pixels = counted_pixels(size, mask, margin);
+    sample.counted.resize(thresholds.size());
     sample.on_sides.resize(thresholds.size());
     sample.decided.resize(thresholds.size());
     if (size.width < 2 || size.height < 2 || sample.pixels == 0) return sample;
@@ -111,34 +137,38 @@ DensitySample sample_density(FeatureImage part, Mask mask, const SimplifyParams&
         const std::vector<int> counts = line_vertex_counts(line, part.channels, thresholds);
         for (std::size_t i = 0; i < counts.size(); ++i) sample.decided[i] += counts[i] - 1;
     }
+    const double all = counted_pixels(size, mask, 0);
     const GridMesh grid = grid_mesh(std::move(part), std::move(mask));
     SimplifyRun run(grid, params);
-    const double most = std::clamp(kMostDense * density / 100, kLeastShare, kMostShare) * sample.pixels;
+    const double most = std::clamp(kMostDense * density / 100, kLeastShare, kMostShare) * all;
     SimplifyResult reached = run.to({.vertices = std::max<std::int64_t>(4, std::llround(most))});
-    double on_sides = side_vertices(reached.mesh, size);
+    VertexCounts counts = count_vertices(reached.mesh, size, margin);
     for (std::size_t i = 0; i < thresholds.size(); ++i) {
         if (reached.increment < thresholds[i] && reached.mesh.vertex_count() > 4) {
             reached = run.to({.vertices = 4, .max_increment = thresholds[i]});
-            on_sides = side_vertices(reached.mesh, size);
+            counts = count_vertices(reached.mesh, size, margin);
         }
-        sample.inner[i] = static_cast<double>(reached.mesh.vertex_count()) - on_sides;
-        sample.on_sides[i] = on_sides;
+        sample.counted[i] = counts.counted;
+        sample.on_sides[i] = counts.on_sides;
     }
     return sample;
 }
 
-std::vector<PixelRect> sampled_parts(const TileGrid& grid, int row) {
-    std::vector<PixelRect> parts;
-    const double spacing = window_spacing(grid);
-    const bool whole = std::int64_t{grid.width()} * grid.height() <= kSampledWhole;
+std::vector<SampledPart> sampled_parts(const TileGrid& grid, int row, double density) {
+    std::vector<SampledPart> parts;
+    const double share = sampled_share(grid), apart = 10 / std::sqrt(density);
+    const int window = std::max(kLeastWindow, static_cast<int>(std::lround(kWindow * apart)));
+    const int margin = static_cast<int>(std::lround(kMargin / kWindow * window));
+    // One window in a square of this side.
+    const double spacing = window / std::sqrt(share);
     for (int column = 0; column < grid.columns(0); ++column) {
         const PixelRect rect = grid.rect({0, column, row});
         const auto cells = [&](int pixels) {
             return std::max(1, static_cast<int>(std::lround((pixels - 1) / spacing)));
         };
         const int across = cells(rect.width()), down = cells(rect.height());
-        if (whole || rect.width() <= kWindow || rect.height() <= kWindow) {
-            parts.push_back(rect);
+        if (share == 1 || rect.width() <= window || rect.height() <= window) {
+            parts.push_back({rect});
             continue;
         }
         // Somewhere in each cell, so that no pattern of the picture falls in step with the windows.
@@ -148,15 +178,15 @@ std::vector<PixelRect> sampled_parts(const TileGrid& grid, int row) {
                 const auto seed = (static_cast<std::uint64_t>(row) << 40) +
                                   (static_cast<std::uint64_t>(column) << 12) +
                                   static_cast<std::uint64_t>(2 * n) + salt + 1;
-                const double free = room - kWindow;
+                const double free = room - window;
                 return begin + static_cast<int>(cell * room +
                                                 std::max(0.0, free) * scattered(seed * 0x9E3779B97F4A7C15u));
             };
             const int x = std::min(place(rect.left, rect.width(), n % across, across, 0),
-                                   rect.right - kWindow - 1),
+                                   rect.right - window - 1),
                       y = std::min(place(rect.top, rect.height(), n / across, down, 1),
-                                   rect.bottom - kWindow - 1);
-            parts.push_back({x, y, x + kWindow + 1, y + kWindow + 1});
+                                   rect.bottom - window - 1);
+            parts.push_back({{x, y, x + window + 1, y + window + 1}, margin});
         }
     }
     return parts;
@@ -169,13 +199,13 @@ double threshold_for(const DensitySample& samples, const TileGrid& grid, double 
     const double outer = 2.0 * (grid.width() + grid.height());
     const double shared = static_cast<double>(grid.width()) * (grid.rows(0) - 1) +
                           static_cast<double>(grid.height()) * (grid.columns(0) - 1);
-    // A side of a part has half of its vertices for itself: the other half stands for what lies beyond. The
-    // sides of tiles have those that are decided instead, and the picture's own border has nothing beyond.
+    // The sides of tiles have the vertices that are decided instead of those that the collapse leaves there,
+    // and the picture's own border has nothing beyond it, so none of its vertices counts half.
     const auto expected = [&](std::size_t i) {
         const double own = samples.on_sides[i] / samples.border,
                      decided = samples.decided[i] / samples.border;
-        const double inside = (samples.inner[i] + 0.5 * samples.on_sides[i]) / samples.pixels;
-        return pixels * inside + shared * (decided - own) + outer * (decided - 0.5 * own);
+        return pixels * samples.counted[i] / samples.pixels + shared * (decided - own) +
+               outer * (decided - 0.5 * own);
     };
     if (expected(0) <= vertices) return thresholds[0];
     for (std::size_t i = 1; i < thresholds.size(); ++i) {

@@ -90,10 +90,10 @@ TEST_CASE("a coarser tile is made of the children that are there") {
 TEST_CASE("the threshold of a set leaves the wanted number of vertices in its samples") {
     const TileGrid grid(97, 97, 96);
     const FeatureImage feature = sample_feature(Kind::kNoise, 97, 97);
-    const DensitySample sample = sample_density(feature, {}, {}, 4);
+    const DensitySample sample = sample_density(feature, {}, 0, {}, 4);
     CHECK(sample.pixels == 96.0 * 96);
     CHECK(sample.border == 4 * 96);
-    CHECK(std::ranges::is_sorted(sample.inner, std::greater()));
+    CHECK(std::ranges::is_sorted(sample.counted, std::greater()));
     CHECK(std::ranges::is_sorted(sample.decided, std::greater()));
     double before = 0;
     for (const double vertices : {800.0, 400.0, 100.0}) {
@@ -103,17 +103,41 @@ TEST_CASE("the threshold of a set leaves the wanted number of vertices in its sa
     }
 }
 
+TEST_CASE("windows have the density of the whole where they count") {
+    const FeatureImage feature = sample_feature(Kind::kNoise, 257, 257);
+    const DensitySample whole = sample_density(feature, {}, 0, {}, 4);
+    DensitySample windows;
+    for (int y = 0; y <= 192; y += 64)
+        for (int x = 0; x <= 192; x += 64) {
+            FeatureImage part{65, 65, feature.channels, {}};
+            for (int row = y; row < y + 65; ++row)
+                part.data.insert(part.data.end(), feature.pixel(x, row),
+                                 feature.pixel(x, row) + 65 * feature.channels);
+            windows.add(sample_density(std::move(part), {}, 8, {}, 4));
+        }
+    CHECK(windows.pixels == 16 * 48 * 48);
+    std::size_t compared = 0;
+    for (std::size_t i = 0; i < whole.counted.size(); ++i) {
+        const double expected = whole.counted[i] / whole.pixels;
+        if (expected < 0.02 || expected > 0.08) continue;
+        ++compared;
+        CHECK(std::abs(windows.counted[i] / windows.pixels / expected - 1) < 0.02);
+    }
+    CHECK(compared > 2);
+}
+
 TEST_CASE("small pictures are sampled as a whole, large ones in parts all over") {
     const TileGrid small(1000, 700, 512), large(20000, 20000, 1024);
-    CHECK(sampled_parts(small, 0).size() == 2);
-    CHECK(sampled_parts(small, 1).front().bottom == 700);
+    CHECK(sampled_parts(small, 0, 1).size() == 2);
+    CHECK(sampled_parts(small, 1, 1).front().pixels.bottom == 700);
     std::int64_t pixels = 0;
     for (int row = 0; row < large.rows(0); ++row)
-        for (const PixelRect& part : sampled_parts(large, row)) {
+        for (const auto& [part, margin] : sampled_parts(large, row, 1)) {
+            CHECK(margin == 16);
             CHECK((part.left >= 0 && part.top >= 0 && part.right <= 20000 && part.bottom <= 20000));
             pixels += std::int64_t{part.width() - 1} * (part.height() - 1);
         }
-    CHECK(pixels > 20000LL * 20000 / 10);
+    CHECK(pixels > 20000LL * 20000 / 12);
     CHECK(pixels < 20000LL * 20000 / 6);
 }
 

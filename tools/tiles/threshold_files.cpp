@@ -68,7 +68,7 @@ void write_sample(const std::string& folder, int row, const std::string& key, co
     write_json(sample_path(folder, row), {{"plan", key},
                                           {"pixels", sample.pixels},
                                           {"border", sample.border},
-                                          {"inner", sample.inner},
+                                          {"counted", sample.counted},
                                           {"on_sides", sample.on_sides},
                                           {"decided", sample.decided}});
 }
@@ -81,7 +81,7 @@ DensitySample read_sample(const std::string& folder, int row, const std::string&
     sample.border = number(path, json, "border");
     // Where no pixel of the row is inside the mask there are no counts.
     if (sample.pixels == 0) return sample;
-    sample.inner = numbers(path, json, "inner");
+    sample.counted = numbers(path, json, "counted");
     sample.on_sides = numbers(path, json, "on_sides");
     sample.decided = numbers(path, json, "decided");
     return sample;

@@ -132,16 +132,16 @@ void TileWork::sample(int row, const Progress& progress) {
     if (has_threshold(folder_, key_) || has_sample(folder_, row, key_)) return;
     const TileGrid& grid = planned_.jobs.grid;
     const SimplifyParams params = tile_collapse(planned_.params, planned_.common);
-    const std::vector<PixelRect> parts = sampled_parts(grid, row);
+    const std::vector<SampledPart> parts = sampled_parts(grid, row, planned_.common.density);
     DensitySample sum;
     for (std::size_t n = 0; n < parts.size(); ++n) {
         progress(static_cast<double>(n) / static_cast<double>(parts.size()), "sample");
         try {
-            PixelPart part = read(parts[n]);
+            PixelPart part = read(parts[n].pixels);
             if (has_none(part)) continue;
             FeatureImage feature = tile_features(part.image, planned_.common, part.mask);
-            sum.add(
-                sample_density(std::move(feature), std::move(part.mask), params, planned_.common.density));
+            sum.add(sample_density(std::move(feature), std::move(part.mask), parts[n].margin, params,
+                                   planned_.common.density));
         } catch (const Error& error) {
             // The tile says so when it is built.
             if (error.kind() != ErrorKind::kBadFile) throw;
