@@ -102,10 +102,10 @@ class LineErrors {
     std::vector<Sums> sums_;
 };
 
-// A mesh around a line gives way to it, but a line cannot give way to the mesh: it counts sixteen times. So
-// pixels at most two from a side have about the error that an ordinary mesh has there, at 0.25 to 4 % of the
-// pixels (docs/decisions/0051-tile-sets.md).
-constexpr double kWeightOfLines = 16;
+// A mesh around a line gives way to it, but a line cannot give way to the mesh: it counts more. So
+// pixels at most two from a side have no larger error than others, at 1 to 4 % of the pixels
+// (docs/decisions/0051-tile-sets.md).
+constexpr double kWeightOfLines = 32;
 
 // What the removal of v from between a and b adds.
 double removal_cost(const LineErrors& errors, int a, int v, int b) {

@@ -10,7 +10,7 @@ namespace imgmesh {
 /// the vertex goes whose two segments can best be replaced by one, until each removal would add more than
 /// `threshold`. What a removal adds is the increase of the squared error of straight least-squares lines over
 /// the pixels, times half the length of the new segment, as in a mesh a vertex of the line stands for a strip
-/// that is about as wide as its segments are long, times 16. So the threshold is that of the collapse
+/// that is about as wide as its segments are long, times 32. So the threshold is that of the collapse
 /// (SimplifyTarget::max_increment).
 ///
 /// line       pixels, `channels` features each, interleaved
