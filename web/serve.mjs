@@ -23,7 +23,7 @@ const kTypes = {
 /** The file that a request means, or null. The first of `folders`, [path below the address, folder] each, that fits. */
 function fileOf(folders, url) {
   try {
-    const wanted = decodeURIComponent(new URL(url, "http://localhost").pathname);
+    const wanted = decodeURIComponent(new URL(`http://localhost${url}`).pathname);
     const [at, folder] = folders.find(([at]) => wanted.startsWith(at));
     let path = join(folder, wanted.slice(at.length));
     if (path !== folder && !path.startsWith(folder + sep)) return null;

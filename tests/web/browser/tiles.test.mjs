@@ -42,14 +42,14 @@ after(async () => {
 });
 
 /** Opens the viewer; `prepare` gets the page before. finish() fails on errors and on requests to other hosts. */
-async function open(address = "?set=sets/photographs/", { prepare = () => {}, ...options } = {}) {
+async function open(address = "?set=sets/photographs/", { at = host, prepare = () => {}, ...options } = {}) {
   const view = await browser.newPage({ viewport: { width: 900, height: 640 }, ...options });
   const errors = [], foreign = [];
   view.on("pageerror", (error) => errors.push(String(error)));
   view.on("console", (message) => message.type() === "error" && errors.push(message.text()));
-  view.on("request", (request) => !/^(blob|data):/.test(request.url()) && !request.url().startsWith(host.address) && foreign.push(request.url()));
+  view.on("request", (request) => !/^(blob|data):/.test(request.url()) && !request.url().startsWith(at.address) && foreign.push(request.url()));
   await prepare(view);
-  await view.goto(host.address + address);
+  await view.goto(at.address + address);
   return {
     view,
     errors,
@@ -76,12 +76,12 @@ async function shot(view, background) {
 }
 
 /** The part of the view that the picture covers, in whole pixels. Its corners are centres of pixels. */
-function covered({ width, height }, { x, y, zoom }) {
+function covered({ width, height }, { x, y, zoom }, shown = picture) {
   const side = (middle, at, last) => [
     Math.max(Math.ceil(middle - (at * zoom) / 100), 0),
     Math.min(Math.floor(middle + ((last - at) * zoom) / 100), 2 * middle),
   ];
-  const [left, right] = side(width / 2, x, picture.width - 1), [top, bottom] = side(height / 2, y, picture.height - 1);
+  const [left, right] = side(width / 2, x, shown.width - 1), [top, bottom] = side(height / 2, y, shown.height - 1);
   return { left, right, top, bottom };
 }
 
@@ -97,8 +97,8 @@ function differing(a, b, { left, right, top, bottom }) {
 }
 
 /** The drawing over magenta. Over green it must be the same: where it is not, one sees the background. */
-async function closedShot(view, place, what) {
-  const drawing = await shot(view, "#f0f"), inside = covered(drawing, place);
+async function closedShot(view, place, what, shown = picture) {
+  const drawing = await shot(view, "#f0f"), inside = covered(drawing, place, shown);
   assert.ok(inside.right - inside.left > 100 && inside.bottom - inside.top > 100, what);
   assert.equal(differing(drawing, await shot(view, "#0f0"), inside), 0, `pixels that show the background: ${what}`);
   return { drawing, inside };
@@ -239,6 +239,26 @@ test("a set opens from a folder of this computer, and by its address; where ther
   assert.equal(await view.locator("#problem").textContent(), `There is no tile set at ${host.address}sets/none/tileset.json.`);
   assert.ok(errors.every((text) => /404|Failed to load|not in the folder/.test(text)), errors.join("\n"));
   await view.close();
+});
+
+test("a set of six levels opens from the root of a host, and its coarser levels name further tilesets", async () => {
+  const strip = { width: 600, height: 17, data: Buffer.concat(Array.from({ length: 17 }, (_, y) => picture.data.subarray(4 * picture.width * y, 4 * (picture.width * y + 600)))) };
+  const source = path.join(folder, "strip.png"), own = path.join(folder, "strip");
+  fs.writeFileSync(source, encodePng(strip));
+  tool("imgmesh-build", source, "-o", `${own}/`, "--tiles", "16", "--density", "10", "--preset", "fast", "--quiet");
+  fs.cpSync(page, own, { recursive: true });
+  const alone = await serve(own), requests = [];
+  const { view, finish } = await open("index.html#x=300&y=8&zoom=1000", {
+    at: alone,
+    prepare: (view) => view.on("request", (request) => requests.push(new URL(request.url()).pathname)),
+  });
+  await settled(view, 0);
+  await closedShot(view, { x: 300, y: 8, zoom: 1000 }, "a set of six levels", strip);
+  assert.ok(requests.some((at) => /^\/view\/\d\/\d+_0\.json$/.test(at)), "a tileset below the first");
+  assert.deepEqual(requests.filter((at) => at.startsWith("//")), []);
+  await finish();
+  alone.server.closeAllConnections();
+  alone.server.close();
 });
 
 test("on a phone, two fingers zoom and everything is in reach", async () => {

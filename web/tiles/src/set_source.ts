@@ -22,6 +22,13 @@ function setIn(name: string, read: (path: string) => Promise<Blob>): SetSource {
   return { name, url: new URL("folder/tileset.json", document.baseURI).href, read };
 }
 
+/** The renderer asks for "//view" where the set's folder is the root of a host. Not every server takes that. */
+export function withOneSlash(url: string): string {
+  const address = new URL(url);
+  address.pathname = address.pathname.replace(/^\/+/, "/");
+  return address.href;
+}
+
 /** The path below the set's folder that an address means. */
 export function pathInSet(source: SetSource, url: string): string {
   return decodeURIComponent(new URL(url).pathname.slice(new URL(".", source.url).pathname.length));

@@ -5,7 +5,7 @@ import { DRACOLoader } from "three/addons/loaders/DRACOLoader.js";
 import { GLTFLoader } from "three/addons/loaders/GLTFLoader.js";
 import type { Transform } from "../../studio/src/view/transform";
 import { type Levels, levelsOf, sizeOf, type TilesetFile } from "./levels";
-import { pathInSet, type SetSource } from "./set_source";
+import { pathInSet, type SetSource, withOneSlash } from "./set_source";
 import { addWire, pictureMeshes, wireMaterial } from "./wire";
 
 /** Zooms such as 50 % are a little more or less than they say. */
@@ -68,6 +68,7 @@ export class TileScene {
     this.known = new WeakMap();
     const tiles = (this.tiles = new TilesRenderer(source.url));
     tiles.manager.addHandler(/\.(glb|gltf)$/i, this.gltf);
+    tiles.registerPlugin({ preprocessURL: (url: string) => withOneSlash(url) });
     const { read } = source;
     if (read)
       tiles.registerPlugin({ fetchData: async (url: string) => new Response(await read(pathInSet(source, url))) });
