@@ -16,7 +16,7 @@ std::string_view take_name(ByteReader& in) {
     return *name;
 }
 
-void rename_attributes(const std::string& path, std::span<std::uint8_t> bytes) {
+std::size_t rename_attributes(const std::string& path, std::span<std::uint8_t> bytes) {
     ByteReader in(bytes, ByteOrder::kLittle);
     in.take(4);  // the signature
     const std::uint32_t field = in.number(4), version = field & kExrVersionMask;
@@ -34,16 +34,22 @@ void rename_attributes(const std::string& path, std::span<std::uint8_t> bytes) {
                 bytes[type_position] = '~';  // no type begins so
         }
     } while ((field & kExrMultiPart) && !in.take_if(0));
+    return in.position();
 }
 
 }  // namespace
 
-void make_attributes_opaque(const std::string& path, std::span<std::uint8_t> bytes) {
+std::optional<std::size_t> make_start_opaque(const std::string& path, std::span<std::uint8_t> bytes) {
     try {
-        rename_attributes(path, bytes);
+        return rename_attributes(path, bytes);
     } catch (const EndOfBytes&) {
-        throw Error(ErrorKind::kBadFile, cat(path, ": the EXR ends in its header"));
+        return {};
     }
+}
+
+void make_attributes_opaque(const std::string& path, std::span<std::uint8_t> bytes) {
+    if (!make_start_opaque(path, bytes))
+        throw Error(ErrorKind::kBadFile, cat(path, ": the EXR ends in its header"));
 }
 
 }  // namespace imgmesh

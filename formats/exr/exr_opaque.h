@@ -1,7 +1,9 @@
 // Makes an EXR's header safe for OpenEXR to read.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 
@@ -14,5 +16,9 @@ namespace imgmesh {
 ///
 /// Throws Error(kBadFile) for a broken header.
 void make_attributes_opaque(const std::string& path, std::span<std::uint8_t> bytes);
+
+/// The same of the first bytes of a file. Returns how many of them are headers; nothing if the headers go on
+/// behind them, and then `bytes` are of no use any more.
+std::optional<std::size_t> make_start_opaque(const std::string& path, std::span<std::uint8_t> bytes);
 
 }  // namespace imgmesh

@@ -45,6 +45,8 @@ std::unique_ptr<RegionReader> open_picture_regions(const std::string& path, cons
     constexpr std::size_t kStart = std::size_t{1} << 16;  // far more than signatures need
     const std::vector<std::uint8_t> start = RandomFile(path).bytes_at(0, kStart);
     switch (probe_picture(path, start).format) {
+        case PictureFormat::kExr:
+            return open_exr_regions(path, options);
         case PictureFormat::kTiff:
             return open_tiff_regions(path, options);
         case PictureFormat::kJpeg:

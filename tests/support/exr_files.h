@@ -7,6 +7,8 @@
 #include <OpenEXR/ImfMultiPartOutputFile.h>
 #include <OpenEXR/ImfOutputPart.h>
 #include <OpenEXR/ImfPartType.h>
+#include <OpenEXR/ImfTileDescription.h>
+#include <OpenEXR/ImfTiledOutputPart.h>
 
 #include <cstdint>
 #include <deque>
@@ -30,7 +32,8 @@ struct ExrPart {
     std::function<void(Imf::Header&)> change = {};
 };
 
-/// Writes a file of one part without a name, or of several.
+/// Writes a file of one part without a name, or of several. A part to which `change` gives tiles has them;
+/// the smaller levels are cut out of the largest.
 inline void write_exr_file(const std::string& path, const std::vector<ExrPart>& parts, int width = 4,
                            int height = 4) {
     std::vector<Imf::Header> headers;
@@ -39,8 +42,8 @@ inline void write_exr_file(const std::string& path, const std::vector<ExrPart>& 
         for (const ExrPlane& plane : part.planes)
             header.channels().insert(plane.name, Imf::Channel(plane.type, plane.sampling, plane.sampling));
         if (parts.size() > 1) header.setName(part.name);
-        header.setType(Imf::SCANLINEIMAGE);
         if (part.change) part.change(header);
+        header.setType(header.hasTileDescription() ? Imf::TILEDIMAGE : Imf::SCANLINEIMAGE);
     }
     Imf::MultiPartOutputFile file(path.c_str(), headers.data(), static_cast<int>(headers.size()));
     for (std::size_t k = 0; k < parts.size(); ++k) {
@@ -71,6 +74,15 @@ inline void write_exr_file(const std::string& path, const std::vector<ExrPart>& 
                 insert(floats.emplace_back(std::move(samples)));
             else
                 insert(halves.emplace_back(samples.begin(), samples.end()));
+        }
+        if (headers[k].hasTileDescription()) {
+            Imf::TiledOutputPart out(file, static_cast<int>(k));
+            out.setFrameBuffer(buffer);
+            for (int v = 0; v < out.numYLevels(); ++v)
+                for (int u = 0; u < out.numXLevels(); ++u)
+                    if (out.isValidLevel(u, v))
+                        out.writeTiles(0, out.numXTiles(u) - 1, 0, out.numYTiles(v) - 1, u, v);
+            continue;
         }
         Imf::OutputPart out(file, static_cast<int>(k));
         out.setFrameBuffer(buffer);

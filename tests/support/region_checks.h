@@ -3,8 +3,11 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cstring>
+#include <random>
 #include <string>
+#include <utility>
 
 #include "formats/picture/region_source.h"
 
@@ -47,6 +50,26 @@ inline void check_regions(const std::string& path, int step, const ReadImageOpti
         }
     const PixelRect all{0, 0, width, height};
     check_part(source.read_region(all), whole, all);
+}
+
+/// Reads so many rectangles at random, of the size of a few pixels to all.
+inline void check_random_regions(const std::string& path, int count, const ReadImageOptions& options = {}) {
+    const ReadImage whole = read_image_file(path, options);
+    const RegionSource source(path, options);
+    REQUIRE(source.facts().width == whole.image.width);
+    REQUIRE(source.facts().height == whole.image.height);
+    std::mt19937 random(5);
+    const auto span = [&](int size) {
+        const auto a = static_cast<int>(random() % static_cast<unsigned>(size)),
+                   b = static_cast<int>(random() % static_cast<unsigned>(size));
+        return std::pair(std::min(a, b), std::max(a, b) + 1);
+    };
+    for (int i = 0; i < count; ++i) {
+        const std::pair x = span(whole.image.width), y = span(whole.image.height);
+        const PixelRect region{x.first, y.first, x.second, y.second};
+        INFO("columns ", region.left, " to ", region.right, ", rows ", region.top, " to ", region.bottom);
+        check_part(source.read_region(region), whole, region);
+    }
 }
 
 }  // namespace imgmesh

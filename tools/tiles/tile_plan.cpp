@@ -94,8 +94,13 @@ Gamut gamut_of_all(const BuildOptions& o, const TilePixels& pixels, const TileGr
     const SampleType type = pixels.facts().sample_type;
     if (type != SampleType::kHalf && type != SampleType::kFloat) return Gamut::kDisplay;
     for (const TileName& tile : grid.tiles(0)) {
-        const PixelPart part = pixels.read(grid.rect(tile), choice);
-        if (gamut_of(part.image, part.mask) == Gamut::kHdr) return Gamut::kHdr;
+        try {
+            const PixelPart part = pixels.read(grid.rect(tile), choice);
+            if (gamut_of(part.image, part.mask) == Gamut::kHdr) return Gamut::kHdr;
+        } catch (const Error& error) {
+            // The tile says so when it is built.
+            if (error.kind() != ErrorKind::kBadFile && error.kind() != ErrorKind::kIo) throw;
+        }
     }
     return Gamut::kDisplay;
 }

@@ -1,6 +1,7 @@
 // Regions of a picture whose file has them in blocks. Internal to this room.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <memory>
 
@@ -8,6 +9,9 @@
 #include "formats/picture/regions/region_reader.h"
 
 namespace imgmesh {
+
+/// Samples of one block, which is read as a whole: above any tile, and memory for it is little.
+inline constexpr std::int64_t kMostInBlock = std::int64_t{1} << 26;
 
 /// Decodes parts of one file. One thread at a time.
 class RegionDecoder {
@@ -41,6 +45,7 @@ std::unique_ptr<RegionReader> open_decoded(const std::string& path, const ReadIm
                                            std::function<std::unique_ptr<RegionDecoder>()> open);
 
 std::unique_ptr<RegionReader> open_tiff_regions(const std::string& path, const ReadImageOptions& options);
+std::unique_ptr<RegionReader> open_exr_regions(const std::string& path, const ReadImageOptions& options);
 /// With RegionAccess::kSpool. Throws Error(kUnsupported) for an interlaced PNG.
 std::unique_ptr<RegionReader> open_png_regions(const std::string& path, const ReadImageOptions& options);
 std::unique_ptr<RegionReader> open_jpeg_regions(const std::string& path, const ReadImageOptions& options);

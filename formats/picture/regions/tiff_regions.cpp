@@ -5,8 +5,6 @@
 namespace imgmesh {
 namespace {
 
-// Samples of one block, which is read as a whole: above any tile, and memory for it is little.
-constexpr std::int64_t kMostInBlock = std::int64_t{1} << 26;
 class TiffDecoder : public RegionDecoder {
   public:
     TiffDecoder(const std::string& path, const ReadImageOptions& options)
