@@ -9,6 +9,7 @@
 #include "formats/picture/color/profile_convert.h"
 #include "formats/picture/decode/picture_probe.h"
 #include "formats/picture/regions/decoded_regions.h"
+#include "formats/picture/regions/sweep.h"
 #include "formats/picture/regions/tile_list.h"
 #include "libcore/base/error.h"
 
@@ -73,22 +74,12 @@ struct RegionSource::State {
         }
     }
 
-    // Squares share fewer blocks of tiled pictures than bands, and the blocks of striped ones are read again
-    // for each square: a band of all columns is best for those.
     ColorSpace narrowest() const {
-        const PictureFacts& facts = reader->facts();
-        constexpr int kSide = 2048;
-        const bool strips = facts.block_width >= std::max(facts.width, facts.height);
-        const int columns = strips ? facts.width : kSide;
-        const int rows = strips ? std::max(1, kSide * kSide / columns) : kSide;
         OutsideGamut counts;
-        for (int y = 0; y < facts.height; y += rows)
-            for (int x = 0; x < facts.width; x += columns)
-                count_outside(
-                    read({x, y, std::min(facts.width, x + columns), std::min(facts.height, y + rows)},
-                         ColorSpace::kLinear)
-                        .image,
-                    counts);
+        sweep_picture(reader->facts(), options.limits.max_pixels, [&](const PixelRect& part) {
+            count_outside(read(part, ColorSpace::kLinear).image, counts);
+            return true;
+        });
         return narrowest_space(counts);
     }
 
@@ -110,6 +101,10 @@ RegionSource::~RegionSource() = default;
 
 const PictureFacts& RegionSource::facts() const {
     return state_->reader->facts();
+}
+
+void RegionSource::sweep(const std::function<bool(const PixelRect&)>& look) const {
+    sweep_picture(facts(), state_->options.limits.max_pixels, look);
 }
 
 ColorSpace RegionSource::color_space() const {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -50,8 +51,14 @@ class RegionSource {
 
     /// The space of the colours that regions have. If facts().fits_colors, the first call reads all pixels to
     /// find the narrowest that holds them, unless options.fitting_space names it: whoever opens the picture
-    /// again passes on the result there.
+    /// again passes on the result there. Blocks that are broken are left out.
     ColorSpace color_space() const;
+
+    /// Calls look(part) for rectangles of up to 4 megapixels, or a row, that cover the picture, until it
+    /// returns false: what reads all pixels should do it so, as blocks that are as wide as the picture are
+    /// unpacked once or twice then, and not for each tile beside each other. Where it throws Error of
+    /// kBadFile or kIo, for smaller parts, down to a block, which is passed over.
+    void sweep(const std::function<bool(const PixelRect&)>& look) const;
 
     /// Reads the pixels of `region`. Throws Error: kBadArgument for one that is empty or not inside the
     /// picture; else as read_image_file() does, naming the region, for blocks that it touches and for a file

@@ -311,3 +311,38 @@ TEST_CASE("exr regions: headers of any length, and what is refused before memory
     }
     CHECK(peak_memory() - before < std::int64_t{64} << 20);
 }
+
+TEST_CASE("regions: a sweep covers each pixel once, and passes broken blocks over") {
+    const TemporaryFolder folder;
+    const std::string path = folder / "s.exr";
+    for (const bool tiled : {false, true}) {
+        write(path, colors(Imf::HALF),
+              both(packed(Imf::ZIP_COMPRESSION), tiled ? tiles(16, 16) : Change([](Imf::Header&) {})));
+        const std::size_t blocks = tiled ? 30 : 5, broken = tiled ? 8 : 1;  // at (32, 16), or row 16
+        std::vector<std::uint8_t> bytes = load(path);
+        const std::uint64_t block = entry_at(bytes, table_at(bytes, blocks) + 8 * broken);
+        for (std::size_t i = 0; i < 12; ++i) bytes[block + 40 + i] ^= 0xFF;
+        save(path, bytes);
+        for (const std::int64_t most : {std::int64_t{1} << 28, std::int64_t{700}}) {
+            ReadImageOptions options;
+            options.limits.max_pixels = most;
+            const RegionSource source(path, options);
+            std::vector<int> seen(std::size_t{kWidth} * kHeight);
+            source.sweep([&](const PixelRect& part) {
+                (void)source.read(part);
+                for (int y = part.top; y < part.bottom; ++y)
+                    for (int x = part.left; x < part.right; ++x)
+                        ++seen[static_cast<std::size_t>(y * kWidth + x)];
+                return true;
+            });
+            CHECK(std::ranges::max(seen) == 1);
+            // A block does not begin where a half does, so up to two of its size are lost beside it.
+            const auto lost = std::ranges::count(seen, 0);
+            CHECK(lost >= (tiled ? 16 * 16 : 16 * kWidth));
+            CHECK(lost <= (tiled ? 4 * 16 * 16 : 2 * 16 * kWidth));
+            int calls = 0;
+            source.sweep([&](const PixelRect&) { return ++calls == 0; });
+            CHECK(calls == 1);
+        }
+    }
+}

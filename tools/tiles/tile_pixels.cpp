@@ -30,6 +30,10 @@ const PictureFacts& TilePixels::facts() const {
     return picture_->facts();
 }
 
+void TilePixels::sweep(const std::function<bool(const PixelRect&)>& look) const {
+    picture_->sweep(look);
+}
+
 PixelPart TilePixels::read(const PixelRect& rect, const MaskChoice& choice) const {
     ReadImage read = picture_->read_region(rect);
     Mask mask = std::move(read.data);

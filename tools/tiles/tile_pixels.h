@@ -1,6 +1,7 @@
 // The pixels of a tile: cut out of the picture and of its mask.
 #pragma once
 
+#include <functional>
 #include <memory>
 
 #include "formats/picture/image_io.h"
@@ -34,6 +35,8 @@ class TilePixels {
     ~TilePixels();
 
     const PictureFacts& facts() const;
+    /// As RegionSource::sweep().
+    void sweep(const std::function<bool(const PixelRect&)>& look) const;
     /// Pixels outside of the mask, by alpha or without data, are outside of the part's mask.
     PixelPart read(const PixelRect& rect, const MaskChoice& choice) const;
 

@@ -86,23 +86,20 @@ std::optional<std::string> planned_before(const BuildOptions& o, std::string_vie
     return {};
 }
 
-// Whether a picture of floats has colours above 1. All of it must be read, once.
-Gamut gamut_of_all(const BuildOptions& o, const TilePixels& pixels, const TileGrid& grid,
-                   const MaskChoice& choice) {
+// Whether a picture of floats has colours above 1. All of it must be read, once. Of a broken block the tile
+// says so when it is built.
+Gamut gamut_of_all(const BuildOptions& o, const TilePixels& pixels, const MaskChoice& choice) {
     if (const std::optional<std::string> before = planned_before(o, "light"))
         return *before == "hdr" ? Gamut::kHdr : Gamut::kDisplay;
     const SampleType type = pixels.facts().sample_type;
     if (type != SampleType::kHalf && type != SampleType::kFloat) return Gamut::kDisplay;
-    for (const TileName& tile : grid.tiles(0)) {
-        try {
-            const PixelPart part = pixels.read(grid.rect(tile), choice);
-            if (gamut_of(part.image, part.mask) == Gamut::kHdr) return Gamut::kHdr;
-        } catch (const Error& error) {
-            // The tile says so when it is built.
-            if (error.kind() != ErrorKind::kBadFile && error.kind() != ErrorKind::kIo) throw;
-        }
-    }
-    return Gamut::kDisplay;
+    Gamut gamut = Gamut::kDisplay;
+    pixels.sweep([&](const PixelRect& rect) {
+        const PixelPart part = pixels.read(rect, choice);
+        gamut = gamut_of(part.image, part.mask);
+        return gamut == Gamut::kDisplay;
+    });
+    return gamut;
 }
 
 // An image with the channels of the picture: what they are to a build does not depend on the pixels.
@@ -175,7 +172,7 @@ PlannedTileSet plan_tile_set(const BuildOptions& o, Context& context) {
         planned.vertices = wanted_vertices(planned.params, pixels);
         planned.jobs.first_pass = planned.vertices > 0;
         const TilePixels whole(o.input, o.mask, read);
-        planned.common.space = tile_space(like, planned.params, gamut_of_all(o, whole, grid, planned.mask));
+        planned.common.space = tile_space(like, planned.params, gamut_of_all(o, whole, planned.mask));
         planned.common.sample_type = facts.sample_type;
         const double side = *o.tiles.size + 1.0;
         context.memory.take(cat("a tile of ", *o.tiles.size, " pixels"), tile_bytes(side * side));
