@@ -16,8 +16,7 @@ inline constexpr Finding kSetFindings[] = {
     {"set.side", "neighbouring tiles have different vertices or colours on the side that they share"},
     {"set.pixels", "neighbouring tiles have the pixels of the side that they share at different places"},
     {"set.tileset", "tileset.json, or a file that it refers to, is not what the index gives"},
-    warning("set.mask",
-            "neighbouring tiles with a mask differ on the side that they share, as at its outline"),
+    warning("set.mask", "two coarser tiles of a picture with a mask differ on the side that they share"),
     warning("set.missing", "a tile could not be made"),
 };
 

@@ -34,7 +34,8 @@ enum class SideOf { kLeft, kTop, kRight, kBottom };
 /// where it has a neighbour.
 TileSide tile_side(const MeshImage& image, SideOf side);
 
-/// Returns how two sides differ, as "12 vertices and 13"; "" if they are alike to the bit.
+/// Returns how two sides differ, as "12 vertices and 13"; "" if they are alike to the bit. Where one of them
+/// has a mask, only what both have on faces at the line counts.
 std::string vertex_difference(const TileSide& a, const TileSide& b);
 std::string pixel_difference(const TileSide& a, const TileSide& b);
 

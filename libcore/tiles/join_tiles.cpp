@@ -31,11 +31,19 @@ std::vector<Id> vertices_on(const BaseMesh& mesh, const Line& line) {
     return found;
 }
 
-// The side with all of its vertices, in whole pixels.
+bool is_pixel(float place) {
+    return place == std::round(place);
+}
+
+// The side with all of its vertices. Those between pixels are corners of a mask's strips, and where an
+// outline meets itself there are several at one pixel.
 Side side_of(const BaseMesh& mesh, std::span<const Id> vertices, int along) {
     Side side;
     for (const Id v : vertices) {
-        side.vertices.push_back(static_cast<int>(std::lround(mesh.position[v][along])));
+        const float place = mesh.position[v][along];
+        const auto pixel = static_cast<int>(std::lround(place));
+        if (!is_pixel(place) || (!side.vertices.empty() && side.vertices.back() == pixel)) continue;
+        side.vertices.push_back(pixel);
         side.features.insert(side.features.end(), mesh.feature_of(v), mesh.feature_of(v) + mesh.channels);
     }
     return side;
@@ -63,24 +71,32 @@ void scale(BaseMesh& mesh, float factor) {
 
 }  // namespace
 
+BaseMesh joined_children(std::span<const ChildTile> children) {
+    TileJoiner joiner;
+    for (const ChildTile& child : children) {
+        const Vec2f far = point(child.width - 1, child.height - 1);
+        BaseMesh mesh = child.mesh;
+        for (Vec2f& place : mesh.position) place = place.cwiseMax(Vec2f(0, 0)).cwiseMin(far);
+        joiner.add(mesh, point(child.left, child.top), far);
+    }
+    return joiner.take();
+}
+
 BaseMesh coarser_tile(std::span<const ChildTile> children, int level, int width, int height,
                       const SimplifyParams& params) {
-    TileJoiner joiner;
-    for (const ChildTile& child : children)
-        joiner.add(child.mesh, point(child.left, child.top), point(child.width - 1, child.height - 1));
-    const BaseMesh joined = joiner.take();
+    const BaseMesh joined = joined_children(children);
     const auto right = static_cast<float>(width - 1), bottom = static_cast<float>(height - 1);
     std::vector<Id> kept;
     for (const Line& line : {Line{1, 0}, Line{1, bottom}, Line{0, 0}, Line{0, right}}) {
         const int along = 1 - line.axis;
         const std::vector<Id> vertices = vertices_on(joined, line);
         const Side whole = side_of(joined, vertices, along);
-        const Side half = coarser_side(whole, joined.channels);
-        std::size_t next = 0;
-        for (std::size_t v = 0; v < vertices.size(); ++v) {
-            if (next >= half.vertices.size() || whole.vertices[v] != half.vertices[next]) continue;
-            kept.push_back(vertices[v]);
-            ++next;
+        const Side half = whole.vertices.size() < 3 ? whole : coarser_side(whole, joined.channels);
+        for (const Id v : vertices) {
+            const float place = joined.position[v][along];
+            if (!is_pixel(place) ||
+                std::ranges::binary_search(half.vertices, static_cast<int>(std::lround(place))))
+                kept.push_back(v);
         }
     }
     std::ranges::sort(kept);

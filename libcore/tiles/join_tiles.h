@@ -15,9 +15,14 @@ struct ChildTile {
     int width = 0, height = 0;  ///< of the tile [pixels]; the mesh spans [0, width - 1] x [0, height - 1]
 };
 
+/// Returns the children's meshes as one, in the coordinates of their parent. What a strip of a mask has
+/// beyond the sides of its tile is cut off.
+BaseMesh joined_children(std::span<const ChildTile> children);
+
 /// Returns the mesh of a tile of the next level: that of its children with a quarter of their vertices. On
 /// each of its sides it has half of theirs, which depends on the vertices of that side alone, so that
-/// neighbours agree (coarser_side()). Where a child is missing, the vertices around the gap stay.
+/// neighbours agree (coarser_side()). Where a child is missing, the vertices around the gap stay, and so do
+/// those of a mask's outline. Throws Error(kInternal) where that is finer than the grid of positions.
 ///
 /// level          of the result, at least 1: positions off the sides are multiples of kPositionStep 2^level
 /// width, height  of the tile [pixels of level 0]

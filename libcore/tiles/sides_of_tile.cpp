@@ -25,7 +25,7 @@ Image line_of(const Image& image, const PixelRect& rect) {
 std::vector<bool> inside_of(const Mask& mask, const PixelRect& rect) {
     std::vector<bool> inside;
     for (int y = rect.top; y < rect.bottom; ++y)
-        for (int x = rect.left; x < rect.right; ++x) inside.push_back(mask.at(x, y));
+        for (int x = rect.left; x < rect.right; ++x) inside.push_back(mask.empty() || mask.at(x, y));
     return inside;
 }
 
@@ -42,23 +42,21 @@ Side cut_side(const FeatureImage& line, const std::vector<bool>& inside) {
 }  // namespace
 
 TileSides sides_of_tile(const Image& image, const BuildParams& params, const TileCommon& common,
-                        const Mask& mask) {
+                        const TileMask& mask) {
     const FitParams fit = fit_params(params, common.space);
     const SideParams own{.threshold = common.max_increment.value_or(params.stop.error.value_or(0)),
                          .smoothness = fit.color_weight > 0 ? 1 / fit.color_weight : 0,
                          .gouraud_share = fit.gouraud_share};
-    const auto side_of = [&](const PixelRect& rect) {
+    const auto side_of = [&](const PixelRect& rect, bool cut) {
         const FeatureImage line = tile_features(line_of(image, rect), common);
-        std::vector<bool> inside;
-        if (!mask.empty()) inside = inside_of(mask, rect);
-        const bool cut = std::ranges::find(inside, false) != inside.end();
-        Side side = cut ? cut_side(line, inside) : simplify_side(line.data, line.channels, own);
+        Side side =
+            cut ? cut_side(line, inside_of(mask.mask, rect)) : simplify_side(line.data, line.channels, own);
         round_tile_features(side.features, params, common);
         return side;
     };
     const int w = image.width, h = image.height;
-    return {side_of({0, 0, w, 1}), side_of({0, h - 1, w, h}), side_of({0, 0, 1, h}),
-            side_of({w - 1, 0, w, h})};
+    return {side_of({0, 0, w, 1}, mask.cut.top), side_of({0, h - 1, w, h}, mask.cut.bottom),
+            side_of({0, 0, 1, h}, mask.cut.left), side_of({w - 1, 0, w, h}, mask.cut.right)};
 }
 
 }  // namespace imgmesh

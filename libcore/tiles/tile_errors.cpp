@@ -19,14 +19,14 @@ double squared_error(const BaseMesh& mesh, const PixelCoord& coord, const float*
 
 }  // namespace
 
-TileErrors tile_errors(const Level& level, const FeatureImage& feature, const PixelRect& own,
+TileErrors tile_errors(const Level& level, const FeatureImage& feature, const Mask& own,
                        const TileSeams& seams) {
     TileErrors errors;
     const int right = feature.width - 1, bottom = feature.height - 1;
-    for (int y = own.top; y < own.bottom; ++y)
-        for (int x = own.left; x < own.right; ++x) {
+    for (int y = 0; y <= bottom; ++y)
+        for (int x = 0; x <= right; ++x) {
             const PixelCoord& coord = level.map.at(x, y);
-            if (coord.face == kNone) continue;
+            if (coord.face == kNone || !own.at(x, y)) continue;
             const double square = squared_error(level.mesh, coord, feature.pixel(x, y));
             ++errors.pixels;
             errors.squares += square;

@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "libcore/image/image.h"
+#include "libcore/image/mask.h"
 #include "libcore/mesh/mesh_image.h"
 
 namespace imgmesh {
@@ -27,8 +28,8 @@ struct TileSeams {
 ///
 /// level    the tile's mesh and map, with the features of `feature`
 /// feature  of all pixels of the tile
-/// own      those that it owns, in its own coordinates
-TileErrors tile_errors(const Level& level, const FeatureImage& feature, const PixelRect& own,
+/// own      those that count as its own, of the tile's size
+TileErrors tile_errors(const Level& level, const FeatureImage& feature, const Mask& own,
                        const TileSeams& seams);
 
 }  // namespace imgmesh

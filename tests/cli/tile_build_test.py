@@ -2,6 +2,7 @@
 import json
 import shutil
 
+import numpy as np
 import picture_files
 from support import CliCase, main
 
@@ -25,6 +26,23 @@ class TileBuild(CliCase):
                 self.run_ok("imgmesh-reconstruct", "set", "-o", "b.png")
                 self.assertEqual(picture_files.read(self.folder / "b.png").shape[:2], (height, width))
                 shutil.rmtree(self.folder / "set")
+
+    def test_masks(self):
+        """Every pixel inside is drawn: in noise, lines and points on the sides that tiles share, and in what ends there."""
+        y, x = np.mgrid[0:77, 0:101]
+        noise = np.random.default_rng(1).random((77, 101))
+        masks = {"lines": (x == 32) | (y == 64), "points": (x % 32 == 0) & (y % 32 == 0), "crossing": (x == y) | (y == 10),
+                 "box": (x <= 32) & (y <= 64), "checker": (x + y) % 2 == 0,
+                 **{f"noise {share}": noise < share for share in (0.5, 0.97)}}
+        for name, mask in masks.items():
+            with self.subTest(mask=name):
+                picture_files.png(self.folder / "m.png", mask[..., None].astype(float))
+                self.build_set("--mask", "m.png")
+                self.assertTrue(self.report("imgmesh-info", "set", "--validate")["valid"])
+                self.assertEqual(self.report("imgmesh-info", "set")["levels"][0]["pixels"], mask.sum())
+                self.run_ok("imgmesh-reconstruct", "set", "-o", "b.png")
+                drawn = picture_files.read(self.folder / "b.png")[..., 3] > 0
+                self.assertTrue((drawn == mask).all(), np.argwhere(drawn != mask)[:5])
 
     def test_output_is_a_folder(self):
         for name in ("-", "out.glb", "out.gltf"):

@@ -10,6 +10,7 @@
 #include "libcore/tiles/join_tiles.h"
 #include "libcore/tiles/tile_errors.h"
 #include "libcore/tiles/tile_joiner.h"
+#include "libcore/tiles/tile_mask.h"
 #include "tests/support/sample_pictures.h"
 #include "tests/support/sample_tile_set.h"
 
@@ -149,7 +150,8 @@ TEST_CASE("the errors of tiles are those of the pixels that they own") {
     level.mesh.feature.assign(9, 2.0f);
     level.mesh.faces = {Face{0, 2, 1}};
     level.map = PixelMap(33, 33, std::vector<PixelCoord>(33 * 33, PixelCoord{0, 0, 0}));
-    const TileErrors errors = tile_errors(level, feature, grid.own_rect({0, 0, 0}), {.right = true});
+    const TileErrors errors =
+        tile_errors(level, feature, tile_mask({}, grid, {0, 0, 0}).own, {.right = true});
     CHECK(errors.pixels == 32 * 33);
     CHECK(errors.squares == 32 * 33 * 12.0);
     CHECK(errors.seam_pixels == 2 * 33);

@@ -28,6 +28,10 @@ PixelRect meet(const PixelRect& a, const PixelRect& b) {
             std::min(a.bottom, b.bottom)};
 }
 
+bool is_empty(const PixelRect& rect) {
+    return rect.width() <= 0 || rect.height() <= 0;
+}
+
 // Part of a picture, with the channels that are wanted: an alpha that it lacks is 1.
 Image cut(const Image& image, const PixelRect& rect, int channels) {
     Image out = make_image(rect.width(), rect.height(), channels);
@@ -57,6 +61,19 @@ void check_mode(const SetDrawOptions& o, const std::string& mode_name) {
                         "/LEVEL/COLUMN_ROW.glb are ordinary containers"));
 }
 
+// Returns the parts of a tile that it draws over those before it, in its own coordinates: on lines that it
+// shares with these only its pixels inside the mask, one by one, and all others as one part.
+std::vector<PixelRect> drawn_parts(const TileName& tile, const PixelMap& map) {
+    const int left = tile.column > 0, top = tile.row > 0;
+    std::vector<PixelRect> parts = {{left, top, map.width, map.height}};
+    const auto add = [&](int x, int y) {
+        if (map.at(x, y).face != kNone) parts.push_back({x, y, x + 1, y + 1});
+    };
+    for (int x = 0; top && x < map.width; ++x) add(x, 0);
+    for (int y = top; left && y < map.height; ++y) add(0, y);
+    return parts;
+}
+
 // Draws the tiles of a level into a picture, row by row; `put` gets each piece, `complete` the rows above
 // which all is drawn.
 void draw_tiles(const SetInput& set, const SetDrawOptions& o, const PixelRect& part, int channels,
@@ -68,15 +85,21 @@ void draw_tiles(const SetInput& set, const SetDrawOptions& o, const PixelRect& p
         int bottom = 0;
         for (int column = 0; column < grid.columns(o.level); ++column) {
             const TileName tile{o.level, column, row};
-            const PixelRect own = own_level_rect(grid, tile), rect = meet(own, part);
-            bottom = rect.bottom;
-            if (rect.width() <= 0 || rect.height() <= 0) continue;
+            const PixelRect own = own_level_rect(grid, tile);
+            bottom = std::min(own.bottom, part.bottom);
+            const GridSize size = level_size(grid, tile);
+            const PixelRect whole{own.left, own.top, own.left + size.width, own.top + size.height};
+            if (is_empty(meet(whole, part))) continue;
             const MeshImage image = set.read(tile);
             if (image.levels.empty()) continue;
             const Image drawn = draw(image, 0, {*o.mode, 1});
-            const PixelRect inside{rect.left - own.left, rect.top - own.top, rect.right - own.left,
-                                   rect.bottom - own.top};
-            put(rect.left - part.left, rect.top - part.top, cut(drawn, inside, channels));
+            const PixelRect wanted{part.left - own.left, part.top - own.top, part.right - own.left,
+                                   part.bottom - own.top};
+            for (const PixelRect& each : drawn_parts(tile, image.levels[0].map)) {
+                const PixelRect inside = meet(each, wanted);
+                if (is_empty(inside)) continue;
+                put(inside.left - wanted.left, inside.top - wanted.top, cut(drawn, inside, channels));
+            }
         }
         if (bottom > part.top) complete(bottom - part.top);
     }

@@ -8,6 +8,7 @@
 #include "libcore/image/image.h"
 #include "libcore/image/mask.h"
 #include "libcore/pipeline/build_source.h"
+#include "libcore/tiles/tile_mask.h"
 
 namespace imgmesh {
 
@@ -18,6 +19,12 @@ struct PictureFacts;
 struct PixelPart {
     Image image;
     Mask mask;  ///< empty() for all of them; may have none inside
+};
+
+/// A tile of level 0.
+struct TilePart {
+    Image image;
+    TileMask mask;
 };
 
 /// What of the pixels counts.
@@ -39,6 +46,8 @@ class TilePixels {
     void sweep(const std::function<bool(const PixelRect&)>& look) const;
     /// Pixels outside of the mask, by alpha or without data, are outside of the part's mask.
     PixelPart read(const PixelRect& rect, const MaskChoice& choice) const;
+    /// Reads a tile of level 0. Where the pixels around it cannot be read, those at its sides stand for them.
+    TilePart read_tile(const TileGrid& grid, const TileName& tile, const MaskChoice& choice) const;
 
   private:
     std::unique_ptr<RegionSource> picture_, mask_;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <optional>
 
 #include "formats/container/container.h"
 #include "formats/files/stale_temporaries.h"
@@ -13,6 +14,7 @@
 #include "libcore/pipeline/params.h"
 #include "libcore/tiles/density.h"
 #include "libcore/tiles/join_tiles.h"
+#include "libcore/tiles/sample_tile.h"
 #include "libcore/tiles/sides_of_tile.h"
 #include "libcore/tiles/tile_errors.h"
 #include "libcore/tiles/tile_units.h"
@@ -25,10 +27,6 @@
 namespace imgmesh {
 namespace {
 
-PixelRect within(const PixelRect& part, const PixelRect& whole) {
-    return {part.left - whole.left, part.top - whole.top, part.right - whole.left, part.bottom - whole.top};
-}
-
 // Those that are not on a side that is counted with the next tile.
 std::int64_t own_vertices(const BaseMesh& mesh, int level, const PixelRect& rect, bool has_right,
                           bool has_below) {
@@ -39,39 +37,27 @@ std::int64_t own_vertices(const BaseMesh& mesh, int level, const PixelRect& rect
     });
 }
 
-// Whether some cell of the tile has a triangle with the pixel.
-bool has_face(const Mask& mask, int x, int y) {
-    for (const int top : {y - 1, y})
-        for (const int left : {x - 1, x})
-            if (mask.at(left, top) + mask.at(left + 1, top) + mask.at(left, top + 1) +
-                    mask.at(left + 1, top + 1) >=
-                3)
-                return true;
-    return false;
+// A file of a list that is not there is like one that is broken: the other tiles can do without.
+template <class Read>
+auto reading(const Read& read) {
+    try {
+        return read();
+    } catch (const Error& error) {
+        throw Error(error.kind() == ErrorKind::kIo ? ErrorKind::kBadFile : error.kind(), error.what());
+    }
 }
 
-// Takes the pixels out of a mask that lie on a shared side without a face in this tile: its neighbour has
-// them, and a strip along the side would lie half in that one.
-void leave_to_neighbor(Mask& mask, const TileSeams& seams) {
-    if (mask.empty()) return;
-    std::vector<std::pair<int, int>> line;
-    for (int x = 0; x < mask.width; ++x) {
-        if (seams.top) line.emplace_back(x, 0);
-        if (seams.bottom) line.emplace_back(x, mask.height - 1);
+// Returns the tile, or nothing where the outline of its mask, of which no vertex goes, is too fine for it:
+// for its grid of positions, or with more faces than a face a pixel.
+template <class Make>
+std::optional<MeshImage> of_outline(const Make& make_tile) {
+    try {
+        MeshImage image = make_tile();
+        if (image.levels.front().mesh.faces.size() <= image.source.pixel_count()) return image;
+    } catch (const Error& error) {
+        if (error.kind() != ErrorKind::kInternal) throw;
     }
-    for (int y = 0; y < mask.height; ++y) {
-        if (seams.left) line.emplace_back(0, y);
-        if (seams.right) line.emplace_back(mask.width - 1, y);
-    }
-    // One that goes may leave another without a face.
-    for (bool changed = true; changed;) {
-        changed = false;
-        for (const auto& [x, y] : line)
-            if (mask.at(x, y) && !has_face(mask, x, y)) {
-                mask.Grid::at(x, y) = 0;
-                changed = true;
-            }
-    }
+    return {};
 }
 
 bool has_none(const PixelPart& part) {
@@ -94,15 +80,6 @@ TilePixels& TileWork::pixels() {
     if (!planned_.jobs.copy.empty()) spool(context_.progress);
     if (!pixels_) pixels_ = std::make_unique<TilePixels>(planned_.picture, options_.mask, planned_.read);
     return *pixels_;
-}
-
-PixelPart TileWork::read(const PixelRect& rect) {
-    try {
-        return pixels().read(rect, planned_.mask);
-    } catch (const Error& error) {
-        // A file of a list that is not there is like one that is broken: the other tiles can do without.
-        throw Error(error.kind() == ErrorKind::kIo ? ErrorKind::kBadFile : error.kind(), error.what());
-    }
 }
 
 void TileWork::run(const TileJob& job, const Progress& progress) {
@@ -137,7 +114,7 @@ void TileWork::sample(int row, const Progress& progress) {
     for (std::size_t n = 0; n < parts.size(); ++n) {
         progress(static_cast<double>(n) / static_cast<double>(parts.size()), "sample");
         try {
-            PixelPart part = read(parts[n].pixels);
+            PixelPart part = reading([&] { return pixels().read(parts[n].pixels, planned_.mask); });
             if (has_none(part)) continue;
             FeatureImage feature = tile_features(part.image, planned_.common, part.mask);
             sum.add(sample_density(std::move(feature), std::move(part.mask), parts[n].margin, params,
@@ -209,20 +186,16 @@ void TileWork::make(const TileName& tile, const Progress& progress) {
 void TileWork::build(TileRecord& record, const Progress& progress) {
     const TileGrid& grid = planned_.jobs.grid;
     const TileName tile = record.tile;
-    const PixelRect rect = grid.rect(tile);
-    PixelPart part = read(rect);
-    const TileSeams seams{tile.column > 0, tile.row > 0, tile.column + 1 < grid.columns(0),
-                          tile.row + 1 < grid.rows(0)};
-    leave_to_neighbor(part.mask, seams);
-    if (has_none(part)) return;
+    TilePart part = reading([&] { return pixels().read_tile(grid, tile, planned_.mask); });
+    if (part.mask.has_none()) return;
     const TileCommon shared = common();
     const TileSides sides = sides_of_tile(part.image, planned_.params, shared, part.mask);
-    const FeatureImage feature = tile_features(part.image, shared, part.mask);
-    BuildResult built =
-        build_tile(std::move(part.image), planned_.params, sides, shared, progress, std::move(part.mask));
+    const FeatureImage feature = tile_features(part.image, shared, part.mask.mask);
+    BuildResult built = build_tile(std::move(part.image), planned_.params, sides, shared, progress,
+                                   std::move(part.mask.mask));
     const Level& level = built.mesh_image.levels.front();
     const TileErrors errors = tile_errors(
-        level, feature, within(grid.own_rect(tile), rect),
+        level, feature, part.mask.own,
         {tile.column > 0, tile.row > 0, tile.column + 1 < grid.columns(0), tile.row + 1 < grid.rows(0)});
     record.pixels = errors.pixels;
     record.map_squares = errors.squares;
@@ -257,18 +230,26 @@ void TileWork::coarsen(TileRecord& record) {
     const PixelRect rect = grid.rect(record.tile);
     std::vector<ChildTile> children;
     SourceInfo source;
+    bool masked = false;
     for (const TileName& child : grid.children(record.tile)) {
         if (read_record(folder_, child).files.empty()) continue;  // missing, or outside the mask
         MeshImage part = read_meshes(in_set(folder_, tile_container(child)));
         source = part.source;
+        masked = masked || part.source.has_mask;
         const PixelRect own = grid.rect(child);
         children.push_back({in_pixels(std::move(part.levels.front().mesh), child.level), own.left - rect.left,
                             own.top - rect.top, own.width(), own.height()});
     }
     if (children.empty()) return;
-    const BaseMesh mesh = coarser_tile(children, record.tile.level, rect.width(), rect.height(),
-                                       tile_collapse(planned_.params, planned_.common));
-    write(record, coarse_image(mesh, source, grid, record.tile), LayerLayout::kCompact);
+    const SimplifyParams params = tile_collapse(planned_.params, planned_.common);
+    const auto image_of = [&](const auto& make_tile) {
+        return coarse_image(make_tile(children, record.tile.level, rect.width(), rect.height(), params),
+                            source, grid, record.tile);
+    };
+    std::optional<MeshImage> image =
+        masked ? of_outline([&] { return image_of(coarser_tile); }) : image_of(coarser_tile);
+    if (!image) image = image_of(sampled_tile);
+    if (!image->levels.front().mesh.faces.empty()) write(record, *std::move(image), LayerLayout::kCompact);
 }
 
 std::vector<std::string> TileWork::folders_of_set() const {

@@ -29,7 +29,6 @@ class TileWork {
 
   private:
     TilePixels& pixels();
-    PixelPart read(const PixelRect& rect);
     void spool(const Progress& progress);
     void sample(int row, const Progress& progress);
     void find_threshold();
