@@ -14,12 +14,7 @@
 namespace imgmesh {
 namespace {
 
-// So many regions go on to the second stage. People draw a few dozen, and 1000 or 2500 do as well.
-constexpr std::size_t kFirstRegions = 1500;
-
-// Outlines are smoothed by discs of this radius [pixels] in images of kMeasuredPixels and more; it shrinks
-// with smaller images, where a pixel matters more.
-constexpr double kSmoothingRadius = 4;
+constexpr double kSmoothingRadius = 4;  // [pixels]
 
 // The distance at 8 to 64 regions to which images are brought halfway: about the mean of photographs.
 constexpr double kUsualDistance = 0.15;
@@ -45,14 +40,6 @@ double relative_contrast(const Hierarchy& distances) {
         ++count;
     }
     return count == 0 ? 1 : std::exp(sum / count);
-}
-
-// Turns distances into heights; see contour_hierarchy().
-void scale_heights(Hierarchy& hierarchy) {
-    const double scale = std::clamp(1 / std::sqrt(relative_contrast(hierarchy)), 0.5, 2.0);
-    for (Merge& merge : hierarchy.merges)
-        merge.height = static_cast<float>(
-            color_equivalent(-std::log(1 - std::min(kMostDistance, scale * double(merge.height)))));
 }
 
 // The regions as cells; no single face holds them.
@@ -94,6 +81,17 @@ Hierarchy joined(const Cells& cells, const LabelImage& regions, Hierarchy inside
 
 }  // namespace
 
+int smoothing_radius(double pixels) {
+    return static_cast<int>(kSmoothingRadius * std::min(1.0, std::sqrt(pixels / kMeasuredPixels)));
+}
+
+void scale_heights(Hierarchy& hierarchy) {
+    const double scale = std::clamp(1 / std::sqrt(relative_contrast(hierarchy)), 0.5, 2.0);
+    for (Merge& merge : hierarchy.merges)
+        merge.height = static_cast<float>(
+            color_equivalent(-std::log(1 - std::min(kMostDistance, scale * double(merge.height)))));
+}
+
 double contour_memory(const GridSize& size) {
     constexpr double kBytes = 150;  // of filters' answers, sums and codes for each pixel that is measured
     const double factor = measuring_factor(size);
@@ -122,9 +120,8 @@ CellHierarchy contour_hierarchy(const PixelMap& map, const FeatureImage& image, 
     tell(0.3, "outlines");
     const std::size_t merges =
         std::min(first.merges.size(), first.cells - std::min(first.cells, kFirstRegions));
-    const double size = std::min(1.0, std::sqrt(pixels / kMeasuredPixels));
     const LabelImage regions =
-        smooth_outlines(labels_after(patches, first, merges), static_cast<int>(kSmoothingRadius * size));
+        smooth_outlines(labels_after(patches, first, merges), smoothing_radius(pixels));
     tell(0.4, "contours");
     const Cells coarse = cells_of(regions);
     Hierarchy second = merge_regions(region_graph(coarse, map, image, contour_contrasts(image, regions)),

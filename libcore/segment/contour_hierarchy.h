@@ -10,6 +10,18 @@
 
 namespace imgmesh {
 
+/// So many regions go on from the first stage to the second. People draw a few dozen, and 1000 or 2500 do as
+/// well.
+inline constexpr std::size_t kFirstRegions = 1500;
+
+/// Returns the radius of the discs that smooth the outlines of an image with so many pixels inside its mask
+/// (majority.h): 4 in images of kMeasuredPixels and more; it shrinks with smaller images, where a pixel
+/// matters more.
+int smoothing_radius(double pixels);
+
+/// Turns distances into heights; see contour_hierarchy().
+void scale_heights(Hierarchy& hierarchy);
+
 /// Cells and all their merges.
 struct CellHierarchy {
     Cells cells;

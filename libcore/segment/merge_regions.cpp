@@ -75,6 +75,23 @@ class Merger {
         return hierarchy;
     }
 
+    // The regions that the merges have left. Ends the merger.
+    RegionGraph rest(const Hierarchy& merged) {
+        const std::vector<Id> number = regions_after(merged, merged.merges.size());
+        RegionGraph graph;
+        graph.regions.resize(merged.cells - merged.merges.size());
+        // A region's sums are where its first cell was.
+        for (std::size_t i = number.size(); i-- > 0;) graph.regions[number[i]] = graph_.regions[i];
+        for (std::size_t e = 0; e < graph_.borders.size(); ++e) {
+            if (version_[e] == kDead) continue;
+            Border& border = graph.borders.emplace_back(graph_.borders[e]);
+            border.a = number[border.a];
+            border.b = number[border.b];
+        }
+        std::ranges::sort(graph.borders, {}, [](const Border& b) { return std::pair(b.a, b.b); });
+        return graph;
+    }
+
   private:
     static constexpr std::uint32_t kDead = 0xFFFFFFFFu;
 
@@ -181,6 +198,13 @@ class Merger {
 Hierarchy merge_regions(RegionGraph graph, const RegionDistance& distance, std::int64_t min_size,
                         std::size_t least) {
     return Merger(std::move(graph), distance, min_size).run(least);
+}
+
+MergedRegions merge_to(RegionGraph graph, const RegionDistance& distance, std::size_t least) {
+    Merger merger(std::move(graph), distance, 1);
+    MergedRegions merged{merger.run(least), {}};
+    merged.graph = merger.rest(merged.hierarchy);
+    return merged;
 }
 
 }  // namespace imgmesh

@@ -24,4 +24,14 @@ using RegionDistance = std::function<double(const RegionSums&, const RegionSums&
 Hierarchy merge_regions(RegionGraph graph, const RegionDistance& distance, std::int64_t min_size = 1,
                         std::size_t least = 1);
 
+/// Merges, and the regions that they leave.
+struct MergedRegions {
+    Hierarchy hierarchy;
+    RegionGraph graph;  ///< regions numbered by their first cells
+};
+
+/// The same until `least` regions are left. Merging the graph of the result further gives the very merges
+/// that would have followed.
+MergedRegions merge_to(RegionGraph graph, const RegionDistance& distance, std::size_t least);
+
 }  // namespace imgmesh

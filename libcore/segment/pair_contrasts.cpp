@@ -14,6 +14,7 @@ constexpr int kGrain = 16;  // rows or columns a block
 // Contours are sharp or soft, and texture has a size. Small squares locate a contour; large ones distinguish
 // it from texture. No single size does as well (docs/decisions/0009-segmentation.md).
 constexpr int kRadii[] = {2, 4, 8};
+static_assert(2 * kRadii[2] == kSquareReach);
 
 // Sums over a square of pixels: the pixels inside the mask, their colours, and the squares of their colours.
 constexpr int kSums = 7;
@@ -43,7 +44,7 @@ void slide(Sums* first, std::ptrdiff_t step, int count, int radius, std::vector<
     }
 }
 
-Squares square_sums(const FeatureImage& image, const Cells& cells, int radius) {
+Squares square_sums(const FeatureImage& image, const Grid<Id>& cells, int radius) {
     Squares squares{cells};
     parallel_blocks(0, cells.height, kGrain, [&](int begin, int end) {
         std::vector<Sums> copy;
@@ -94,7 +95,7 @@ float sums_contrast(const float* a, const float* b) {
     return static_cast<float>(1 - std::exp(-population_distance(mean_a, variance_a, mean_b, variance_b)));
 }
 
-PairContrasts pair_contrasts(const FeatureImage& image, const Cells& cells) {
+PairContrasts pair_contrasts(const FeatureImage& image, const Grid<Id>& cells) {
     PairContrasts contrasts{std::vector<float>(cells.size(), 0.0f), std::vector<float>(cells.size(), 0.0f)};
     const auto differs = [&](Id cell, int x, int y) {
         return cells.contains(x, y) && cells.at(x, y) != cell && cells.at(x, y) != kNone;

@@ -27,6 +27,9 @@ float sums_contrast(const float* a, const float* b);
 /// Returns the contrast of every pair of neighbours in different cells: 1 - exp(-d), mean over r = 2, 4, 8. d
 /// is the population distance of the two squares of (2r+1)^2 pixels that meet between them, as far as they
 /// are inside the mask. In [0, 1). The result is the same for any number of threads.
-PairContrasts pair_contrasts(const FeatureImage& image, const Cells& cells);
+PairContrasts pair_contrasts(const FeatureImage& image, const Grid<Id>& cells);
+
+/// pair_contrasts() looks at pixels up to this many columns or rows away from a pair's nearer one.
+inline constexpr int kSquareReach = 16;
 
 }  // namespace imgmesh

@@ -48,6 +48,28 @@ struct PairContrasts {
     std::vector<float> down;
 };
 
+/// Two neighbouring pixels in different regions.
+struct Crossing {
+    Id a = kNone;  ///< the lower of the two
+    Id b = kNone;
+    float contrast = 0;
+};
+
+/// Adds the pairs of neighbours in different regions whose first pixel, the left or the upper one, is in
+/// `own`, in the order of these pixels. Pixels that are kNone are in no region.
+void add_crossings(std::vector<Crossing>& crossings, const Grid<Id>& regions, const PairContrasts& contrasts,
+                   const PixelRect& own);
+
+/// Returns the borders that consist of `crossings`, sorted; contrasts add up in the order given.
+std::vector<Border> borders_of(std::vector<Crossing> crossings);
+
+/// Adds up parts of the same border, in the order given. Returns them sorted by (a, b).
+std::vector<Border> joined_borders(std::vector<Border> parts);
+
+/// Returns the sums of every cell.
+std::vector<RegionSums> region_sums(const Grid<Id>& cells, std::size_t count, const PixelMap& map,
+                                    const FeatureImage& image);
+
 /// Returns the sums of every cell and every border. The image is L*u*v*, of the cells' size.
 RegionGraph region_graph(const Cells& cells, const PixelMap& map, const FeatureImage& image,
                          const PairContrasts& contrasts);

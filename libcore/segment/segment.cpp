@@ -1,39 +1,14 @@
 #include "libcore/segment/segment.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "libcore/base/error.h"
 #include "libcore/segment/contour_hierarchy.h"
 #include "libcore/segment/region_distance.h"
+#include "libcore/segment/segment_rules.h"
 #include "libcore/segment/superpixels.h"
 
 namespace imgmesh {
-namespace {
-
-void check(const Level& level, const FeatureImage& image, const SegmentParams& params) {
-    const auto fail = [](const std::string& text) { throw Error(ErrorKind::kBadArgument, text); };
-    if (!(params.threshold > 0 && std::isfinite(params.threshold)))
-        fail(cat("threshold is ", params.threshold, ", expected above 0"));
-    if (params.segments && params.superpixels) fail("segments and superpixels exclude each other");
-    if (params.clearest && (params.segments || params.superpixels))
-        fail("the clearest regions, and a number of segments or superpixels exclude each other");
-    if (params.segments && *params.segments < 1)
-        fail(cat("segments is ", *params.segments, ", expected at least 1"));
-    if (params.superpixels && *params.superpixels < 1)
-        fail(cat("superpixels is ", *params.superpixels, ", expected at least 1"));
-    if (!(params.compactness >= 0 && std::isfinite(params.compactness)))
-        fail(cat("compactness is ", params.compactness, ", expected at least 0"));
-    if (params.min_size < 1) fail(cat("the least size is ", params.min_size, ", expected at least 1"));
-    if (image.width != level.map.width || image.height != level.map.height)
-        fail(cat("the image has ", image.width, "x", image.height, " pixels, the container ", level.map.width,
-                 "x", level.map.height));
-    if (image.channels != 3)
-        throw Error(ErrorKind::kUnsupported,
-                    cat("the image has ", image.channels, " channels, expected L*, u*, v*"));
-}
-
-}  // namespace
 
 FeatureImage reconstruct_luv(const Level& level) {
     if (level.mesh.channels < 3)
@@ -53,7 +28,8 @@ FeatureImage reconstruct_luv(const Level& level) {
 
 Segmentation segment(const Level& level, const FeatureImage& image, const SegmentParams& params,
                      const Progress& progress) {
-    check(level, image, params);
+    check_rules(params);
+    check_picture(level, image);
     const auto tell = [&](double fraction, std::string_view stage) {
         if (progress) progress(fraction, stage);
     };
@@ -72,16 +48,10 @@ Segmentation segment(const Level& level, const FeatureImage& image, const Segmen
         result.hierarchy = merge_regions(region_graph(result.cells, level.map, image, {}), paper_distance(),
                                          params.min_size);
     }
-    if (params.segments)
-        result.merges = merges_to_count(
-            result.hierarchy, *params.segments,
-            cat(result.hierarchy.cells, " connected patches, of which a mesh with more faces has more"),
-            result.missed);
-    else if (params.clearest)
-        result.merges = clearest_merges(result.hierarchy, params.threshold / kClearestRange,
-                                        params.threshold * kClearestRange);
-    else
-        result.merges = merges_below(result.hierarchy, params.threshold);
+    result.merges = wanted_merges(
+        result.hierarchy, params,
+        cat(result.hierarchy.cells, " connected patches, of which a mesh with more faces has more"),
+        result.missed);
     result.labels = labels_after(result.cells, result.hierarchy, result.merges);
     tell(1, "done");
     return result;

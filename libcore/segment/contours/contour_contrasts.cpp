@@ -1,11 +1,10 @@
 #include "libcore/segment/contours/contour_contrasts.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <tuple>
 
 #include "libcore/base/parallel.h"
-#include "libcore/segment/contours/half_discs.h"
 
 namespace imgmesh {
 namespace {
@@ -13,14 +12,8 @@ namespace {
 constexpr int kGrain = 64;           // cracks a block
 constexpr int kDirectionRadius = 4;  // pairs within this many (small) pixels tell an outline's direction
 
-// Pairs of neighbours in different regions that lie on one crack of the small image.
-struct Place {
-    Crack crack;  // of the small image
-    Crack pair;   // the first of the image's own pairs there
-};
-
 // The direction across the outline [radians]: signed steps over the border of the same two regions, summed.
-double normal_at(const LabelImage& regions, const Crack& pair, int radius) {
+double normal_at(const Grid<Id>& regions, const Crack& pair, int radius) {
     const int right = pair.down ? 0 : 1, down = pair.down ? 1 : 0;
     const Id a = regions.at(pair.x, pair.y), b = regions.at(pair.x + right, pair.y + down);
     // Twice the coordinates: cracks lie halfway between pixels.
@@ -45,57 +38,98 @@ double normal_at(const LabelImage& regions, const Crack& pair, int radius) {
     return std::atan2(double(across_y), double(across_x));
 }
 
-// The small image's crack nearest to that of a pair; it has at least two columns for pairs to the right, and
-// two rows for pairs below.
-Crack small_crack(const Crack& pair, const SmallImage& small) {
-    const int f = small.factor;
-    const auto edge = [&](int first, int size) {
-        return std::clamp((first + 1 + f / 2) / f - 1, 0, size - 2);
-    };
-    if (pair.down) return {pair.x / f, edge(pair.y, small.inside.height), true};
-    return {edge(pair.x, small.inside.width), pair.y / f, false};
+// Calls act(pair) for the pairs of neighbours in different regions that begin in `own`, row by row.
+template <typename Act>
+void visit_pairs(const Grid<Id>& regions, const PixelRect& own, const Act& act) {
+    for (int y = own.top; y < own.bottom; ++y)
+        for (int x = own.left; x < own.right; ++x)
+            for (const bool down : {false, true}) {
+                const int x2 = down ? x : x + 1, y2 = down ? y + 1 : y;
+                if (!regions.contains(x2, y2)) continue;
+                const Id a = regions.at(x, y), b = regions.at(x2, y2);
+                if (a == b || a == kNone || b == kNone) continue;
+                act(Crack{x, y, down});
+            }
+}
+
+bool comes_first(const Crack& p, const Crack& q) {
+    return std::tuple(p.y, p.x, p.down) < std::tuple(q.y, q.x, q.down);
 }
 
 }  // namespace
 
-PairContrasts contour_contrasts(const FeatureImage& image, const LabelImage& regions) {
-    // An image of few rows or columns would have none left to compare.
-    const int thin = std::min(image.width, image.height);
-    const SmallImage small =
-        small_image(image, regions, std::min(measuring_factor(image), std::max(1, thin / 2)));
-    const HalfDiscs discs(small);
+ContourPlaces::ContourPlaces(const GridSize& image, int factor)
+    : image_(image),
+      factor_(factor),
+      small_{(image.width + factor - 1) / factor, (image.height + factor - 1) / factor},
+      place_of_{Grid<Id>(small_, kNone), Grid<Id>(small_, kNone)} {}
 
-    PairContrasts contrasts{std::vector<float>(regions.size(), 0.0f),
-                            std::vector<float>(regions.size(), 0.0f)};
-    std::array<Grid<Id>, 2> place_of = {Grid<Id>(small.inside, kNone), Grid<Id>(small.inside, kNone)};
-    std::vector<Place> places;
-    const auto visit = [&](const auto& act) {
-        for (int y = 0; y < regions.height; ++y)
-            for (int x = 0; x < regions.width; ++x)
-                for (const bool down : {false, true}) {
-                    const int x2 = down ? x : x + 1, y2 = down ? y + 1 : y;
-                    if (!regions.contains(x2, y2)) continue;
-                    const Id a = regions.at(x, y), b = regions.at(x2, y2);
-                    if (a == b || a == kNone || b == kNone) continue;
-                    const Crack pair{x, y, down}, crack = small_crack(pair, small);
-                    act(pair, crack, place_of[down ? 1 : 0].at(crack.x, crack.y));
-                }
+int ContourPlaces::margin() const {
+    return kDirectionRadius * factor_ + 1;
+}
+
+// It has at least two columns for pairs to the right, and two rows for pairs below.
+Crack ContourPlaces::small_crack(const Crack& pair) const {
+    const auto edge = [&](int first, int size) {
+        return std::clamp((first + 1 + factor_ / 2) / factor_ - 1, 0, size - 2);
     };
-    visit([&](const Crack& pair, const Crack& crack, Id& place) {
-        if (place != kNone) return;
-        place = as_id(places.size());
-        places.push_back({crack, pair});
+    if (pair.down) return {pair.x / factor_, edge(pair.y, small_.height), true};
+    return {edge(pair.x, small_.width), pair.y / factor_, false};
+}
+
+void ContourPlaces::add(const Grid<Id>& window, int left, int top, const PixelRect& own) {
+    std::vector<Id> changed;
+    visit_pairs(window, own, [&](const Crack& at) {
+        const Crack pair{left + at.x, top + at.y, at.down}, crack = small_crack(pair);
+        Id& place = place_of_[crack.down ? 1 : 0].at(crack.x, crack.y);
+        if (place == kNone) {
+            place = as_id(places_.size());
+            places_.push_back({crack, pair});
+        } else if (comes_first(pair, places_[place].pair)) {
+            places_[place].pair = pair;
+        } else {
+            return;
+        }
+        changed.push_back(place);
     });
-    std::vector<float> measured(places.size());
-    parallel_blocks(0, as_int(places.size()), kGrain, [&](int begin, int end) {
+    std::ranges::sort(changed);
+    changed.erase(std::unique(changed.begin(), changed.end()), changed.end());
+    parallel_blocks(0, as_int(changed.size()), kGrain, [&](int begin, int end) {
+        for (std::size_t i = as_index(begin); i < as_index(end); ++i) {
+            Place& place = places_[changed[i]];
+            const Crack at{place.pair.x - left, place.pair.y - top, place.pair.down};
+            place.normal = normal_at(window, at, kDirectionRadius * factor_);
+        }
+    });
+}
+
+void ContourPlaces::measure(const SmallImage& small) {
+    const HalfDiscs discs(small);
+    measured_.resize(places_.size());
+    parallel_blocks(0, as_int(places_.size()), kGrain, [&](int begin, int end) {
         for (std::size_t i = as_index(begin); i < as_index(end); ++i)
-            measured[i] = discs.contrast(places[i].crack,
-                                         normal_at(regions, places[i].pair, kDirectionRadius * small.factor));
+            measured_[i] = discs.contrast(places_[i].crack, places_[i].normal);
     });
-    visit([&](const Crack& pair, const Crack&, Id& place) {
-        (pair.down ? contrasts.down : contrasts.right)[regions.index(pair.x, pair.y)] = measured[place];
+}
+
+PairContrasts ContourPlaces::contrasts(const Grid<Id>& window, int left, int top,
+                                       const PixelRect& own) const {
+    PairContrasts contrasts{std::vector<float>(window.size(), 0.0f), std::vector<float>(window.size(), 0.0f)};
+    visit_pairs(window, own, [&](const Crack& at) {
+        const Crack crack = small_crack({left + at.x, top + at.y, at.down});
+        (at.down ? contrasts.down : contrasts.right)[window.index(at.x, at.y)] =
+            measured_[place_of_[crack.down ? 1 : 0].at(crack.x, crack.y)];
     });
     return contrasts;
+}
+
+PairContrasts contour_contrasts(const FeatureImage& image, const LabelImage& regions) {
+    const int factor = disc_factor(image);
+    ContourPlaces places(image, factor);
+    const PixelRect all{0, 0, image.width, image.height};
+    places.add(regions, 0, 0, all);
+    places.measure(small_image(image, regions, factor));
+    return places.contrasts(regions, 0, 0, all);
 }
 
 }  // namespace imgmesh

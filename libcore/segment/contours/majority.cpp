@@ -76,7 +76,7 @@ std::vector<std::uint8_t> near_outlines(const LabelImage& labels, int radius) {
 
 }  // namespace
 
-LabelImage smooth_outlines(const LabelImage& labels, int radius) {
+Grid<Id> majority_labels(const LabelImage& labels, int radius) {
     const std::vector<std::uint8_t> near = near_outlines(labels, radius);
     Grid<Id> smooth = labels;
     parallel_blocks(0, labels.height, kGrain, [&](int begin, int end) {
@@ -86,6 +86,11 @@ LabelImage smooth_outlines(const LabelImage& labels, int radius) {
                 if (near[labels.index(x, y)] && labels.at(x, y) != kNone)
                     smooth.at(x, y) = majority.around(x, y);
     });
+    return smooth;
+}
+
+LabelImage smooth_outlines(const LabelImage& labels, int radius) {
+    const Grid<Id> smooth = majority_labels(labels, radius);
     ConnectedParts parts = connected_parts(
         smooth, [&](std::size_t i) { return smooth[i] != kNone; },
         [&](std::size_t i, std::size_t j) { return smooth[i] == smooth[j]; });

@@ -44,32 +44,49 @@ int measuring_factor(const GridSize& size) {
                     static_cast<int>(std::lround(std::sqrt(double(size.pixel_count()) / kMeasuredPixels))));
 }
 
-SmallImage small_image(const FeatureImage& image, const Grid<Id>& regions, int factor) {
-    const int width = (image.width + factor - 1) / factor, height = (image.height + factor - 1) / factor;
-    SmallImage small;
-    small.factor = factor;
-    small.inside = Grid<std::uint8_t>(GridSize{width, height});
-    small.luv = FeatureImage(width, height, 3, std::vector<float>(small.inside.size() * 3));
-    parallel_blocks(0, height, kGrain, [&](int begin, int end) {
-        for (int y = begin; y < end; ++y)
-            for (int x = 0; x < width; ++x) {
-                std::array<double, 3> sum{};
-                int count = 0;
-                for (int fy = y * factor; fy < std::min((y + 1) * factor, image.height); ++fy)
-                    for (int fx = x * factor; fx < std::min((x + 1) * factor, image.width); ++fx) {
-                        if (regions.at(fx, fy) == kNone) continue;
-                        const float* luv = image.pixel(fx, fy);
-                        for (std::size_t c = 0; c < 3; ++c) sum[c] += double(luv[c]);
-                        ++count;
-                    }
-                if (count == 0) continue;
-                small.inside.at(x, y) = 1;
-                for (std::size_t c = 0; c < 3; ++c)
-                    small.luv.pixel(x, y)[c] = static_cast<float>(sum[c] / count);
+int disc_factor(const GridSize& size) {
+    const int thin = std::min(size.width, size.height);
+    return std::min(measuring_factor(size), std::max(1, thin / 2));
+}
+
+SmallImageSums::SmallImageSums(const GridSize& image, int factor)
+    : factor_(factor),
+      pixels_(GridSize{(image.width + factor - 1) / factor, (image.height + factor - 1) / factor}) {}
+
+void SmallImageSums::add(const FeatureImage& part, const Grid<Id>& regions, int left, int top) {
+    const int bottom = top + part.height;
+    parallel_blocks(top / factor_, (bottom - 1) / factor_ + 1, kGrain, [&](int begin, int end) {
+        for (int y = std::max(top, begin * factor_); y < std::min(bottom, end * factor_); ++y)
+            for (int x = 0; x < part.width; ++x) {
+                if (regions.at(x, y - top) == kNone) continue;
+                const float* luv = part.pixel(x, y - top);
+                Pixel& pixel = pixels_.at((left + x) / factor_, y / factor_);
+                for (std::size_t c = 0; c < 3; ++c) pixel.sum[c] += double(luv[c]);
+                ++pixel.count;
             }
     });
+}
+
+SmallImage SmallImageSums::finish() const {
+    SmallImage small;
+    small.factor = factor_;
+    small.inside = Grid<std::uint8_t>(pixels_);
+    small.luv = FeatureImage(pixels_.width, pixels_.height, 3, std::vector<float>(pixels_.size() * 3));
+    for (std::size_t i = 0; i < pixels_.size(); ++i) {
+        const Pixel& pixel = pixels_[i];
+        if (pixel.count == 0) continue;
+        small.inside[i] = 1;
+        for (std::size_t c = 0; c < 3; ++c)
+            small.luv.pixel(i)[c] = static_cast<float>(pixel.sum[c] / pixel.count);
+    }
     fill_outside(small);
     return small;
+}
+
+SmallImage small_image(const FeatureImage& image, const Grid<Id>& regions, int factor) {
+    SmallImageSums sums(image, factor);
+    sums.add(image, regions, 0, 0);
+    return sums.finish();
 }
 
 }  // namespace imgmesh

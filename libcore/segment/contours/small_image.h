@@ -1,6 +1,7 @@
 // The image at the size at which contours are measured.
 #pragma once
 
+#include <array>
 #include <cstdint>
 
 #include "libcore/image/image.h"
@@ -22,8 +23,32 @@ struct SmallImage {
 /// Returns the factor for an image of that size: the nearest to sqrt(pixels / kMeasuredPixels), at least 1.
 int measuring_factor(const GridSize& size);
 
-/// Makes an image smaller. `regions` is kNone outside the mask and has the image's size; at least one pixel
-/// is inside. Takes O(pixels) time.
+/// The same for discs: an image of few rows or columns would have none left to compare.
+int disc_factor(const GridSize& size);
+
+/// Makes an image smaller that is given in parts.
+class SmallImageSums {
+  public:
+    SmallImageSums(const GridSize& image, int factor);
+
+    /// Adds the pixels of a part whose first pixel is (left, top) of the image. `regions` is kNone outside
+    /// the mask and has the part's size. Takes O(pixels) time. Sums depend on the order of parts by their
+    /// rounding alone.
+    void add(const FeatureImage& part, const Grid<Id>& regions, int left, int top);
+
+    /// After the last part; at least one pixel is inside the mask.
+    SmallImage finish() const;
+
+  private:
+    struct Pixel {
+        std::array<double, 3> sum{};
+        std::int32_t count = 0;
+    };
+    int factor_;
+    Grid<Pixel> pixels_;
+};
+
+/// The same of an image in one part.
 SmallImage small_image(const FeatureImage& image, const Grid<Id>& regions, int factor);
 
 }  // namespace imgmesh
