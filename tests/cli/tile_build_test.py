@@ -44,6 +44,14 @@ class TileBuild(CliCase):
                 drawn = picture_files.read(self.folder / "b.png")[..., 3] > 0
                 self.assertTrue((drawn == mask).all(), np.argwhere(drawn != mask)[:5])
 
+    def test_soft_alpha(self):
+        """Kept alpha masks only what nobody sees; that of a cut is at least one half."""
+        alpha = np.round(255 * np.clip((np.mgrid[0:77, 0:101][1] - 20) / 60, 0, 1)) / 255
+        picture_files.png(self.folder / "a.png", np.dstack([picture_files.ramp(101, 77), alpha]))
+        for use, inside in (("keep", alpha > 0), ("cut", alpha >= 0.5), ("ignore", alpha >= 0)):
+            self.build_set("--alpha", use)
+            self.assertEqual(self.report("imgmesh-info", "set")["levels"][0]["pixels"], inside.sum())
+
     def test_output_is_a_folder(self):
         for name in ("-", "out.glb", "out.gltf"):
             self.assert_error("imgmesh-build", ["a.png", "-o", name, "--tiles", 32], 2, "folder")

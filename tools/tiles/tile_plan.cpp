@@ -160,7 +160,9 @@ PlannedTileSet plan_tile_set(const BuildOptions& o, Context& context) {
         }
         planned.read = read;
         planned.mask.alpha = alpha_of_all(o, std::ranges::count(facts.channel_names, "A") > 0, context);
-        planned.mask.threshold = o.alpha.threshold.value_or(0.5);
+        // Alpha that is kept masks what nobody sees.
+        const bool keeps = planned.mask.alpha == AlphaUse::kKeep && o.mask.empty();
+        planned.mask.threshold = o.alpha.threshold.value_or(keeps ? double{kVisibleAlpha} : 0.5);
         AlphaParams alpha{planned.mask.alpha, planned.mask.threshold};
         const Image like = image_like(facts);
         const SourcePlan taken = plan_source(like, alpha, !o.mask.empty(), o.params, option_text);
