@@ -17,20 +17,15 @@
 #include "libcore/recon/draw.h"
 #include "tools/common/compression_options.h"
 #include "tools/common/container_input.h"
-#include "tools/common/help.h"
 #include "tools/common/in_file.h"
 #include "tools/common/limits.h"
 #include "tools/common/memory.h"
 #include "tools/common/names.h"
-#include "tools/common/options.h"
-#include "tools/common/other_tool.h"
 #include "tools/common/output.h"
-#include "tools/common/read_options.h"
 #include "tools/common/source_image.h"
 #include "tools/common/text.h"
-#include "tools/common/texture_options.h"
 #include "tools/common/tool_main.h"
-#include "tools/convert_level.h"
+#include "tools/convert_options.h"
 #include "tools/tiles/set_convert.h"
 
 using namespace imgmesh;
@@ -40,171 +35,14 @@ namespace {
 // Reading and writing take this, beside the container itself [bytes a pixel]; measured as in docs/limits.md.
 constexpr double kTextureBytes = 46, kImageBytes = 34, kContainerBytes = 24, kTextBytes = 8, kArrayBytes = 14;
 
-// More than a container can have; its own number is checked when it has been read.
-constexpr CountRange kLevelRange = {0, 1000};
-
-// Beyond, a sprite's outline is no longer its own.
-constexpr double kMostTolerance = 64;
-
-struct Options {
-    std::string input;
-    std::string output;
-    CompressionOptions compression;
-    std::vector<int> levels;
-    bool no_map = false;
-    MeshPrecision precision = MeshPrecision::kExact;
-    TextureOptions texture;
-    std::optional<int> level;
-    std::optional<ExportKind> as;
-    std::optional<Shading> shading;
-    std::optional<double> outline_tolerance;
-    OutlineSide outline_side = OutlineSide::kOut;
-    std::string image;
-    ReadImageOptions read;
-    ContainerLimits limits;
-};
-
-void add_options(CLI::App& app, Options& o) {
-    const std::string container = "Container", level = "Level";
-    add_compression_options(app, o.compression, "as in the input; with --no-map none",
-                            "as in the input; exr with a new texture");
-    in_group(
-        add_value(app, "--levels", "LIST",
-                  [&o](const std::string& text) {
-                      o.levels.clear();
-                      for (const std::string& item : split_list(text))
-                          o.levels.push_back(static_cast<int>(parse_count("--levels", item, kLevelRange)));
-                  },
-                  {"Levels to keep, the finest first, as in 0,2; they are numbered anew", "all"}),
-        container);
-    in_group(add_flag(
-                 app, "--no-map", [&o] { o.no_map = true; },
-                 "Write the meshes alone: a plain glTF asset for engines, that imgmesh cannot read"),
-             container);
-    advanced(app, in_group(add_choice(app, "--mesh-precision", o.precision,
-                                      Choices<MeshPrecision>{{"exact", MeshPrecision::kExact},
-                                                             {"compact", MeshPrecision::kCompact}},
-                                      "Precision of the meshes: as in the input, or colours of 128 levels "
-                                      "and with --no-map coarser positions, for fewer bytes"),
-                           container));
-    // Its name until it had one in imgmesh-build, too.
-    in_group(add_flag(
-                 app, "--no-layers", [&o] { o.no_map = true; }, "The same as --no-map"),
-             "");
-    add_texture_options(app, o.texture,
-                        {"Put an image on the meshes, for engines and viewers: that of --image, or else the "
-                         "reconstruction",
-                         "the input's texture, if it has one"},
-                        true);
-    in_group(add_count(app, "--level", o.level, kLevelRange, {"Level to export, 0 the finest", "0"}), level);
-    in_group(add_choice(app, "--as", o.as, export_kinds(),
-                        {"What a .json is (texturepacker, which PixiJS reads, spine or outline), a .tscn "
-                         "(polygon2d or meshinstance2d), or an .svg (outline)",
-                         "texturepacker, polygon2d, an .svg's triangles"}),
-             level);
-    in_group(add_choice(app, "--shading", o.shading,
-                        Choices<Shading>{{"flat", Shading::kFlat}, {"gradient", Shading::kGradient}},
-                        {"Shading of an .svg's triangles", "flat"}),
-             level);
-    CLI::Option* const tolerance = in_group(
-        add_number(
-            app, "--outline-tolerance", o.outline_tolerance, {0, kMostTolerance},
-            {"Make the mesh of a sprite (.json, .tscn, .obj, or a container with a texture) from its outline "
-             "alone, or an outline itself, which may lie this many pixels from the image's",
-             "none: the base mesh, or the outline of the pixels"}),
-        level);
-    CLI::Option* const side =
-        add_choice(app, "--outline-side", o.outline_side,
-                   Choices<OutlineSide>{{"out", OutlineSide::kOut}, {"both", OutlineSide::kBoth}},
-                   "Where that outline may lie: outside alone, where it cuts no pixel, or on both sides");
-    in_group(needs(side, tolerance), level);
-    CLI::Option* const image = in_group(
-        add_value(app, "--image", "NAME", [&o](const std::string& text) { o.image = text; },
-                  {"Image that --texture puts on the meshes, or that a sprite's .json or .tscn names",
-                   "the output's name in .png"}),
-        "Files");
-    add_read_options(app, o.read, image, true);
-    add_container_limits(app, o.limits);
-}
-
-LevelOptions level_options(const Options& o) {
-    return {o.input, o.output, o.as, o.shading, o.outline_tolerance, o.outline_side, o.image};
-}
-
-// Of a tile set only the meshes of a level are joined.
-void check_set_options(const Options& o) {
-    const auto refuse = [&](bool given, const char* option) {
-        if (given)
-            throw Error(ErrorKind::kUnsupported,
-                        cat(option, ": ", o.input, " is a tile set, which becomes one mesh without a map; ",
-                            o.input, "/LEVEL/COLUMN_ROW.glb are ordinary containers"));
-    };
-    refuse(!o.levels.empty(), "--levels");
-    refuse(o.compression.layers.has_value(), "--layers");
-    refuse(o.precision == MeshPrecision::kCompact, "--mesh-precision");
-    refuse(o.texture.wanted.value_or(false), "--texture");
-    refuse(o.as.has_value(), "--as");
-    refuse(o.outline_tolerance.has_value(), "--outline-tolerance");
-    refuse(!o.image.empty(), "--image");
-}
-
-// Throws Error(kBadArgument) for mistakes that can be found before the container is read.
-void check_options(const Options& o) {
-    if (is_tile_set(o.input)) return check_set_options(o);
-    const std::string extension = lower_extension(o.output);
-    const auto only_for = [&](bool given, const char* option, bool fits, const char* what) {
-        if (given && !fits)
-            throw Error(ErrorKind::kBadArgument, cat(option, ": -o ", o.output, " is no ", what));
-    };
-    const bool container = is_container(o.output), obj = extension == ".obj";
-    if (!container && !is_level_file(o.output))
-        throw Error(ErrorKind::kBadArgument,
-                    cat("-o ", o.output,
-                        ": expected a name in .glb, .gltf, .svg, .ply, .obj, .json, .tscn, .png or .npz",
-                        other_tool("imgmesh-convert", o.output)));
-    const std::optional<ExportKind> kind = export_kind(level_options(o));
-    const bool outline = kind == ExportKind::kOutline, sprite = kind && !outline;
-    only_for(o.compression.draco.has_value(), "--draco", container, "container");
-    only_for(!o.levels.empty(), "--levels", container, "container");
-    only_for(o.compression.method.has_value(), "--compression", container, "container");
-    only_for(o.no_map, "--no-map", container, "container");
-    only_for(o.precision == MeshPrecision::kCompact, "--mesh-precision", container, "container");
-    only_for(o.compression.layers.has_value(), "--layers", container, "container");
-    check_compression(o.compression, !o.no_map && !o.outline_tolerance);
-    if (o.compression.layers == LayerLayout::kCompact && o.texture.wanted.value_or(false))
-        throw Error(ErrorKind::kBadArgument,
-                    "--layers compact and --texture: the meshes of a texture are stretched, so that pixels "
-                    "leave the grid that compact layers need");
-    only_for(o.texture.wanted.has_value(), "--texture", container || obj, "container or .obj");
-    if (container && o.level)
-        throw Error(ErrorKind::kBadArgument, cat("--level: ", o.output, " keeps all levels; see --levels"));
-    only_for(o.shading.has_value(), "--shading", extension == ".svg" && !outline, "SVG of triangles");
-    if (container && !o.image.empty() && !o.texture.wanted.value_or(false))
-        throw Error(ErrorKind::kBadArgument, "--image: of use to a container only with --texture");
-    only_for(!o.image.empty(), "--image", container || obj || sprite, "container, .obj or sprite");
-    if (obj && !o.image.empty() && !o.texture.wanted.value_or(true))
-        throw Error(ErrorKind::kBadArgument, "--image and --no-texture: the image would be of no use");
-    only_for(o.outline_tolerance.has_value(), "--outline-tolerance", container || obj || sprite || outline,
-             "container, .obj, sprite or outline");
-    if (o.outline_tolerance && !o.levels.empty())
-        throw Error(ErrorKind::kBadArgument, "--outline-tolerance and --levels: an outline has one level");
-    if (o.outline_tolerance && container && !o.texture.wanted.value_or(true))
-        throw Error(ErrorKind::kBadArgument,
-                    "--outline-tolerance and --no-texture: an outline shows nothing without a texture");
-    for (std::size_t i = 1; i < o.levels.size(); ++i)
-        if (o.levels[i] <= o.levels[i - 1])
-            throw Error(ErrorKind::kBadArgument, cat("--levels: ", o.levels[i], " after ", o.levels[i - 1],
-                                                     ", expected the finest first and each once"));
-}
-
 // Returns what making the output takes.
-double bytes_of_pixel(const Options& o) {
+double bytes_of_pixel(const ConvertOptions& o) {
     if (is_container(o.output)) return o.texture.wanted.value_or(false) ? kTextureBytes : kContainerBytes;
     const std::string extension = lower_extension(o.output);
     return extension == ".png" ? kImageBytes : extension == ".npz" ? kArrayBytes : kTextBytes;
 }
 
-void keep_levels(const Options& o, MeshImage& m, Texture& texture) {
+void keep_levels(const ConvertOptions& o, MeshImage& m, Texture& texture) {
     if (o.levels.empty()) return;
     std::vector<Level> kept;
     std::vector<std::vector<Vec2f>> coords;
@@ -221,7 +59,7 @@ void keep_levels(const Options& o, MeshImage& m, Texture& texture) {
 
 // Returns the texture of the meshes; `kept` is the existing one. What engines get covers all of its pixels:
 // the meshes of a new texture, and those without a pixel map.
-Texture chosen_texture(const Options& o, MeshImage& m, Texture kept, Context& context) {
+Texture chosen_texture(const ConvertOptions& o, MeshImage& m, Texture kept, Context& context) {
     if (!o.texture.wanted && !kept.picture.empty()) return kept;
     if (!o.texture.wanted.value_or(false)) {
         if (o.no_map) cover_whole_pixels(m);
@@ -259,7 +97,8 @@ Texture chosen_texture(const Options& o, MeshImage& m, Texture kept, Context& co
 }
 
 // Makes the meshes compact as far as their map and their compression allow, and says where they do not.
-void compact(const Options& o, MeshImage& m, ContainerOptions& options, std::vector<std::string>& warnings) {
+void compact(const ConvertOptions& o, MeshImage& m, ContainerOptions& options,
+             std::vector<std::string>& warnings) {
     const bool own_places = !options.texture.picture.empty() && options.texture.coords == texture_coords(m);
     make_compact(m, options.layers != LayerLayout::kOff);
     if (own_places) options.texture.coords = texture_coords(m);
@@ -274,7 +113,7 @@ void compact(const Options& o, MeshImage& m, ContainerOptions& options, std::vec
 }
 
 // An image is put on a mesh by where its vertices lie, which is where they were before imgmesh-warp.
-void check_places(const Options& o, const MeshImage& m) {
+void check_places(const ConvertOptions& o, const MeshImage& m) {
     const std::optional<ExportKind> kind = export_kind(level_options(o));
     const bool sprite = kind && kind != ExportKind::kOutline && !o.outline_tolerance;
     if (!m.generator.starts_with("imgmesh-warp") || (!sprite && !o.texture.wanted.value_or(false))) return;
@@ -287,20 +126,19 @@ void check_places(const Options& o, const MeshImage& m) {
 
 // Returns how the pixel maps are stored; `kept` is how they are. With a new texture meshes are stretched, and
 // pixels leave their grid.
-LayerLayout chosen_layers(const Options& o, LayerLayout kept) {
+LayerLayout chosen_layers(const ConvertOptions& o, LayerLayout kept) {
     if (o.no_map || o.outline_tolerance) return LayerLayout::kOff;
     const bool stretched = o.texture.wanted.value_or(false);
     return o.compression.layers.value_or(stretched ? LayerLayout::kExr : kept);
 }
 
-Report convert_one(const Options& given, Context& context) {
-    Options o = given;
-    if (is_tile_set(o.input)) {
-        SetConvertOptions set{o.input, o.output, o.level.value_or(0), o.shading == Shading::kGradient,
-                              {},      o.limits};
-        compress(set.container, o.compression, DracoMode::kOff);
-        return convert_set(set, context);
-    }
+void check_options(const ConvertOptions& o) {
+    is_tile_set(o.input) ? check_set_options(o) : check_convert_options(o);
+}
+
+Report convert_one(const ConvertOptions& given, Context& context) {
+    ConvertOptions o = given;
+    if (is_tile_set(o.input)) return convert_set(o, context);
     const bool obj = lower_extension(o.output) == ".obj";
     if (obj && !o.image.empty()) o.texture.wanted = true;
     check_output(o.output, context.overwrite);
@@ -406,8 +244,8 @@ std::string line(const Report& report) {
 }  // namespace
 
 int main(int argc, char** argv) {
-    Options options;
-    return tool_main<Options>(
+    ConvertOptions options;
+    return tool_main<ConvertOptions>(
         {.name = "imgmesh-convert",
          .description =
              "Turn containers and levels of tile sets into another file variant, compression or format.",
@@ -420,5 +258,5 @@ int main(int argc, char** argv) {
              "byte); or a folder, ended by /, for NAME.glb of each container",
          .type = [] { return "glb"; },
          .sources = {"--image"}},
-        {add_options, check_options, convert_one, print, line}, options, argc, argv);
+        {add_convert_options, check_options, convert_one, print, line}, options, argc, argv);
 }

@@ -195,9 +195,14 @@ bool writes_channels(const Options& o, const SourceInfo& source) {
 }
 
 Report draw_one(const Options& o, Context& context) {
-    if (is_tile_set(o.input))
+    if (is_tile_set(o.input)) {
+        if (o.scale != 1)
+            throw Error(ErrorKind::kBadArgument,
+                        cat("--scale ", o.scale, ": ", o.input,
+                            " is a tile set, drawn pixel by pixel; --level K draws it at 1/2^K of its size"));
         return draw_set({o.input, o.output, o.mode, o.level, o.depth, o.crop, o.limits},
                         name_of(mode_choices(), o.mode), context);
+    }
     if (o.crop)
         throw Error(ErrorKind::kBadArgument,
                     cat("--crop: ", o.input, " is no tile set; containers are drawn whole"));

@@ -107,14 +107,34 @@ class TileSets(CliCase):
 
     def test_what_cannot_be(self):
         for mode in ("wire", "patches", "flat", "visits", "smooth"):
-            self.assert_error("imgmesh-reconstruct", ["set", "-o", "a.png", "--mode", mode], 5, mode, "map or gouraud")
+            self.assert_error("imgmesh-reconstruct", ["set", "-o", "a.png", "--mode", mode], 2, mode, "map or gouraud")
         for tool, output in (("imgmesh-reconstruct", "a.png"), ("imgmesh-convert", "a.ply")):
             self.assert_error(tool, ["set", "-o", output, "--level", "3"], 2, "--level 3", "0 to 2")
         self.assert_error("imgmesh-reconstruct", ["set", "-o", "a.png", "--crop", "90,0,20,20"], 2, "--crop", "100x60")
         self.assert_error("imgmesh-reconstruct", ["set", "-o", "a.png", "--crop", "1,2,3"], 2, "--crop")
         self.assert_error("imgmesh-reconstruct", ["set/0/0_0.glb", "-o", "a.png", "--crop", "0,0,2,2"], 2, "--crop")
         self.assert_error("imgmesh-convert", ["set", "-o", "a.npz"], 5, "a.npz")
-        self.assert_error("imgmesh-convert", ["set", "-o", "a.glb", "--texture"], 5, "--texture")
+        self.assert_error("imgmesh-reconstruct", ["set", "-o", "a.png", "--mode", "gouraud", "--scale", "2"], 2, "--scale")
+        for option in (["--texture"], ["--levels", "0"], ["--layers", "exr"], ["--mesh-precision", "compact"],
+                       ["--image", "a.png"], ["--outline-tolerance", "1"]):
+            self.assert_error("imgmesh-convert", ["set", "-o", "a.glb", *option], 2, option[0], "tile set")
+        self.assert_error("imgmesh-convert", ["set", "-o", "a.svg", "--as", "outline"], 2, "--as")
+        for option in (["--draco", "edgebreaker"], ["--compression", "meshopt"], ["--shading", "gradient"]):
+            self.assert_error("imgmesh-convert", ["set", "-o", "a.ply", *option], 2, option[0], "a.ply")
+        for tool, *args in (("imgmesh-encode", "-o", "a.imgm"), ("imgmesh-decode", "-o", "a.png"), ("imgmesh-compare", "set"),
+                            ("imgmesh-warp", "--image", "set/0/0_0.glb", "-o", "a.png")):
+            self.assert_error(tool, ["set", *args], 3, "folder")
+
+    def test_names_of_outputs(self):
+        """Of a set in a folder: that of its own folder, however it is named."""
+        for name in ("set", "set/", "set/."):
+            self.run_ok("imgmesh-reconstruct", name, "-o", "drawn/")
+            self.run_ok("imgmesh-convert", name, "-o", "drawn/", "--format", "ply")
+        self.run_ok("imgmesh-convert", "set/0/0_0.glb", "-o", "drawn/")
+        self.assertEqual(sorted(path.name for path in (self.folder / "drawn").iterdir() if path.name[0] != "."),
+                         ["0_0.glb", "set.ply", "set.png"])
+
+    def test_memory(self):
         self.assert_error("imgmesh-convert", ["set", "-o", "a.ply", "--max-memory", "1M"], 4, "level 0 as one mesh")
 
 

@@ -15,8 +15,16 @@ namespace fs = std::filesystem;
 namespace imgmesh {
 namespace {
 
+// A folder, as a tile set is, has no extension, and may be given as in "set/" or ".".
+std::string name_of_input(const std::string& input) {
+    std::error_code error;
+    if (!fs::is_directory(input, error)) return fs::path(input).stem().string();
+    const fs::path folder = fs::weakly_canonical(input, error);
+    return (folder.has_filename() ? folder : folder.parent_path()).filename().string();
+}
+
 std::string in_folder(const std::string& folder, const std::string& input, const std::string& extension) {
-    return fs::path(folder) / (fs::path(input).stem().string() + "." + extension);
+    return fs::path(folder) / (name_of_input(input) + "." + extension);
 }
 
 std::string needs_folder(const std::string& option, const std::string& value, std::size_t count) {

@@ -21,7 +21,7 @@ constexpr double kVertexBytes = 120, kFaceBytes = 90, kDracoVertexBytes = 250;
 // And a pixel of the tile that is read.
 constexpr double kTileBytes = 40;
 
-void check_kind(const SetConvertOptions& o) {
+void check_kind(const ConvertOptions& o) {
     const std::string extension = lower_extension(o.output);
     if (is_container(o.output)) return;
     for (const char* known : {".ply", ".obj", ".svg"})
@@ -31,39 +31,67 @@ void check_kind(const SetConvertOptions& o) {
                     "/LEVEL/COLUMN_ROW.glb are ordinary containers"));
 }
 
-std::string text_of(const SetConvertOptions& o, const MeshImage& whole) {
+std::string text_of(const ConvertOptions& o, const MeshImage& whole) {
     const std::string extension = lower_extension(o.output);
     const BaseMesh& mesh = whole.levels[0].mesh;
     if (extension == ".ply") return ply_from_mesh(mesh);
     if (extension == ".obj") return obj_from_mesh(mesh, whole.source);
-    return o.gradient ? draw_svg_gradient(whole, 0) : draw_svg(whole, 0, DrawMode::kFlat);
+    return o.shading == Shading::kGradient ? draw_svg_gradient(whole, 0)
+                                           : draw_svg(whole, 0, DrawMode::kFlat);
 }
 
 }  // namespace
 
-Report convert_set(const SetConvertOptions& o, Context& context) {
+void check_set_options(const ConvertOptions& o) {
+    const auto refuse = [&](bool given, const char* option) {
+        if (given)
+            throw Error(ErrorKind::kBadArgument,
+                        cat(option, ": ", o.input, " is a tile set, which becomes one mesh without a map; ",
+                            o.input, "/LEVEL/COLUMN_ROW.glb are ordinary containers"));
+    };
+    refuse(!o.levels.empty(), "--levels");
+    refuse(o.compression.layers.has_value(), "--layers");
+    refuse(o.precision == MeshPrecision::kCompact, "--mesh-precision");
+    refuse(o.texture.wanted.value_or(false), "--texture");
+    refuse(o.as.has_value(), "--as");
+    refuse(o.outline_tolerance.has_value(), "--outline-tolerance");
+    refuse(!o.image.empty(), "--image");
     check_kind(o);
+    const auto only_for = [&](bool given, const char* option, bool fits, const char* what) {
+        if (given && !fits)
+            throw Error(ErrorKind::kBadArgument, cat(option, ": -o ", o.output, " is no ", what));
+    };
+    const bool container = is_container(o.output);
+    only_for(o.compression.draco.has_value(), "--draco", container, "container");
+    only_for(o.compression.method.has_value(), "--compression", container, "container");
+    only_for(o.shading.has_value(), "--shading", lower_extension(o.output) == ".svg", "SVG");
+}
+
+Report convert_set(const ConvertOptions& o, Context& context) {
+    const int index = o.level.value_or(0);
+    ContainerOptions options;
+    compress(options, o.compression, DracoMode::kOff);
     check_output(o.output, context.overwrite);
     context.progress(0, "read");
-    const SetInput set = open_set(o.input, o.level, o.limits, context);
-    const TileTotals totals = level_totals(set.index, o.level);
+    const SetInput set = open_set(o.input, index, o.limits, context);
+    const TileTotals totals = level_totals(set.index, index);
     const TileGrid grid = set.grid();
-    const bool draco = is_container(o.output) && o.container.draco != DracoMode::kOff;
+    const bool draco = is_container(o.output) && options.draco != DracoMode::kOff;
     context.memory.take(
-        cat(o.input, ": level ", o.level, " as one mesh of ", totals.own_vertices, " vertices"),
+        cat(o.input, ": level ", index, " as one mesh of ", totals.own_vertices, " vertices"),
         kProgramMemory +
             (draco ? kDracoVertexBytes : kVertexBytes) * static_cast<double>(totals.own_vertices) +
             kFaceBytes * static_cast<double>(totals.faces) +
             kTileBytes * (grid.step() + 1) * (grid.step() + 1));
     MeshImage whole;
-    whole.source = set.source(o.level);
-    static_cast<GridSize&>(whole.source) = level_size(grid, o.level);
+    whole.source = set.source(index);
+    static_cast<GridSize&>(whole.source) = level_size(grid, index);
     whole.source.has_mask = set.has_gaps();
     whole.generator = context.generator;
     if (split_names(whole.source.channel_names).color.empty() && !is_container(o.output))
         throw Error(ErrorKind::kUnsupported, cat(o.input, ": the tile set has no colour to export"));
 
-    const std::vector<TileName> tiles = grid.tiles(o.level);
+    const std::vector<TileName> tiles = grid.tiles(index);
     // In units of the level every tile but the last ones spans the same.
     const auto step = static_cast<float>(grid.step());
     TileJoiner joiner;
@@ -81,13 +109,12 @@ Report convert_set(const SetConvertOptions& o, Context& context) {
     Report report = {{"input", o.input},
                      {"output", o.output},
                      {"levels", 1},
-                     {"level", o.level},
+                     {"level", index},
                      {"vertices", level.mesh.vertex_count()},
                      {"faces", level.mesh.faces.size()},
                      {"layers", false},
                      {"texture", false}};
     if (is_container(o.output)) {
-        ContainerOptions options = o.container;
         options.layers = LayerLayout::kOff;
         options.overwrite = context.overwrite;
         const WrittenContainer written = write_container(o.output, whole, options);

@@ -56,7 +56,7 @@ PixelRect checked_part(const SetDrawOptions& o, const GridSize& size) {
 
 void check_mode(const SetDrawOptions& o, const std::string& mode_name) {
     if (o.mode != DrawMode::kMap && o.mode != DrawMode::kGouraud)
-        throw Error(ErrorKind::kUnsupported,
+        throw Error(ErrorKind::kBadArgument,
                     cat("--mode ", mode_name, ": a tile set is drawn as map or gouraud; ", o.input,
                         "/LEVEL/COLUMN_ROW.glb are ordinary containers"));
 }
