@@ -43,11 +43,20 @@ struct CollapseStep {
     std::span<const float> feature;  ///< of the merged vertex; perhaps with zeros behind the grid's channels
 };
 
-/// Functions that follow the collapse; both may be empty, and then cost nothing.
+/// A collapse that has happened.
+struct CollapseTaken {
+    Vec2f ends[2], merged;  ///< places of the edge's ends and of the vertex that they have become [pixels]
+    float increment;        ///< what it has added to the error, as SimplifyTarget::max_increment has it
+};
+
+/// Functions that follow the collapse; all may be empty, and then cost nothing.
 struct SimplifyHooks {
     /// Before each collapse, in order. Returns false to reject it: the edge is tried again only when
     /// something around it has changed.
     std::function<bool(const CollapseStep&)> before;
+    /// After each collapse, in order, but for those of the start in tiles, of which about an eighth of the
+    /// dense mesh is left. The rest is then made without tiles, on one thread.
+    std::function<void(const CollapseTaken&)> after;
     /// Called when a level's target is reached, with its result (features may be padded likewise), before the
     /// collapse continues.
     std::function<void(std::size_t level, const SimplifyResult&)> reached;

@@ -37,17 +37,62 @@ struct VertexCounts {
     double counted = 0, on_sides = 0;
 };
 
-VertexCounts count_vertices(const BaseMesh& mesh, const GridSize& size, int margin) {
-    VertexCounts counts;
-    const float right = static_cast<float>(size.width - 1 - margin),
-                bottom = static_cast<float>(size.height - 1 - margin), left = static_cast<float>(margin);
-    for (const Vec2f& place : mesh.position) {
-        const bool side = on_side(place, size.width, size.height);
-        if (side) counts.on_sides += 1;
-        if (margin == 0)
-            counts.counted += side ? 0.5 : 1;
-        else if (place[0] >= left && place[0] < right && place[1] >= left && place[1] < bottom)
-            counts.counted += 1;
+// Whether vertices of a part count.
+class Counter {
+  public:
+    Counter(const GridSize& size, int margin)
+        : size_(size),
+          margin_(margin),
+          least_(static_cast<float>(margin)),
+          right_(static_cast<float>(size.width - 1 - margin)),
+          bottom_(static_cast<float>(size.height - 1 - margin)) {}
+
+    VertexCounts of(const Vec2f& place) const {
+        const double on_sides = on_side(place, size_.width, size_.height) ? 1 : 0;
+        if (margin_ == 0) return {1 - 0.5 * on_sides, on_sides};
+        const bool within =
+            least_ <= place[0] && place[0] < right_ && least_ <= place[1] && place[1] < bottom_;
+        return {within ? 1.0 : 0.0, on_sides};
+    }
+
+  private:
+    GridSize size_;
+    int margin_;
+    float least_, right_, bottom_;
+};
+
+// Collapses a part to at most so many vertices and from there to the last threshold, and returns the counts
+// at each of them. A collapse that adds more than a threshold has not happened there. This is the same as to
+// stop at each of them, as far as edges collapse in the order of their costs.
+std::vector<VertexCounts> counts_at(std::span<const double> thresholds, const GridMesh& grid,
+                                    const Counter& counter, const SimplifyParams& params, double most) {
+    std::vector<VertexCounts> counts(thresholds.size());
+    const auto change = [&](std::size_t from, const Vec2f& place, double by) {
+        if (from == counts.size()) return;
+        const VertexCounts one = counter.of(place);
+        counts[from].counted += by * one.counted;
+        counts[from].on_sides += by * one.on_sides;
+    };
+    bool counting = false;
+    SimplifyHooks hooks;
+    hooks.after = [&](const CollapseTaken& taken) {
+        if (!counting) return;
+        const auto from = static_cast<std::size_t>(std::ranges::lower_bound(thresholds, taken.increment) -
+                                                   thresholds.begin());
+        for (const Vec2f& end : taken.ends) change(from, end, -1);
+        change(from, taken.merged, 1);
+    };
+    hooks.reached = [&](std::size_t level, const SimplifyResult& result) {
+        if (level != 0) return;
+        counting = true;
+        for (const Vec2f& place : result.mesh.position) change(0, place, 1);
+    };
+    const SimplifyTarget targets[] = {{.vertices = std::max<std::int64_t>(4, std::llround(most))},
+                                      {.vertices = 4, .max_increment = thresholds.back()}};
+    simplify(grid, params, targets, {}, hooks);
+    for (std::size_t i = 1; i < counts.size(); ++i) {
+        counts[i].counted += counts[i - 1].counted;
+        counts[i].on_sides += counts[i - 1].on_sides;
     }
     return counts;
 }
@@ -124,9 +169,8 @@ DensitySample sample_density(FeatureImage part, Mask mask, int margin, const Sim
     DensitySample sample;
     sample.border = 2.0 * (size.width - 1 + size.height - 1);
     sample.pixels = counted_pixels(size, mask, margin);
-    sample.counted.resize(thresholds.size());
-    sample.on_sides.resize(thresholds.size());
-    sample.decided.resize(thresholds.size());
+    for (std::vector<double>* counts : {&sample.counted, &sample.on_sides, &sample.decided})
+        counts->resize(thresholds.size());
     if (size.width < 2 || size.height < 2 || sample.pixels == 0) return sample;
     std::array<std::vector<float>, 4> lines;
     lines[0].assign(part.row(0).begin(), part.row(0).end());
@@ -139,17 +183,11 @@ DensitySample sample_density(FeatureImage part, Mask mask, int margin, const Sim
     }
     const double all = counted_pixels(size, mask, 0);
     const GridMesh grid = grid_mesh(std::move(part), std::move(mask));
-    SimplifyRun run(grid, params);
     const double most = std::clamp(kMostDense * density / 100, kLeastShare, kMostShare) * all;
-    SimplifyResult reached = run.to({.vertices = std::max<std::int64_t>(4, std::llround(most))});
-    VertexCounts counts = count_vertices(reached.mesh, size, margin);
-    for (std::size_t i = 0; i < thresholds.size(); ++i) {
-        if (reached.increment < thresholds[i] && reached.mesh.vertex_count() > 4) {
-            reached = run.to({.vertices = 4, .max_increment = thresholds[i]});
-            counts = count_vertices(reached.mesh, size, margin);
-        }
-        sample.counted[i] = counts.counted;
-        sample.on_sides[i] = counts.on_sides;
+    const std::vector<VertexCounts> counts = counts_at(thresholds, grid, Counter(size, margin), params, most);
+    for (std::size_t i = 0; i < counts.size(); ++i) {
+        sample.counted[i] = counts[i].counted;
+        sample.on_sides[i] = counts[i].on_sides;
     }
     return sample;
 }

@@ -6,6 +6,7 @@
 #include <map>
 
 #include "libcore/mesh/tile_sides.h"
+#include "libcore/simplify/simplify.h"
 #include "libcore/tiles/density.h"
 #include "libcore/tiles/join_tiles.h"
 #include "libcore/tiles/tile_errors.h"
@@ -102,6 +103,22 @@ TEST_CASE("the threshold of a set leaves the wanted number of vertices in its sa
         CHECK(threshold > before);
         before = threshold;
     }
+}
+
+TEST_CASE("a sample counts what a collapse to each of the thresholds leaves") {
+    const FeatureImage feature = sample_feature(Kind::kNoise, 129, 129);
+    const DensitySample sample = sample_density(feature, {}, 0, {}, 4);
+    const GridMesh grid = grid_mesh(feature);
+    SimplifyRun run(grid, {});
+    int compared = 0;
+    for (std::size_t i = 0; i < sample.counted.size(); ++i) {
+        const double counted = sample.counted[i] + 0.5 * sample.on_sides[i];
+        if (counted > 2000 || counted < 400) continue;
+        ++compared;
+        const SimplifyResult reached = run.to({.vertices = 4, .max_increment = sample_thresholds()[i]});
+        CHECK(std::abs(static_cast<double>(reached.mesh.vertex_count()) / counted - 1) < 0.03);
+    }
+    CHECK(compared > 5);
 }
 
 TEST_CASE("windows have the density of the whole where they count") {

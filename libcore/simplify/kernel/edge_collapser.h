@@ -113,6 +113,10 @@ class EdgeCollapser {
             stats_.increment = std::max(stats_.increment, place.cost);
             ++stats_.vertices;
             stats_.faces += ring.faces_removed;
+            if (rules_.hooks.after)
+                rules_.hooks.after({{{rings_[i].x, rings_[i].y}, {rings_[j].x, rings_[j].y}},
+                                    {place.x, place.y},
+                                    place.cost});
         }
         if (rules_.boundary) rules_.boundary->merge(rings_, i, j, place.x, place.y);
         apply_merge(rings_, i, j, ring);

@@ -90,7 +90,7 @@ class Simplifier : public AnySimplifier {
         set_target(target);
         while (!done()) {
             if (params_.rebuild_quadrics && near_rebuild()) rebuild_quadrics();
-            const bool tiled = params_.tiles && far_from_done();
+            const bool tiled = params_.tiles && !rules_.hooks.after && far_from_done();
             const double might_go = tiled ? share_that_goes() * static_cast<double>(vertices_) : 0;
             const CollapseStats part = tiled ? round_of_tiles() : whole();
             take(part);
