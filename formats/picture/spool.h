@@ -9,14 +9,17 @@
 
 namespace imgmesh {
 
-/// Writes a PNG or JPEG once more as a tiled BigTIFF without compression, atomically. With the same options
-/// RegionSource reads from it what read_image() reads from the picture, to the bit; other programs may miss
-/// what TIFF has no words for. Holds a row of tiles (32 MiB, or 16 rows if they are longer), and of
-/// progressive JPEG all coefficients, two bytes each. Returns what read_image_file() would warn of.
+/// Writes a PNG, a JPEG or a TIFF in strips once more as a tiled BigTIFF without compression, atomically.
+/// With the same options RegionSource reads from it what read_image() reads from the picture, to the bit;
+/// other programs may miss what TIFF has no words for. Holds a row of tiles (32 MiB, or 16 rows if they are
+/// longer), some rows of a TIFF as packed, and of progressive JPEG all coefficients, two bytes each. Returns
+/// what read_image_file() would warn of. Where a strip of a TIFF is broken, so are the tiles of the copy from
+/// there to its end.
 ///
-/// Throws Error: kUnsupported for other formats and for interlaced PNG, which stay to be read as a whole; as
-/// read_image_file() for broken files and, by ImageLimits::max_memory, for the coefficients, before memory is
-/// taken; kIo if `out_path` cannot be written.
+/// Throws Error: kUnsupported for other formats, for interlaced PNG, and for a TIFF in tiles, in groups of
+/// YCbCr or in codecs of whole strips; as read_image_file() for broken PNG and JPEG and, by
+/// ImageLimits::max_memory, for the coefficients, before memory is taken; kIo if `out_path` cannot be
+/// written.
 std::vector<std::string> spool_picture(const std::string& path, const std::string& out_path,
                                        const ReadImageOptions& options = {});
 

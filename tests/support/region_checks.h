@@ -52,6 +52,26 @@ inline void check_regions(const std::string& path, int step, const ReadImageOpti
     check_part(source.read_region(all), whole, all);
 }
 
+/// Checks that parts of `copy` are what read_image() gives of `path`, with the same options.
+inline void check_copy(const std::string& path, const std::string& copy, int step,
+                       const ReadImageOptions& options = {}) {
+    const ReadImage whole = read_image_file(path, options);
+    const RegionSource of_path(path, options), source(copy, options);
+    CHECK(source.facts().access == RegionAccess::kDirect);
+    REQUIRE(source.facts().width == whole.image.width);
+    REQUIRE(source.facts().height == whole.image.height);
+    REQUIRE(of_path.facts().width == whole.image.width);
+    CHECK(of_path.facts().channel_names == whole.image.channel_names);
+    CHECK(of_path.facts().sample_type == whole.image.sample_type);
+    CHECK(source.color_space() == whole.image.color_space);
+    for (int y = 0; y < whole.image.height; y += step)
+        for (int x = 0; x < whole.image.width; x += step) {
+            const PixelRect region{x, y, std::min(x + step, whole.image.width),
+                                   std::min(y + step, whole.image.height)};
+            check_part(source.read_region(region), whole, region);
+        }
+}
+
 /// Reads so many rectangles at random, of the size of a few pixels to all.
 inline void check_random_regions(const std::string& path, int count, const ReadImageOptions& options = {}) {
     const ReadImage whole = read_image_file(path, options);

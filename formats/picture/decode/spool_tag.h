@@ -19,6 +19,14 @@ struct SpoolInfo {
 
 std::vector<std::uint8_t> spool_tag(const SpoolInfo& info);
 
+/// The tag of a copy of another TIFF, whose own tags say all else: a block that it leaves out is broken in
+/// the original, and not without data.
+std::vector<std::uint8_t> copy_tag();
+bool is_copy(const TiffFile& file);
+
+/// Makes the tag known to a file that is written, and sets it.
+void set_spool_tag(TIFF* tiff, const std::vector<std::uint8_t>& tag);
+
 /// Returns nothing for a file without the tag, and for a tag of another program.
 std::optional<SpoolInfo> spool_info(const TiffFile& file);
 

@@ -1,6 +1,7 @@
 // Reads strips or tiles of a TIFF, each once, into the samples of an area.
 #include <algorithm>
 
+#include "formats/picture/decode/tiff_rows.h"
 #include "formats/picture/decode/tiff_samples.h"
 #include "libcore/base/parallel_vector.h"
 
@@ -40,6 +41,17 @@ class BlockReader {
     BlockReader(TiffFile& file, const TiffLayout& layout, const PixelRect& area, std::optional<float> fill,
                 std::vector<float>& out)
         : file_(file), layout_(layout), area_(area), fill_(fill), out_(out) {}
+
+    // Reads strips by their rows, of which no more than one is held.
+    void read_rows() {
+        TiffRows rows(file_, layout_);
+        buffer_.resize(rows.row_bytes());
+        for (int plane = 0; plane < (layout_.planar ? layout_.samples : 1); ++plane)
+            for (int y = area_.top; y < area_.bottom; ++y) {
+                rows.read(y, plane, buffer_);
+                unpack_row({0, 0, y, 1, plane}, 0);
+            }
+    }
 
     void read(const Block& block) {
         const std::int64_t first = std::max<std::int64_t>(area_.top - block.y, 0),
@@ -180,6 +192,10 @@ std::vector<float> read_samples(TiffFile& file, const TiffLayout& layout, const 
     std::vector<float> out =
         parallel_vector<float>(as_size(area.width()) * as_size(area.height()) * as_size(layout.samples));
     BlockReader reader(file, layout, area, fill, out);
+    if (layout.by_rows) {
+        reader.read_rows();
+        return out;
+    }
     file.forget_messages();
     for_blocks(layout, area, [&](const Block& block) { reader.read(block); });
     // Some codecs only warn of pixels that are missing, and make them up.

@@ -11,9 +11,6 @@
 namespace imgmesh {
 namespace {
 
-// The bytes are in memory already, and a block is at most as large as our own buffer for it. No table of a
-// sound file comes near this.
-constexpr tmsize_t kMostAtOnce = tmsize_t{1} << 30;
 constexpr std::size_t kMostWarnings = 20;
 
 std::string text_of_message(const char* format, std::va_list values) {
@@ -84,7 +81,7 @@ void TiffFile::open(const char* mode) {
     const std::unique_ptr<TIFFOpenOptions, void (*)(TIFFOpenOptions*)> options(TIFFOpenOptionsAlloc(),
                                                                                TIFFOpenOptionsFree);
     if (!options) throw std::bad_alloc();
-    TIFFOpenOptionsSetMaxSingleMemAlloc(options.get(), kMostAtOnce);
+    TIFFOpenOptionsSetMaxSingleMemAlloc(options.get(), tmsize_t{kMostAtOnce});
     TIFFOpenOptionsSetErrorHandlerExtR(options.get(), Callbacks::on_error, this);
     TIFFOpenOptionsSetWarningHandlerExtR(options.get(), Callbacks::on_warning, this);
     tiff_.reset(TIFFClientOpenExt("image", mode, this, Callbacks::read, Callbacks::write, Callbacks::seek,

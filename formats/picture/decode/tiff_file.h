@@ -14,6 +14,10 @@
 
 namespace imgmesh {
 
+/// What libtiff may take at once [bytes]. Bytes are in memory already, and a block is at most as large as our
+/// own buffer for it. No table of a sound file comes near this.
+inline constexpr std::uint64_t kMostAtOnce = std::uint64_t{1} << 30;
+
 /// Handlers for errors and warnings belong to this file alone, so that files can be read side by side.
 class TiffFile {
   public:

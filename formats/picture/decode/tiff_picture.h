@@ -11,6 +11,9 @@
 
 namespace imgmesh {
 
+/// GDAL's tag for the value of pixels without data, as text.
+inline constexpr ttag_t kGdalNoData = 42113;
+
 /// The first full-size page of a file. Both that and the options must outlive it. One thread at a time.
 class TiffPicture {
   public:
@@ -19,6 +22,8 @@ class TiffPicture {
     TiffPicture(TiffFile& file, const ReadImageOptions& options, const ImageLimits& limits);
 
     const TiffLayout& layout() const { return layout_; }
+    /// From now on strips are undone row by row, which has_rows() must allow.
+    void read_by_rows() { layout_.by_rows = true; }
     /// Reads the pixels of `area`, as stored, of the blocks that it touches. Throws Error(kBadFile) for
     /// blocks that are broken or truncated.
     DecodedPicture read(const PixelRect& area);
@@ -34,6 +39,7 @@ class TiffPicture {
     TiffLayout layout_;
     std::optional<double> nodata_;  ///< as the file names it
     std::optional<SpoolInfo> spool_;
+    bool is_copy_ = false;  ///< by spool_tiff()
     std::vector<std::string> warnings_;
 };
 

@@ -12,8 +12,6 @@
 namespace imgmesh {
 namespace {
 
-constexpr ttag_t kGdalNoData = 42113;
-
 // GDAL writes the number as text; "nan" is one of them. Other texts name none.
 std::optional<double> nodata_of(const TiffFile& file) {
     // The library does not know the tag, and gives the length of such.
@@ -87,11 +85,12 @@ TiffPicture::TiffPicture(TiffFile& file, const ReadImageOptions& options, const 
     check_block_count(file, layout_);
     nodata_ = nodata_of(file);
     spool_ = spool_info(file);
+    is_copy_ = is_copy(file);
 }
 
 DecodedPicture TiffPicture::read(const PixelRect& area) {
     std::optional<float> fill;  // GDAL leaves blocks out that hold nothing else
-    if (nodata_) fill = static_cast<float>(*nodata_);
+    if (nodata_ && !is_copy_) fill = static_cast<float>(*nodata_);
     return picture(area.width(), area.height(), read_samples(file_, layout_, area, fill));
 }
 

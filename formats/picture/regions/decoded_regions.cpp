@@ -38,7 +38,12 @@ class DecodedRegions : public RegionReader {
         // A space that follows the wish is one that integers of a foreign profile are converted to.
         foreign_ = finished_zero(ColorSpace::kDisplayP3).image.color_space !=
                    finished_zero(ColorSpace::kAdobeRgb).image.color_space;
-        facts_.fits_colors = foreign_ && facts_.access == RegionAccess::kDirect;
+        if (facts_.access == RegionAccess::kWhole) {
+            open_ = {};
+            check_size(path_, facts_.width, facts_.height, header_.zero_pixel.image.channels,
+                       options_.limits);
+        }
+        facts_.fits_colors = foreign_ && open_;
     }
 
     const PictureFacts& facts() const override { return facts_; }
@@ -47,7 +52,7 @@ class DecodedRegions : public RegionReader {
     }
 
     ReadImage read(const PixelRect& region, ColorSpace fitting) const override {
-        if (facts_.access != RegionAccess::kDirect) return whole().read(region, fitting);
+        if (!open_ || goes_back(region)) return whole().read(region, fitting);
         ReadImageOptions options = options_;
         if (facts_.fits_colors) options.fitting_space = fitting;
         ReadImage out = finish_picture(path_, decode(region), options);
@@ -95,6 +100,25 @@ class DecodedRegions : public RegionReader {
         return out;
     }
 
+    // From the top on, a picture of rows is read without holding it.
+    bool goes_back(const PixelRect& region) const {
+        if (facts_.access != RegionAccess::kSpool) return false;
+        const PixelRect stored = stored_rect(region, orientation_, header_.width, header_.height);
+        const std::lock_guard lock(mutex_);
+        const bool back = stored.top < next_row_;
+        next_row_ = stored.bottom;
+        return back && can_hold();
+    }
+    bool can_hold() const {
+        try {
+            check_size(path_, facts_.width, facts_.height, header_.zero_pixel.image.channels,
+                       options_.limits);
+        } catch (const Error&) {
+            return false;
+        }
+        return true;
+    }
+
     const RegionReader& whole() const {
         const std::lock_guard lock(mutex_);
         if (!whole_) whole_ = open_whole(path_, options_);
@@ -112,6 +136,7 @@ class DecodedRegions : public RegionReader {
     mutable std::mutex mutex_;
     mutable std::vector<std::unique_ptr<RegionDecoder>> idle_;
     mutable std::unique_ptr<RegionReader> whole_;
+    mutable int next_row_ = 0;  ///< behind the latest region, as stored
 };
 
 }  // namespace

@@ -38,8 +38,8 @@ struct PictureHeader {
 /// The limits of a picture of which only parts are read, from a file of so many bytes.
 ImageLimits source_limits(const ReadImageOptions& options, std::uint64_t file_bytes);
 
-/// `open` makes a decoder for each thread that reads. Without kDirect it is not used: the whole picture is
-/// read when the first region is.
+/// `open` makes a decoder for each thread that reads. Without it, and for kWhole, the whole picture is read
+/// when the first region is; for kSpool when one is above the one before, if the limits of an image allow it.
 std::unique_ptr<RegionReader> open_decoded(const std::string& path, const ReadImageOptions& options,
                                            PictureHeader header,
                                            std::function<std::unique_ptr<RegionDecoder>()> open);

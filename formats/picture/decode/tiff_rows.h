@@ -1,0 +1,37 @@
+// Strips of a TIFF that are undone row by row. Internal to this room.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "formats/picture/decode/tiff_layout.h"
+
+namespace imgmesh {
+
+/// Whether the strips can be undone so: not tiles, not those of codecs that know whole strips only, not
+/// samples in groups, none above kMostAtOnce as packed, and none left out.
+bool has_rows(const TiffFile& file, const TiffLayout& layout);
+
+/// Bytes of the largest strip, as packed.
+std::uint64_t largest_strip(const TiffFile& file, const TiffLayout& layout);
+
+/// Undoes rows. Holds the strip as packed. Those of a strip come one after the other: going back begins the
+/// strip again.
+class TiffRows {
+  public:
+    /// Both must outlive it. Throws Error(kBadFile) if libtiff's rows have another length.
+    TiffRows(TiffFile& file, const TiffLayout& layout);
+
+    std::size_t row_bytes() const { return row_bytes_; }  ///< of one plane
+    std::int64_t strip(std::int64_t y) const { return y / layout_.block_height; }
+    /// Reads row y of a plane, as stored in the machine's order. Throws Error(kBadFile) for a strip that is
+    /// broken or truncated in or above the row.
+    void read(std::int64_t y, int plane, std::span<std::uint8_t> row);
+
+  private:
+    TiffFile& file_;
+    const TiffLayout& layout_;
+    std::size_t row_bytes_;
+};
+
+}  // namespace imgmesh
