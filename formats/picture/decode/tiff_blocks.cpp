@@ -1,7 +1,6 @@
 // Reads strips or tiles of a TIFF, each once, into the samples of an area.
 #include <algorithm>
 
-#include "formats/picture/decode/tiff_rows.h"
 #include "formats/picture/decode/tiff_samples.h"
 #include "libcore/base/parallel_vector.h"
 
@@ -43,8 +42,7 @@ class BlockReader {
         : file_(file), layout_(layout), area_(area), fill_(fill), out_(out) {}
 
     // Reads strips by their rows, of which no more than one is held.
-    void read_rows() {
-        TiffRows rows(file_, layout_);
+    void read_rows(TiffRows& rows) {
         buffer_.resize(rows.row_bytes());
         for (int plane = 0; plane < (layout_.planar ? layout_.samples : 1); ++plane)
             for (int y = area_.top; y < area_.bottom; ++y) {
@@ -187,13 +185,13 @@ void check_block_count(const TiffFile& file, const TiffLayout& layout) {
 }
 
 std::vector<float> read_samples(TiffFile& file, const TiffLayout& layout, const PixelRect& area,
-                                std::optional<float> fill) {
+                                std::optional<float> fill, TiffRows* rows) {
     check_blocks(file, layout, area, fill.has_value());
     std::vector<float> out =
         parallel_vector<float>(as_size(area.width()) * as_size(area.height()) * as_size(layout.samples));
     BlockReader reader(file, layout, area, fill, out);
-    if (layout.by_rows) {
-        reader.read_rows();
+    if (rows) {
+        reader.read_rows(*rows);
         return out;
     }
     file.forget_messages();

@@ -19,7 +19,6 @@ struct TiffLayout {
     bool planar = false;  ///< each sample has blocks of its own
     bool tiled = false;   ///< blocks are tiles, else strips
     std::int64_t block_width = 0, block_height = 0;
-    bool by_rows = false;  ///< strips are not undone as a whole, but by TiffRows; the caller sets it
     std::uint16_t photometric = 0;
     int chroma_x = 1, chroma_y = 1;     ///< pixels that share a YCbCr image's chroma; 1 after conversion
     std::vector<std::uint16_t> extras;  ///< EXTRASAMPLE_*, of the last samples of a pixel

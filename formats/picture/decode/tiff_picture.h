@@ -1,6 +1,7 @@
 // The image of a TIFF file, whole or in parts. Internal to this room.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -8,6 +9,7 @@
 #include "formats/picture/decode/picture_decoders.h"
 #include "formats/picture/decode/spool_tag.h"
 #include "formats/picture/decode/tiff_layout.h"
+#include "formats/picture/decode/tiff_rows.h"
 
 namespace imgmesh {
 
@@ -21,9 +23,14 @@ class TiffPicture {
     /// does; no block has been looked at.
     TiffPicture(TiffFile& file, const ReadImageOptions& options, const ImageLimits& limits);
 
+    TiffPicture(const TiffPicture&) = delete;
+    TiffPicture& operator=(const TiffPicture&) = delete;
+    ~TiffPicture() = default;
+
     const TiffLayout& layout() const { return layout_; }
     /// From now on strips are undone row by row, which has_rows() must allow.
-    void read_by_rows() { layout_.by_rows = true; }
+    void read_by_rows() { rows_ = std::make_unique<TiffRows>(file_, layout_); }
+    bool by_rows() const { return rows_ != nullptr; }
     /// Reads the pixels of `area`, as stored, of the blocks that it touches. Throws Error(kBadFile) for
     /// blocks that are broken or truncated.
     DecodedPicture read(const PixelRect& area);
@@ -41,6 +48,7 @@ class TiffPicture {
     std::optional<SpoolInfo> spool_;
     bool is_copy_ = false;  ///< by spool_tiff()
     std::vector<std::string> warnings_;
+    std::unique_ptr<TiffRows> rows_;
 };
 
 }  // namespace imgmesh

@@ -91,7 +91,7 @@ TiffPicture::TiffPicture(TiffFile& file, const ReadImageOptions& options, const 
 DecodedPicture TiffPicture::read(const PixelRect& area) {
     std::optional<float> fill;  // GDAL leaves blocks out that hold nothing else
     if (nodata_ && !is_copy_) fill = static_cast<float>(*nodata_);
-    return picture(area.width(), area.height(), read_samples(file_, layout_, area, fill));
+    return picture(area.width(), area.height(), read_samples(file_, layout_, area, fill, rows_.get()));
 }
 
 DecodedPicture TiffPicture::zero_pixel() {

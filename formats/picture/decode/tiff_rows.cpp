@@ -26,10 +26,11 @@ bool has_rows(const TiffFile& file, const TiffLayout& layout) {
         return false;
     for (std::uint32_t i = 0; i < strip_count(layout); ++i)
         if (TIFFGetStrileOffset(file.get(), i) == 0) return false;
-    return largest_strip(file, layout) <= kMostAtOnce;
+    return held_strip(file, layout) <= kMostAtOnce;
 }
 
-std::uint64_t largest_strip(const TiffFile& file, const TiffLayout& layout) {
+std::uint64_t held_strip(const TiffFile& file, const TiffLayout& layout) {
+    if (has_streams(file, layout)) return 0;
     std::uint64_t most = 0;
     for (std::uint32_t i = 0; i < strip_count(layout); ++i)
         most = std::max<std::uint64_t>(most, TIFFGetStrileByteCount(file.get(), i));
@@ -43,9 +44,17 @@ TiffRows::TiffRows(TiffFile& file, const TiffLayout& layout)
           (layout.width * (layout.planar ? 1 : layout.samples) * layout.bits + 7) / 8)) {
     if (const std::uint64_t theirs = TIFFScanlineSize64(file.get()); theirs != row_bytes_)
         throw file.broken(cat("the TIFF's rows have ", theirs, " bytes, expected ", row_bytes_));
+    if (has_streams(file, layout)) streams_.emplace(file, layout, row_bytes_);
 }
 
 void TiffRows::read(std::int64_t y, int plane, std::span<std::uint8_t> row) {
+    if (streams_)
+        streams_->read(y, plane, row);
+    else
+        read_by_libtiff(y, plane, row);
+}
+
+void TiffRows::read_by_libtiff(std::int64_t y, int plane, std::span<std::uint8_t> row) {
     const std::int64_t wanted = plane * layout_.blocks_down() + strip(y);
     // Few codecs can step over rows.
     std::int64_t next = strip(y) * layout_.block_height;

@@ -2,21 +2,23 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 
 #include "formats/picture/decode/tiff_layout.h"
+#include "formats/picture/decode/tiff_streams.h"
 
 namespace imgmesh {
 
 /// Whether the strips can be undone so: not tiles, not those of codecs that know whole strips only, not
-/// samples in groups, none above kMostAtOnce as packed, and none left out.
+/// samples in groups, and none left out; those that are held as packed are not above kMostAtOnce.
 bool has_rows(const TiffFile& file, const TiffLayout& layout);
 
-/// Bytes of the largest strip, as packed.
-std::uint64_t largest_strip(const TiffFile& file, const TiffLayout& layout);
+/// What TiffRows holds of the strips as packed, at most [bytes].
+std::uint64_t held_strip(const TiffFile& file, const TiffLayout& layout);
 
-/// Undoes rows. Holds the strip as packed. Those of a strip come one after the other: going back begins the
-/// strip again.
+/// Undoes rows. libtiff holds the strip as packed, for codecs that TiffStreams does not know. Those of a
+/// strip come one after the other: going back begins the strip again.
 class TiffRows {
   public:
     /// Both must outlive it. Throws Error(kBadFile) if libtiff's rows have another length.
@@ -29,9 +31,12 @@ class TiffRows {
     void read(std::int64_t y, int plane, std::span<std::uint8_t> row);
 
   private:
+    void read_by_libtiff(std::int64_t y, int plane, std::span<std::uint8_t> row);
+
     TiffFile& file_;
     const TiffLayout& layout_;
     std::size_t row_bytes_;
+    std::optional<TiffStreams> streams_;
 };
 
 }  // namespace imgmesh

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "formats/picture/decode/tiff_layout.h"
+#include "formats/picture/decode/tiff_rows.h"
 
 namespace imgmesh {
 
@@ -23,8 +23,9 @@ void check_block_count(const TiffFile& file, const TiffLayout& layout);
 /// Returns the samples of the current page in `area`, interleaved, as their own numbers; the chroma of
 /// subsampled YCbCr is repeated. Only blocks that the area touches are read, each once. Blocks that the file
 /// leaves out (offset and length 0) are `fill`, or an error without one. Throws Error(kBadFile) for blocks
-/// that are broken or not complete; for blocks outside of the file before memory is taken.
+/// that are broken or not complete; for blocks outside of the file before memory is taken. With `rows` strips
+/// are undone row by row.
 std::vector<float> read_samples(TiffFile& file, const TiffLayout& layout, const PixelRect& area,
-                                std::optional<float> fill);
+                                std::optional<float> fill, TiffRows* rows = nullptr);
 
 }  // namespace imgmesh

@@ -80,8 +80,8 @@ std::vector<std::string> spool_tiff(const std::string& path, const std::string& 
                          layout.bits, layout.planar};
     TiledRows out(out_path, shape, [&](TIFF* to) { copy_tags(tiff, layout, to); });
     std::optional<std::string> broken;
+    TiffRows rows(tiff, layout);
     for (int plane = 0; plane < (layout.planar ? layout.samples : 1); ++plane) {
-        TiffRows rows(tiff, layout);
         std::int64_t lost = -1;  // the strip that is broken: what follows in it is not sound
         out.write_plane([&](int y, std::span<std::uint8_t> row) {
             if (rows.strip(y) == lost) return false;

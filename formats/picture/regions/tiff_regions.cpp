@@ -34,11 +34,15 @@ class TiffDecoder : public RegionDecoder {
         out.zero_pixel = picture_.zero_pixel();
         std::int64_t held = layout.block_width * layout.block_height * layout.samples;
         std::uint64_t packed = 0;
-        if (layout.by_rows) {
-            out.access = RegionAccess::kSpool;
-            out.why = cat("it is a TIFF in strips of ", layout.block_height, " rows");
+        if (picture_.by_rows()) {
+            if (has_plain_rows(tiff_)) {
+                out.block_height = 1;
+            } else {
+                out.access = RegionAccess::kSpool;
+                out.why = cat("it is a TIFF in strips of ", layout.block_height, " rows");
+            }
             held = layout.width * layout.samples;
-            packed = largest_strip(tiff_, layout);
+            packed = held_strip(tiff_, layout);
         } else if (is_one_stream(tiff_)) {
             out.access = RegionAccess::kWhole;
             out.why = "it is a TIFF of old-style JPEG, which is one stream";
