@@ -12,9 +12,9 @@ namespace imgmesh {
 /// Writes a PNG, a JPEG or a TIFF in strips once more as a tiled BigTIFF without compression, atomically.
 /// With the same options RegionSource reads from it what read_image() reads from the picture, to the bit;
 /// other programs may miss what TIFF has no words for. Holds a row of tiles (32 MiB, or 16 rows if they are
-/// longer), some rows of a TIFF as packed, and of progressive JPEG all coefficients, two bytes each. Returns
-/// what read_image_file() would warn of. Where a strip of a TIFF is broken, so are the tiles of the copy from
-/// there to its end.
+/// longer), of a TIFF in other codecs than deflate a strip as packed, and of progressive JPEG all
+/// coefficients, two bytes each. Returns what read_image_file() would warn of. Where a strip of a TIFF is
+/// broken, so are the tiles of the copy from there to its end.
 ///
 /// Throws Error: kUnsupported for other formats, for interlaced PNG, and for a TIFF in tiles, in groups of
 /// YCbCr or in codecs of whole strips; as read_image_file() for broken PNG and JPEG and, by

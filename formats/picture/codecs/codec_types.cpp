@@ -1,5 +1,7 @@
 #include "formats/picture/codecs/codec_types.h"
 
+#include "formats/picture/codecs/color_wire.h"
+
 namespace imgmesh {
 namespace {
 
@@ -31,31 +33,6 @@ Enum take_enum(WireReader& in, Enum last) {
 template <typename Enum>
 void put_enum(WireWriter& out, Enum value) {
     out.number(static_cast<std::uint32_t>(value));
-}
-
-void put(WireWriter& out, const StatedColor& color) {
-    out.number(std::uint8_t{color.code_points.has_value()});
-    const CodePoints codes = color.code_points.value_or(CodePoints{});
-    out.number(codes.primaries);
-    out.number(codes.transfer);
-    out.bytes(color.icc);
-    out.text(color.name);
-    out.number(color.gamma);
-    out.number(std::uint8_t{color.inks});
-}
-
-StatedColor take_color(WireReader& in) {
-    StatedColor color;
-    const bool coded = in.number<std::uint8_t>() != 0;
-    CodePoints codes;
-    codes.primaries = in.number<int>();
-    codes.transfer = in.number<int>();
-    if (coded) color.code_points = codes;
-    color.icc = in.bytes();
-    color.name = in.text();
-    color.gamma = in.number<float>();
-    color.inks = in.number<std::uint8_t>() != 0;
-    return color;
 }
 
 }  // namespace
@@ -92,7 +69,7 @@ std::vector<std::uint8_t> wire_from(const CodecPicture& picture) {
     put(out, picture.channel_names);
     out.number(std::uint8_t{picture.associated_alpha});
     out.number(picture.orientation);
-    put(out, picture.color);
+    put_color(out, picture.color);
     put(out, picture.warnings);
     return out.result();
 }

@@ -28,7 +28,7 @@ struct CodecPicture {
     std::vector<std::string> channel_names;
     bool associated_alpha = false;
     int orientation = 1;
-    StatedColor color;  ///< all but chromaticities, which no format here states
+    StatedColor color;
     std::vector<std::string> warnings;
 };
 

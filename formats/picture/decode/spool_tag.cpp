@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "formats/picture/codecs/wire.h"
+#include "formats/picture/codecs/color_wire.h"
 
 namespace imgmesh {
 namespace {
@@ -20,42 +20,12 @@ std::span<const std::uint8_t> stored_tag(const TiffFile& file) {
     return {static_cast<const std::uint8_t*>(stored), count};
 }
 
-SpoolInfo read_info(WireReader& in) {
-    SpoolInfo info;
-    StatedColor& color = info.color;
-    const bool coded = in.number<std::uint8_t>() != 0;
-    CodePoints codes;
-    codes.primaries = in.number<int>();
-    codes.transfer = in.number<int>();
-    if (coded) color.code_points = codes;
-    color.icc = in.bytes();
-    color.name = in.text();
-    const bool has_primaries = in.number<std::uint8_t>() != 0;
-    Chromaticities xy{};
-    for (double& number : xy) number = in.number<double>();
-    if (has_primaries) color.chromaticities = xy;
-    color.gamma = in.number<float>();
-    color.inks = in.number<std::uint8_t>() != 0;
-    info.inks_upside_down = in.number<std::uint8_t>() != 0;
-    return info;
-}
-
 }  // namespace
 
 std::vector<std::uint8_t> spool_tag(const SpoolInfo& info) {
-    const StatedColor& color = info.color;
     WireWriter out;
     out.text(std::string(kWord));
-    out.number(std::uint8_t{color.code_points.has_value()});
-    const CodePoints codes = color.code_points.value_or(CodePoints{});
-    out.number(codes.primaries);
-    out.number(codes.transfer);
-    out.bytes(color.icc);
-    out.text(color.name);
-    out.number(std::uint8_t{color.chromaticities.has_value()});
-    for (const double number : color.chromaticities.value_or(Chromaticities{})) out.number(number);
-    out.number(color.gamma);
-    out.number(std::uint8_t{color.inks});
+    put_color(out, info.color);
     out.number(std::uint8_t{info.inks_upside_down});
     return out.result();
 }
@@ -63,7 +33,11 @@ std::vector<std::uint8_t> spool_tag(const SpoolInfo& info) {
 std::optional<SpoolInfo> spool_info(const TiffFile& file) {
     try {
         WireReader in(stored_tag(file));
-        if (in.text() == kWord) return read_info(in);
+        if (in.text() != kWord) return {};
+        SpoolInfo info;
+        info.color = take_color(in);
+        info.inks_upside_down = in.number<std::uint8_t>() != 0;
+        return info;
     } catch (const std::runtime_error&) {  // it ends too early: of another program
     }
     return {};
