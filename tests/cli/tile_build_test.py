@@ -1,6 +1,8 @@
 """Tile sets as imgmesh-build makes them: broken pictures, outputs that are no folder."""
 import json
+import resource
 import shutil
+import signal
 
 import numpy as np
 import picture_files
@@ -55,6 +57,45 @@ class TileBuild(CliCase):
     def test_output_is_a_folder(self):
         for name in ("-", "out.glb", "out.gltf"):
             self.assert_error("imgmesh-build", ["a.png", "-o", name, "--tiles", 32], 2, "folder")
+
+    def files_of_set(self):
+        return {str(path.relative_to(self.folder / "set")): path.read_bytes()
+                for path in (self.folder / "set").rglob("*") if path.is_file()}
+
+    def test_disk_is_full(self):
+        """One line and exit code 3 wherever writing fails: the plan, the copy of the picture, a tile, the index. The next run completes it."""
+        picture_files.write_float(self.folder / "a.tif", picture_files.ramp(101, 77), "uint8")
+        for picture, limit in (("a.png", 100), ("a.png", 2000), ("a.tif", 1500), ("a.tif", 6000)):
+            self.build_set(picture=picture)
+            expected = self.files_of_set()
+            shutil.rmtree(self.folder / "set")
+            with self.subTest(picture=picture, bytes_of_a_file=limit):
+                def without_space():
+                    signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+                    resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit))
+                result = self.run_tool("imgmesh-build", picture, "-o", "set/", "--tiles", 32, preexec_fn=without_space)
+                self.assert_error_lines("imgmesh-build", result, 3, 1)
+                self.assertIn("cannot write", result.stderr)
+                self.assertNotIn("index.json", self.files_of_set())
+                self.build_set(picture=picture)
+                self.assertEqual(self.files_of_set(), expected)
+                shutil.rmtree(self.folder / "set")
+
+    def test_no_folder_can_be_made(self):
+        (self.folder / "file").write_text("not a folder")
+        for name in ("file/", "file/set/"):
+            self.assert_error("imgmesh-build", ["a.png", "-o", name, "--tiles", 32], 3, "cannot make the folder")
+
+    def test_broken_picture(self):
+        """A picture of which no part can be read is told as such, not as one without pixels."""
+        whole = (self.folder / "a.png").read_bytes()
+        (self.folder / "a.png").write_bytes(whole[:len(whole) // 2])
+        self.assert_error_lines("imgmesh-build", self.build_set(code=4), 4, 1)
+        parts = self.folder / "parts"
+        parts.mkdir()
+        for column in range(2):
+            (parts / f"{column}_0.png").write_bytes(whole[:len(whole) // 2])
+        self.assertIn("_0.png", self.build_set(picture="parts", code=4).stderr)
 
     def test_missing_tiles(self):
         """Tiles that cannot be read are named with the reason, the rest is done, and a later run mends them."""

@@ -64,26 +64,32 @@ bool has_sample(const std::string& folder, int row, const std::string& key) {
     return read_json(sample_path(folder, row), key).has_value();
 }
 
-void write_sample(const std::string& folder, int row, const std::string& key, const DensitySample& sample) {
-    write_json(sample_path(folder, row), {{"plan", key},
-                                          {"pixels", sample.pixels},
-                                          {"border", sample.border},
-                                          {"counted", sample.counted},
-                                          {"on_sides", sample.on_sides},
-                                          {"decided", sample.decided}});
+void write_sample(const std::string& folder, int row, const std::string& key, const RowSample& sample) {
+    const DensitySample& counts = sample.counts;
+    Json json = {{"plan", key},
+                 {"pixels", counts.pixels},
+                 {"border", counts.border},
+                 {"counted", counts.counted},
+                 {"on_sides", counts.on_sides},
+                 {"decided", counts.decided}};
+    if (!sample.unread.empty()) json["unread"] = sample.unread;
+    write_json(sample_path(folder, row), std::move(json));
 }
 
-DensitySample read_sample(const std::string& folder, int row, const std::string& key) {
+RowSample read_sample(const std::string& folder, int row, const std::string& key) {
     const std::string path = sample_path(folder, row);
     const Json json = must_read(path, key);
-    DensitySample sample;
-    sample.pixels = number(path, json, "pixels");
-    sample.border = number(path, json, "border");
+    RowSample sample;
+    if (const Json unread = json.value("unread", Json()); unread.is_string())
+        sample.unread = unread.get<std::string>();
+    DensitySample& counts = sample.counts;
+    counts.pixels = number(path, json, "pixels");
+    counts.border = number(path, json, "border");
     // Where no pixel of the row is inside the mask there are no counts.
-    if (sample.pixels == 0) return sample;
-    sample.counted = numbers(path, json, "counted");
-    sample.on_sides = numbers(path, json, "on_sides");
-    sample.decided = numbers(path, json, "decided");
+    if (counts.pixels == 0) return sample;
+    counts.counted = numbers(path, json, "counted");
+    counts.on_sides = numbers(path, json, "on_sides");
+    counts.decided = numbers(path, json, "decided");
     return sample;
 }
 

@@ -7,12 +7,18 @@
 
 namespace imgmesh {
 
+/// Of a row of tiles.
+struct RowSample {
+    DensitySample counts;
+    std::string unread;  ///< why a part of it could not be read, in one line; empty if all could
+};
+
 // Each file has the key of the plan that it belongs to. Those of another plan count as absent.
 
 bool has_sample(const std::string& folder, int row, const std::string& key);
-void write_sample(const std::string& folder, int row, const std::string& key, const DensitySample& sample);
+void write_sample(const std::string& folder, int row, const std::string& key, const RowSample& sample);
 /// Throws Error(kIo) if it is not there, Error(kBadFile) if it is not what write_sample() wrote.
-DensitySample read_sample(const std::string& folder, int row, const std::string& key);
+RowSample read_sample(const std::string& folder, int row, const std::string& key);
 
 bool has_threshold(const std::string& folder, const std::string& key);
 void write_threshold(const std::string& folder, const std::string& key, double threshold);

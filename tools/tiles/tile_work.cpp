@@ -110,18 +110,21 @@ void TileWork::sample(int row, const Progress& progress) {
     const TileGrid& grid = planned_.jobs.grid;
     const SimplifyParams params = tile_collapse(planned_.params, planned_.common);
     const std::vector<SampledPart> parts = sampled_parts(grid, row, planned_.common.density);
-    DensitySample sum;
+    // Without it nothing can be done, so errors that it makes are not those of a part.
+    const TilePixels& source = pixels();
+    RowSample sum;
     for (std::size_t n = 0; n < parts.size(); ++n) {
         progress(static_cast<double>(n) / static_cast<double>(parts.size()), "sample");
         try {
-            PixelPart part = reading([&] { return pixels().read(parts[n].pixels, planned_.mask); });
+            PixelPart part = reading([&] { return source.read(parts[n].pixels, planned_.mask); });
             if (has_none(part)) continue;
             FeatureImage feature = tile_features(part.image, planned_.common, part.mask);
-            sum.add(sample_density(std::move(feature), std::move(part.mask), parts[n].margin, params,
-                                   planned_.common.density));
+            sum.counts.add(sample_density(std::move(feature), std::move(part.mask), parts[n].margin, params,
+                                          planned_.common.density));
         } catch (const Error& error) {
             // The tile says so when it is built.
             if (error.kind() != ErrorKind::kBadFile) throw;
+            if (sum.unread.empty()) sum.unread = printable_line(error.what());
         }
     }
     write_sample(folder_, row, key_, sum);
@@ -131,7 +134,13 @@ void TileWork::find_threshold() {
     if (has_threshold(folder_, key_)) return;
     const TileGrid& grid = planned_.jobs.grid;
     DensitySample sum;
-    for (int row = 0; row < grid.rows(0); ++row) sum.add(read_sample(folder_, row, key_));
+    std::string unread;
+    for (int row = 0; row < grid.rows(0); ++row) {
+        const RowSample sample = read_sample(folder_, row, key_);
+        sum.add(sample.counts);
+        if (unread.empty()) unread = sample.unread;
+    }
+    if (sum.pixels == 0 && !unread.empty()) throw Error(ErrorKind::kBadFile, unread);
     write_threshold(folder_, key_,
                     in_file(options_.input, [&] { return threshold_for(sum, grid, planned_.vertices); }));
 }
@@ -186,7 +195,8 @@ void TileWork::make(const TileName& tile, const Progress& progress) {
 void TileWork::build(TileRecord& record, const Progress& progress) {
     const TileGrid& grid = planned_.jobs.grid;
     const TileName tile = record.tile;
-    TilePart part = reading([&] { return pixels().read_tile(grid, tile, planned_.mask); });
+    const TilePixels& source = pixels();
+    TilePart part = reading([&] { return source.read_tile(grid, tile, planned_.mask); });
     if (part.mask.has_none()) return;
     const TileCommon shared = common();
     const TileSides sides = sides_of_tile(part.image, planned_.params, shared, part.mask);
