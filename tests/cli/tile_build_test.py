@@ -15,7 +15,8 @@ class TileBuild(CliCase):
         self.picture = picture_files.png(self.folder / "a.png", picture_files.ramp(101, 77))
 
     def build_set(self, *args, picture="a.png", code=0):
-        result = self.run_tool("imgmesh-build", picture, "-o", "set/", "--tiles", 32, *args)
+        tiles = [] if "--tiles" in args else ["--tiles", 32]
+        result = self.run_tool("imgmesh-build", picture, "-o", "set/", *tiles, *args)
         self.assertEqual(result.returncode, code, result.stderr)
         return result
 
@@ -61,6 +62,37 @@ class TileBuild(CliCase):
     def files_of_set(self):
         return {str(path.relative_to(self.folder / "set")): path.read_bytes()
                 for path in (self.folder / "set").rglob("*") if path.is_file()}
+
+    def test_folder_of_another_set(self):
+        """What a new plan does not have goes, with its index at once; other files stay. The rest is as in a new folder."""
+        mask = np.zeros((77, 101, 1))
+        mask[:, 60:] = 1
+        picture_files.png(self.folder / "m.png", mask)
+        own = {"notes.txt": b"mine", "0/notes.glb": b"mine", "7/3_x.glb": b"mine", "view/2/page.json": b"mine"}
+        for before, options in ((["--tiles", "16"], ["--tiles", "64"]), (["--preset", "fast"], ["--mask", "m.png"]),
+                                (["--tiles", "16"], ["--error", "2000"])):
+            with self.subTest(before=before, options=options):
+                self.build_set(*options)
+                expected = self.files_of_set()
+                shutil.rmtree(self.folder / "set")
+                self.build_set(*before)
+                for path, content in own.items():
+                    (self.folder / "set" / path).parent.mkdir(exist_ok=True)
+                    (self.folder / "set" / path).write_bytes(content)
+                self.build_set(*options, "--plan")
+                self.assertNotIn("index.json", self.files_of_set())
+                self.assert_error("imgmesh-info", ["set"], 3)
+                self.build_set(*options)
+                self.assertEqual(self.files_of_set(), {**expected, **own})
+                shutil.rmtree(self.folder / "set")
+
+    def test_folder_with_other_files(self):
+        """A file of a set's name that is no set's is not replaced."""
+        for name in ("index.json", "plan.json", "tileset.json", "threshold.json"):
+            (self.folder / "set").mkdir(exist_ok=True)
+            (self.folder / "set" / name).write_text('{"mine": true}')
+            self.assert_error("imgmesh-build", ["a.png", "-o", "set/", "--tiles", 32], 2, name)
+            shutil.rmtree(self.folder / "set")
 
     def test_disk_is_full(self):
         """One line and exit code 3 wherever writing fails: the plan, the copy of the picture, a tile, the index. The next run completes it."""

@@ -8,6 +8,7 @@
 #include "libcore/base/stopwatch.h"
 #include "tools/common/output.h"
 #include "tools/common/text.h"
+#include "tools/tiles/old_set.h"
 #include "tools/tiles/tile_jobs.h"
 #include "tools/tiles/tile_plan.h"
 #include "tools/tiles/tile_work.h"
@@ -25,6 +26,7 @@ class TileSetRun {
         Stopwatch watch;
         if (!options_.tiles.job.empty()) return do_one(options_.tiles.job);
         make_folder(options_.output);
+        removed_ = make_way(options_.output, planned_.plan);
         write_plan(options_.output, planned_.plan);
         if (options_.tiles.plan) return plan_report(planned_, options_);
         TileWork work(planned_, options_, context_);
@@ -92,6 +94,7 @@ class TileSetRun {
                          {"kept", work.kept()},
                          {"missing", index.missing.size()},
                          {"seconds", seconds}};
+        if (removed_ > 0) report["removed"] = removed_;
         return report;
     }
 
@@ -115,6 +118,7 @@ class TileSetRun {
     const BuildOptions& options_;
     Context& context_;
     PlannedTileSet planned_;
+    std::int64_t removed_ = 0;
 };
 
 }  // namespace
@@ -145,6 +149,8 @@ void print_tile_set(const Report& report, std::ostream& out) {
     for (const Report& level : report["levels"]) bytes += level["bytes"].get<std::uint64_t>();
     table.add("files", format_bytes(bytes));
     if (report["kept"] != 0) table.add("kept", cat(report["kept"], " tiles of an earlier run"));
+    if (report.contains("removed"))
+        table.add("removed", cat(report["removed"], " files of tiles of the set that was there before"));
     if (report["missing"] != 0) table.add("missing", cat(report["missing"], " tiles"));
     table.add("time", cat(number("seconds"), " s"));
     table.print(out, 2);

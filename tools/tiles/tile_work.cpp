@@ -151,14 +151,20 @@ TileCommon TileWork::common() const {
     return common;
 }
 
-// Coarser tiles of an earlier run were made without this one if it could not be made then.
+// An index of an earlier run tells of other files, and coarser tiles were made without this one if it could
+// not be made then.
 void TileWork::forget_coarser(TileName tile) const {
     const TileGrid& grid = planned_.jobs.grid;
+    remove(kIndexFile);
     while (tile.level + 1 < grid.levels()) {
         tile = grid.parent(tile);
-        std::error_code is_not_there;
-        std::filesystem::remove(in_set(folder_, tile_record(tile)), is_not_there);
+        remove(tile_record(tile));
     }
+}
+
+void TileWork::remove(const std::string& path) const {
+    std::error_code is_not_there;
+    std::filesystem::remove(in_set(folder_, path), is_not_there);
 }
 
 void TileWork::make(const TileName& tile, const Progress& progress) {
@@ -188,6 +194,8 @@ void TileWork::make(const TileName& tile, const Progress& progress) {
         if (!options_.tiles.job.empty())
             context_.warnings.push_back(cat("tile ", tile_text(tile), " is left out: ", error.what()));
     }
+    if (record.files.empty())  // those of an earlier plan
+        for (const std::string& file : {tile_container(tile), tile_view(tile)}) remove(file);
     write_record(folder_, record);
     ++made_;
 }

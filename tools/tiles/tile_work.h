@@ -33,6 +33,7 @@ class TileWork {
     void sample(int row, const Progress& progress);
     void find_threshold();
     void forget_coarser(TileName tile) const;
+    void remove(const std::string& path) const;
     void make(const TileName& tile, const Progress& progress);
     void build(TileRecord& record, const Progress& progress);
     void coarsen(TileRecord& record);
