@@ -100,7 +100,9 @@ std::vector<Param> make_table() {
         {.name = "error",
          .group = size,
          .kind = number(any_error, stop, &StopParams::error),
-         .help = "Largest quadric error that a collapse may reach",
+         .help =
+             "Largest quadric error that a collapse may reach, as imgmesh-info tells it: some 20000 for 1 % "
+             "of a photograph's pixels as vertices, 1000 for 5 %, 100 for 15 %",
          .listed = kWhereItStops},
         {.name = "rms",
          .group = size,

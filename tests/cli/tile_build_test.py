@@ -86,6 +86,17 @@ class TileBuild(CliCase):
                 self.assertEqual(self.files_of_set(), {**expected, **own})
                 shutil.rmtree(self.folder / "set")
 
+    def test_small_error(self):
+        """What keeps most pixels is told, and refused where there is no memory for it."""
+        result = self.build_set("--error", "0.001", "--preset", "fast")
+        self.assertRegex(result.stderr, r"warning: a.png: tile 0/._. keeps \d+ % of its pixels as vertices by --error 0.001")
+        self.assertEqual(len(result.stderr.splitlines()), 1)
+        shutil.rmtree(self.folder / "set")
+        picture_files.write_float(self.folder / "a.tif", picture_files.noise(1100, 1000), "uint8")
+        result = self.build_set("--tiles", "2048", "--error", "10", "--max-memory", "500M", picture="a.tif", code=5)
+        self.assert_error_lines("imgmesh-build", result, 5, 1)
+        self.assertIn("--error 10", result.stderr)
+
     def test_folder_with_other_files(self):
         """A file of a set's name that is no set's is not replaced."""
         for name in ("index.json", "plan.json", "tileset.json", "threshold.json"):

@@ -8,17 +8,12 @@
 #include "formats/tileset/tile_set_files.h"
 #include "libcore/pipeline/param_table.h"
 #include "tools/common/names.h"
+#include "tools/tiles/tile_memory.h"
 
 namespace fs = std::filesystem;
 
 namespace imgmesh {
 namespace {
-
-// What the work on a tile of so many pixels takes. Measured: docs/scale.md.
-double tile_bytes(double pixels) {
-    constexpr double kBytesOfPixel = 130, kOwnBytes = 120e6;
-    return kOwnBytes + kBytesOfPixel * pixels;
-}
 
 std::string option_text(std::string_view name, std::string_view value) {
     return cat("--", name, value.empty() ? "" : " ", value);
@@ -177,8 +172,10 @@ PlannedTileSet plan_tile_set(const BuildOptions& o, Context& context) {
         planned.common.space = tile_space(like, planned.params, gamut_of_all(o, whole, planned.mask));
         planned.common.sample_type = facts.sample_type;
         const double side = *o.tiles.size + 1.0;
-        context.memory.take(cat("a tile of ", *o.tiles.size, " pixels"), tile_bytes(side * side));
         planned.common.density = planned.vertices > 0 ? 100 * planned.vertices / pixels : 1;
+        const double held = std::min<double>(side, facts.width) * std::min<double>(side, facts.height);
+        context.memory.take(cat("a tile of ", *o.tiles.size, " pixels"),
+                            tile_bytes(held, planned.common.density / 100));
         planned.plan = {.generator = context.generator,
                         .source = source_of(o.input),
                         .width = facts.width,
@@ -233,7 +230,7 @@ Report plan_report(const PlannedTileSet& planned, const BuildOptions& o) {
              {"needs", job.needs},
              {"output", job.output},
              {"command", command},
-             {"memory_mb", static_cast<int>(tile_bytes(held) / 1e6) + 1},
+             {"memory_mb", static_cast<int>(tile_bytes(held, planned.common.density / 100) / 1e6) + 1},
              {"seconds", static_cast<int>(kStartSeconds + kSecondsOfMegapixel * pixels / 1e6) + 1}});
     }
     return {{"format", "imgmesh-tile-jobs"}, {"version", 1},          {"out", o.output},

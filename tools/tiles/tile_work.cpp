@@ -22,6 +22,7 @@
 #include "tools/common/output.h"
 #include "tools/common/text.h"
 #include "tools/tiles/threshold_files.h"
+#include "tools/tiles/tile_memory.h"
 #include "tools/tiles/tile_pixels.h"
 
 namespace imgmesh {
@@ -197,6 +198,10 @@ void TileWork::make(const TileName& tile, const Progress& progress) {
     if (record.files.empty())  // those of an earlier plan
         for (const std::string& file : {tile_container(tile), tile_view(tile)}) remove(file);
     write_record(folder_, record);
+    if (const std::string text = density_warning(record, planned_); !text.empty() && !told_dense_) {
+        context_.warnings.push_back(cat(options_.input, ": ", text));
+        told_dense_ = true;  // most others are like it
+    }
     ++made_;
 }
 
@@ -206,6 +211,7 @@ void TileWork::build(TileRecord& record, const Progress& progress) {
     const TilePixels& source = pixels();
     TilePart part = reading([&] { return source.read_tile(grid, tile, planned_.mask); });
     if (part.mask.has_none()) return;
+    check_density(part.image, planned_, context_.max_memory);
     const TileCommon shared = common();
     const TileSides sides = sides_of_tile(part.image, planned_.params, shared, part.mask);
     const FeatureImage feature = tile_features(part.image, shared, part.mask.mask);

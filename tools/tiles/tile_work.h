@@ -48,6 +48,7 @@ class TileWork {
     const std::string folder_, key_;
     std::unique_ptr<TilePixels> pixels_;
     std::int64_t made_ = 0, kept_ = 0;
+    bool told_dense_ = false;
 };
 
 }  // namespace imgmesh
