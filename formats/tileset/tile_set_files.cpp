@@ -295,6 +295,10 @@ void write_index(const std::string& folder, const TileSetIndex& index) {
 
 TileSetIndex read_index(const std::string& folder) {
     const std::string path = in_set(folder, kIndexFile);
+    if (!fs::exists(fs::symlink_status(path)) && fs::exists(in_set(folder, kPlanFile)))
+        throw Error(ErrorKind::kBadFile, cat(path,
+                                             ": is not there, as the tile set is not complete; the command "
+                                             "that began it goes on"));
     const nlohmann::json document = load(path, kSetFormat);
     const JsonNode root(document, path + ": ");
     root.check_members(
@@ -339,7 +343,9 @@ bool is_finished(const std::string& folder, const TileName& tile, const std::str
 
 bool is_tile_set(const std::string& path) {
     std::error_code error;
-    if (fs::is_directory(path, error)) return fs::is_regular_file(in_set(path, kIndexFile), error);
+    if (fs::is_directory(path, error))
+        return fs::is_regular_file(in_set(path, kIndexFile), error) ||
+               fs::is_regular_file(in_set(path, kPlanFile), error);
     return fs::path(path).filename() == kIndexFile && fs::is_regular_file(path, error);
 }
 

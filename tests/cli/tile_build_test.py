@@ -81,7 +81,7 @@ class TileBuild(CliCase):
                     (self.folder / "set" / path).write_bytes(content)
                 self.build_set(*options, "--plan")
                 self.assertNotIn("index.json", self.files_of_set())
-                self.assert_error("imgmesh-info", ["set"], 3)
+                self.assert_error("imgmesh-info", ["set"], 4, "not complete")
                 self.build_set(*options)
                 self.assertEqual(self.files_of_set(), {**expected, **own})
                 shutil.rmtree(self.folder / "set")

@@ -1,5 +1,7 @@
 """Tile sets as the tools read them: facts, verdicts, pictures, meshes."""
 import json
+import os
+import resource
 import shutil
 import subprocess
 
@@ -50,6 +52,63 @@ class TileSets(CliCase):
         path.write_text(json.dumps(index))
         self.assert_error("imgmesh-info", ["set"], 5, "version 2")
         self.report("imgmesh-info", "set", "--validate", code=5)
+
+    def test_damaged_tiles(self):
+        """Every tool that reads the pixels of a tile, and the validator, tell of it in one line, at once."""
+        tile = self.folder / "set/0/0_0.glb"
+        other = self.folder / "set/0/1_0.glb"
+        sound = tile.read_bytes()
+        damages = {"swapped": lambda: (tile.write_bytes(other.read_bytes()), other.write_bytes(sound)),
+                   "truncated": lambda: tile.write_bytes(sound[:len(sound) // 2]), "empty": lambda: tile.write_bytes(b""),
+                   "gone": lambda: None, "no folder": lambda: shutil.rmtree(tile.parent), "a folder": tile.mkdir,
+                   "a pipe": lambda: os.mkfifo(tile), "a loop": lambda: tile.symlink_to(tile.name)}
+        for name, damage in damages.items():
+            with self.subTest(damage=name):
+                shutil.copytree(self.folder / "set", self.folder / "kept")
+                tile.unlink()
+                damage()
+                result = self.run_tool("imgmesh-info", "set", "--validate", "--quiet")
+                self.assert_error_lines("imgmesh-info", result, 4, 1)
+                for tool, output in (("imgmesh-reconstruct", "a.png"), ("imgmesh-convert", "a.ply"), ("imgmesh-segment", "a.tif")):
+                    self.assert_error_lines(tool, self.run_tool(tool, "set", "-o", output), 4, 1)
+                shutil.rmtree(self.folder / "set")
+                (self.folder / "kept").rename(self.folder / "set")
+
+    def test_hostile_index(self):
+        """Numbers, names and depths that no set has: one line, exit code 4, and no memory is taken for them."""
+        path = self.folder / "set" / "index.json"
+        sound = path.read_text()
+
+        def with_memory_of_1_gb():
+            resource.setrlimit(resource.RLIMIT_AS, (1 << 30, 1 << 30))
+
+        def assert_refused(text):
+            path.write_text(text)
+            result = self.run_tool("imgmesh-info", "set", "--validate", "--quiet", preexec_fn=with_memory_of_1_gb)
+            self.assert_error_lines("imgmesh-info", result, 4, 1)
+
+        for text in ("", "null", "[" * 1000000, '{"a":' * 300000, sound[:500]):
+            assert_refused(text)
+        hostile = {"width": (-1, 0, 1e300, 2 ** 31, 2 ** 63), "tile": (0, -16, 1e300, 2 ** 30), "bytes": (-1, 2 ** 63, 1e300),
+                   "vertices": (-1, 1e300, 2 ** 63 - 1), "path": ("../set/0/0_0.glb", "/etc/passwd", "0/../0/0_0.glb", "a\0b")}
+        for name, values in hostile.items():
+            for value in values:
+                index = json.loads(sound)
+                first = index["tiles"][0]
+                (index["plan"] if name in index["plan"] else first if name in first else first["files"][0])[name] = value
+                with self.subTest(member=name, value=value):
+                    assert_refused(json.dumps(index))
+        index = json.loads(sound)
+        index["plan"].update(width=2 ** 30, height=2 ** 30, tile=16)
+        assert_refused(json.dumps(index))
+        index["tiles"] = index["missing"] = []
+        assert_refused(json.dumps(index))
+
+    def test_set_that_is_not_complete(self):
+        (self.folder / "set" / "index.json").unlink()
+        self.assert_error("imgmesh-info", ["set"], 4, "not complete")
+        self.assert_error("imgmesh-reconstruct", ["set", "-o", "a.png"], 4, "not complete")
+        self.assertFalse(self.report("imgmesh-info", "set", "--validate", code=4)["valid"])
 
     def test_pictures(self):
         """A pixel of a line that two tiles share is drawn from the one to the right of it, or below."""

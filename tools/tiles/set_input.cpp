@@ -13,6 +13,10 @@ MeshImage SetInput::read(const TileName& tile) const {
     const TileRecord* const record = find_tile(index, tile);
     if (!record || record->files.empty()) return {};
     const std::string file = in_set(folder, record->files[0].path);
+    // A tile of another place or of an earlier set would do, too.
+    if (!has_content(folder, record->files[0]))
+        throw Error(ErrorKind::kBadFile,
+                    cat(file, ": is not there, or has other bytes than the index tells"));
     MeshImage image = read_container(file, limits).mesh_image;
     const GridSize size = level_size(grid(), tile);
     if (static_cast<const GridSize&>(image.source) != size)

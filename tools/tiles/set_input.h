@@ -19,7 +19,7 @@ struct SetInput {
 
     TileGrid grid() const { return index.plan.grid(); }
     /// Returns the tile, or no levels if there is none: it is missing, or its pixels are outside the mask.
-    /// Throws Error(kBadFile) if it is not of its place in the picture, and as read_container() does.
+    /// Throws Error(kBadFile) if it is not the file that the index tells, and as read_container() does.
     MeshImage read(const TileName& tile) const;
     /// Returns what all tiles have alike: that of the first tile of a level. Throws Error(kUnsupported) if
     /// the level has none.
