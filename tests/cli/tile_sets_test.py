@@ -129,14 +129,14 @@ class TileSets(CliCase):
         self.assertEqual(a.tolist(), b.tolist())
 
     def test_regions(self):
-        """Labels of the whole picture without gaps; options about the whole picture are refused."""
+        """Labels of the whole picture without gaps."""
         report = self.report("imgmesh-segment", "set", "-o", "labels.tif")
         self.assertEqual(report["tiles"], 8)
         labels = picture_files.read(self.folder / "labels.tif")
         self.assertEqual(labels.shape[:2], (60, 100))
         found = {round(label * (2**32 - 1)) for label in labels.ravel().tolist()}
         self.assertEqual(found, set(range(report["regions"])))
-        self.assert_error("imgmesh-segment", ["set", "-o", "a.tif", "--segments", "5"], 5, "--segments")
+        self.assertEqual(self.report("imgmesh-segment", "set", "-o", "a.tif", "--level", "1")["tiles"], 2)
 
     def test_missing_tile(self):
         """The picture has a transparent place, and says so."""

@@ -205,3 +205,50 @@ TEST_CASE("min size: holds for cells that smoothed outlines cut off") {
     CHECK(smallest(2) >= 2);
     CHECK(smallest(50) >= 50);
 }
+
+// Several pairs share a place of the small image. The first of them tells the direction, in whichever window
+// it is.
+TEST_CASE("contrasts of windows are those of the whole picture") {
+    constexpr int kWidth = 60, kHeight = 40, kFactor = 3;
+    std::mt19937 random(3);
+    const FeatureImage image = grey(kWidth, kHeight, [&](int x, int) { return x + int(random() % 40); });
+    Grid<Id> regions(GridSize{kWidth, kHeight});
+    for (std::size_t i = 0; i < regions.size(); ++i)
+        regions[i] = Id(regions.x_of(i) / 7 + regions.y_of(i) / 5 * 10 + int(random() % 12 == 0));
+    const auto contrasts = [&](const std::vector<PixelRect>& parts) {
+        ContourPlaces places(image, kFactor);
+        const auto each_window = [&](int margin, const auto& act) {
+            for (const PixelRect& part : parts) {
+                const PixelRect rect{std::max(0, part.left - margin), std::max(0, part.top - margin),
+                                     std::min(kWidth, part.right + margin),
+                                     std::min(kHeight, part.bottom + margin)};
+                Grid<Id> window(GridSize{rect.width(), rect.height()});
+                for (std::size_t i = 0; i < window.size(); ++i)
+                    window[i] = regions.at(rect.left + window.x_of(i), rect.top + window.y_of(i));
+                act(window, rect,
+                    PixelRect{part.left - rect.left, part.top - rect.top, part.right - rect.left,
+                              part.bottom - rect.top});
+            }
+        };
+        each_window(places.margin(), [&](const Grid<Id>& window, const PixelRect& at, const PixelRect& own) {
+            places.add(window, at.left, at.top, own);
+        });
+        places.measure(small_image(image, regions, kFactor));
+        PairContrasts all{std::vector<float>(regions.size()), std::vector<float>(regions.size())};
+        each_window(1, [&](const Grid<Id>& window, const PixelRect& at, const PixelRect& own) {
+            const PairContrasts found = places.contrasts(window, at.left, at.top, own);
+            for (std::size_t i = 0; i < window.size(); ++i) {
+                const std::size_t j = regions.index(at.left + window.x_of(i), at.top + window.y_of(i));
+                all.right[j] += found.right[i];
+                all.down[j] += found.down[i];
+            }
+        });
+        return all;
+    };
+    const PairContrasts whole = contrasts({{0, 0, kWidth, kHeight}});
+    // The right half first, so that a place is often found before its first pair.
+    const PairContrasts halves = contrasts({{31, 0, kWidth, kHeight}, {0, 17, 31, kHeight}, {0, 0, 31, 17}});
+    CHECK(whole.right == halves.right);
+    CHECK(whole.down == halves.down);
+    CHECK(std::ranges::count(whole.right, 0.0f) < std::ranges::ssize(whole.right));
+}

@@ -1,7 +1,6 @@
 #include "tools/tiles/set_segment.h"
 
 #include <algorithm>
-#include <map>
 #include <nlohmann/json.hpp>
 
 #include "formats/export/label_files.h"
@@ -9,11 +8,12 @@
 #include "formats/files/extension.h"
 #include "libcore/base/error.h"
 #include "libcore/base/index.h"
-#include "libcore/segment/join_regions.h"
+#include "libcore/segment/segment_parts.h"
 #include "tools/common/choices.h"
 #include "tools/common/memory.h"
 #include "tools/common/names.h"
 #include "tools/common/output.h"
+#include "tools/common/targets.h"
 #include "tools/common/text.h"
 #include "tools/tiles/set_input.h"
 
@@ -21,13 +21,11 @@ namespace imgmesh {
 namespace {
 
 // A pixel of a tile takes this while the tile is read and segmented, as that of a container does
-// (docs/limits.md), and one of the whole picture: its runs of labels [bytes].
-constexpr double kTileBytes = 120, kRunBytes = 0.5;
+// (docs/limits.md) [bytes].
+constexpr double kTileBytes = 120;
 
 void check_whole(const SegmentOptions& o) {
-    const std::pair<const char*, bool> options[] = {{"--segments", o.params.segments || o.params.clearest},
-                                                    {"--superpixels", o.params.superpixels.has_value()},
-                                                    {"--min-size", o.params.min_size != 1},
+    const std::pair<const char*, bool> options[] = {{"--superpixels", o.params.superpixels.has_value()},
                                                     {"--image", !o.image.empty()},
                                                     {"--outlines", !o.outlines.empty()},
                                                     {"--flat", !o.flat.empty()},
@@ -39,141 +37,39 @@ void check_whole(const SegmentOptions& o) {
                                                     {"--mask", !o.mask.empty()}};
     for (const auto& [name, is_given] : options)
         if (is_given)
-            throw Error(ErrorKind::kUnsupported, cat(name, ": ", o.input,
-                                                     " is a tile set, which is segmented tile by tile, with "
-                                                     "--threshold alone"));
+            throw Error(
+                ErrorKind::kBadArgument,
+                cat(name, ": ", o.input, " is a tile set, of which regions can be had as labels alone"));
 }
 
-// As many pixels of a row side by side, with the same label.
-struct Run {
-    Id label = kNone;
-    int pixels = 0;
-};
-
-// The regions of a tile: numbers from `first` on among those of all tiles, at its own pixels, row by row.
-struct TileRuns {
-    PixelRect own;  // in the picture
-    std::vector<Run> runs;
-};
-
-// The labels of the last pixels of tiles, whose lines their neighbours to the right and below share.
-struct SharedLines {
-    std::vector<Id> right;                   // of the tile before in the row
-    std::map<int, std::vector<Id>> bottoms;  // by column: of the row above
-};
-
-std::vector<Id> column_of(const Grid<Id>& labels, int x) {
-    std::vector<Id> line;
-    for (int y = 0; y < labels.height; ++y) line.push_back(labels.at(x, y));
-    return line;
-}
-std::vector<Id> row_of(const Grid<Id>& labels, int y) {
-    std::vector<Id> line;
-    for (int x = 0; x < labels.width; ++x) line.push_back(labels.at(x, y));
-    return line;
+// Each tile owns its pixels but those of lines that the next ones share.
+PartGrid parts_of(const TileGrid& grid, int level) {
+    const GridSize size = level_size(grid, level);
+    PartGrid parts;
+    for (int column = 0; column < grid.columns(level); ++column)
+        parts.x.push_back(own_level_rect(grid, {level, column, 0}).left);
+    for (int row = 0; row < grid.rows(level); ++row)
+        parts.y.push_back(own_level_rect(grid, {level, 0, row}).top);
+    parts.x.push_back(size.width);
+    parts.y.push_back(size.height);
+    return parts;
 }
 
-// The first pass: the regions of the tiles, and which of them are one.
-class TilePass {
-  public:
-    TilePass(const SetInput& set, const SegmentOptions& o)
-        : set_(set), level_(o.level), params_(params_of(o)), grid_(set.grid()), joiner_(params_.threshold) {}
-
-    void run(const Progress& progress) {
-        for (int row = 0; row < grid_.rows(level_); ++row) {
-            lines_.right.clear();
-            for (int column = 0; column < grid_.columns(level_); ++column) {
-                progress((row + column / double(grid_.columns(level_))) / grid_.rows(level_), "segment");
-                segment_tile({level_, column, row});
-            }
-        }
+PicturePart part_of(const SetInput& set, const TileName& tile) {
+    const MeshImage image = set.read(tile);
+    if (image.levels.empty()) return {};
+    const FeatureImage luv = reconstruct_luv(image.levels[0]);
+    const PixelMap& map = image.levels[0].map;
+    const PixelRect own = own_level_rect(set.grid(), tile);
+    const GridSize size{own.width(), own.height()};
+    PicturePart part{{size.width, size.height, {}, map.precision}, {size.width, size.height, 3, {}}};
+    for (int y = 0; y < size.height; ++y) {
+        const std::span<const PixelCoord> row = map.row(y).first(as_index(size.width));
+        part.map.values.insert(part.map.values.end(), row.begin(), row.end());
+        const std::span<const float> colors = luv.row(y).first(3 * as_index(size.width));
+        part.luv.data.insert(part.luv.data.end(), colors.begin(), colors.end());
     }
-
-    const std::vector<TileRuns>& tiles() const { return tiles_; }
-    const RegionJoiner& joiner() const { return joiner_; }
-    std::int64_t segmented() const { return segmented_; }
-    std::size_t cells() const { return cells_; }
-    float merged_up_to() const { return merged_up_to_; }
-
-  private:
-    void segment_tile(const TileName& tile) {
-        const PixelRect own = own_level_rect(grid_, tile);
-        TileRuns& out = tiles_.emplace_back(TileRuns{own, {}});
-        const MeshImage image = set_.read(tile);
-        if (image.levels.empty()) {
-            lines_.right.clear();
-            lines_.bottoms.erase(tile.column);
-            return;
-        }
-        const FeatureImage picture = reconstruct_luv(image.levels[0]);
-        Segmentation result = segment(image.levels[0], picture, params_);
-        LabelImage& labels = result.labels;
-        ++segmented_;
-        cells_ += result.hierarchy.cells;
-        if (result.merges > 0)
-            merged_up_to_ = std::max(merged_up_to_, result.hierarchy.merges[result.merges - 1].height);
-
-        std::vector<TileRegion> regions(labels.count);
-        const std::vector<RegionFacts> facts = region_facts(labels, picture);
-        for (std::size_t i = 0; i < facts.size(); ++i) regions[i].color = facts[i].color;
-        const std::int64_t width = level_size(grid_, level_).width;
-        for (int y = 0; y < own.height(); ++y)
-            for (int x = 0; x < own.width(); ++x)
-                if (const Id label = labels.at(x, y); label != kNone && regions[label].pixels++ == 0)
-                    regions[label].first = (own.top + y) * width + own.left + x;
-        const Id first = joiner_.add(regions);
-        for (Id& label : labels.values)
-            if (label != kNone) label += first;
-        add_runs(out, labels);
-        join(tile, labels);
-    }
-
-    static void add_runs(TileRuns& out, const Grid<Id>& labels) {
-        for (int y = 0; y < out.own.height(); ++y)
-            for (int x = 0; x < out.own.width(); ++x) {
-                const Id label = labels.at(x, y);
-                if (x == 0 || out.runs.back().label != label) out.runs.push_back({label, 0});
-                ++out.runs.back().pixels;
-            }
-        out.runs.shrink_to_fit();
-    }
-
-    void join(const TileName& tile, const Grid<Id>& labels) {
-        if (!lines_.right.empty()) joiner_.add_line(lines_.right, column_of(labels, 0));
-        if (const auto above = lines_.bottoms.find(tile.column); above != lines_.bottoms.end())
-            joiner_.add_line(above->second, row_of(labels, 0));
-        lines_.right = column_of(labels, labels.width - 1);
-        lines_.bottoms[tile.column] = row_of(labels, labels.height - 1);
-    }
-
-    const SetInput& set_;
-    int level_;
-    SegmentParams params_;
-    TileGrid grid_;
-    RegionJoiner joiner_;
-    SharedLines lines_;
-    std::vector<TileRuns> tiles_;  // row by row
-    std::int64_t segmented_ = 0;
-    std::size_t cells_ = 0;
-    float merged_up_to_ = 0;  // of all tiles
-};
-
-// Gives a row of tiles the regions' numbers in the whole picture.
-std::vector<Id> labels_of_row(std::span<const TileRuns> tiles, int width, const std::vector<Id>& numbers) {
-    std::vector<Id> labels(as_index(width) * as_index(tiles.front().own.height()), kNone);
-    for (const TileRuns& tile : tiles) {
-        int x = 0, y = 0;
-        for (const Run& run : tile.runs) {
-            const std::size_t at = as_index(y) * as_index(width) + as_index(tile.own.left + x);
-            if (run.label != kNone)
-                std::fill_n(labels.begin() + static_cast<std::ptrdiff_t>(at), run.pixels, numbers[run.label]);
-            x += run.pixels;
-            if (x < tile.own.width()) continue;
-            x = 0;
-            ++y;
-        }
-    }
-    return labels;
+    return part;
 }
 
 }  // namespace
@@ -191,20 +87,30 @@ Report segment_set(const SegmentOptions& o, Context& context) {
     const bool streams = extension == ".tif" || extension == ".tiff";
     const double pixels = double(size.width) * size.height;
     const double held = streams ? double(sizeof(Id)) * size.width * (grid.step() + 1) : 12 * pixels;
-    context.memory.take(
-        cat(o.input, ": labels of ", size.width, "x", size.height, " pixels"),
-        kProgramMemory + held + kRunBytes * pixels + kTileBytes * (grid.step() + 1.0) * (grid.step() + 1.0));
-
-    TilePass pass(set, o);
-    pass.run([&](double f, std::string_view stage) { context.progress(0.9 * f, stage); });
-    const JoinedRegions joined = pass.joiner().finish();
+    const SegmentParams params = params_of(o);
+    const PartGrid parts = parts_of(grid, o.level);
+    context.memory.take(cat(o.input, ": labels of ", size.width, "x", size.height, " pixels"),
+                        kProgramMemory + held + part_memory(parts, params) +
+                            kTileBytes * (grid.step() + 1.0) * (grid.step() + 1.0));
+    std::int64_t tiles = 0;
+    for (const TileRecord& record : set.index.tiles)
+        tiles += record.tile.level == o.level && !record.files.empty();
+    const PartSegmentation result =
+        segment_parts({parts,
+                       [&](int column, int row) {
+                           return part_of(set, {o.level, column, row});
+                       }},
+                      params, [&](double f, std::string_view stage) { context.progress(0.9 * f, stage); });
+    std::vector<std::string> missed;
+    if (!result.missed.empty()) missed = {cat("--segments: ", result.missed)};
+    tell_missed(o.input, missed, o.strict, context.warnings);
 
     context.progress(0.9, "write");
-    const std::span<const TileRuns> tiles = pass.tiles();
-    const std::size_t columns = as_index(grid.columns(o.level));
     const auto each_row = [&](const auto& put) {
-        for (std::size_t i = 0; i < tiles.size(); i += columns)
-            put(labels_of_row(tiles.subspan(i, columns), size.width, joined.numbers));
+        for (int row = 0; row < parts.rows(); ++row) {
+            const PixelRect rect = parts.rect(0, row);
+            put(result.labels.window({0, rect.top, size.width, rect.bottom}).values);
+        }
     };
     if (streams) {
         LabelTiff tiff(o.output, size.width, size.height, context.overwrite);
@@ -215,21 +121,27 @@ Report segment_set(const SegmentOptions& o, Context& context) {
         each_row([&](const std::vector<Id>& labels) { all.insert(all.end(), labels.begin(), labels.end()); });
         write_labels(o.output, size.width, size.height, all, context.overwrite);
     }
-    const auto [least, most] = std::ranges::minmax_element(joined.pixels);
-    return {{"input", o.input},
-            {"output", o.output},
-            {"level", o.level},
-            {"distance", name_of(distance_choices(), params_of(o).distance)},
-            {"width", size.width},
-            {"height", size.height},
-            {"tiles", pass.segmented()},
-            {"cells", pass.cells()},
-            {"regions", joined.pixels.size()},
-            {"joined", joined.across},
-            {"min_pixels", *least},
-            {"max_pixels", *most},
-            {"merged_up_to", pass.merged_up_to()},
-            {"target_reached", true}};
+    const std::vector<std::int64_t> sizes = result.labels.count_pixels(result.count),
+                                    spread = result.labels.count_parts(result.count);
+    const auto [least, most] = std::ranges::minmax_element(sizes);
+    const std::vector<Merge>& merges = result.hierarchy.merges;
+    Report report = {
+        {"input", o.input},
+        {"output", o.output},
+        {"level", o.level},
+        {"distance", name_of(distance_choices(), params.distance)},
+        {"width", size.width},
+        {"height", size.height},
+        {"tiles", tiles},
+        {"cells", result.cells},
+        {"regions", result.count},
+        {"joined", std::ranges::count_if(spread, [](std::int64_t parts_with) { return parts_with > 1; })},
+        {"min_pixels", *least},
+        {"max_pixels", *most},
+        {"merged_up_to", result.merges == 0 ? 0.0f : merges[result.merges - 1].height}};
+    if (result.merges < merges.size()) report["next_merge"] = merges[result.merges].height;
+    report.update(target_report(missed));
+    return report;
 }
 
 }  // namespace imgmesh
