@@ -16,7 +16,7 @@ namespace imgmesh {
 /// How parts of a picture are read.
 enum class RegionAccess {
     kDirect,  ///< from the blocks that they touch
-    kSpool,   ///< only after spool_picture() has rewritten it; until then the whole picture is held
+    kSpool,   ///< better after spool_picture() has rewritten it; until then much is read for each part
     kWhole    ///< the whole picture is held, which ReadImageOptions::limits bound
 };
 
@@ -26,7 +26,9 @@ struct PictureFacts {
     std::vector<std::string> channel_names;
     SampleType sample_type = SampleType::kUint8;
     RegionAccess access = RegionAccess::kWhole;
-    std::string why;                         ///< not kDirect: one clause, as in "it is a PNG"
+    std::string why;  ///< not kDirect: one clause, as in "it is a PNG"
+    bool holds_all =
+        false;  ///< the whole picture is held, or may be where parts are not read from the top on
     int block_width = 0, block_height = 0;   ///< as stored [pixels]; 0 for kWhole
     bool fits_colors = false;                ///< RegionSource::color_space() has to look at all pixels
     std::vector<std::string> warnings = {};  ///< each one sentence without the file's name

@@ -3,6 +3,7 @@
 #include "formats/files/random_file.h"
 #include "formats/picture/decode/spool_tag.h"
 #include "formats/picture/regions/row_source.h"
+#include "formats/picture/regions/spool_exr.h"
 #include "formats/picture/regions/spool_tiff.h"
 #include "formats/picture/regions/tiled_rows.h"
 #include "libcore/base/error.h"
@@ -51,11 +52,13 @@ std::vector<std::string> spool_picture(const std::string& path, const std::strin
             return spool_rows(*open_png_rows(path, options), out_path);
         case PictureFormat::kJpeg:
             return spool_rows(*open_jpeg_rows(path, options), out_path);
+        case PictureFormat::kExr:
+            return spool_exr(path, out_path, options);
         case PictureFormat::kTiff:
             return spool_tiff(path, out_path, options);
         default:
             throw Error(ErrorKind::kUnsupported,
-                        cat(path, ": only PNG, JPEG and TIFF are rewritten by rows"));
+                        cat(path, ": only PNG, JPEG, TIFF and EXR are rewritten by rows"));
     }
 }
 

@@ -11,6 +11,7 @@
 #include <random>
 
 #include "formats/picture/region_source.h"
+#include "formats/picture/spool.h"
 #include "libcore/base/error.h"
 #include "tests/support/exr_files.h"
 
@@ -345,4 +346,76 @@ TEST_CASE("regions: a sweep covers each pixel once, and passes broken blocks ove
             CHECK(calls == 1);
         }
     }
+}
+
+TEST_CASE("spool exr: lines become tiles of which parts are what the picture has") {
+    const TemporaryFolder folder;
+    const std::string path = folder / "s.exr", copy = folder / "c";
+    constexpr int kWide = 300, kHigh = 290;  // more than a tile each way
+    constexpr std::size_t kCount = std::size_t{kWide} * kHigh;
+    const std::vector<ExrPlane> planes = {{"R", 0, Imf::HALF, noise(1, kCount)},
+                                          {"G", 0, Imf::FLOAT, noise(2, kCount)},
+                                          {"B", 0, Imf::HALF, noise(3, kCount)},
+                                          {"A", 0, Imf::HALF, noise(4, kCount)},
+                                          {"id", 0, Imf::UINT, {}, 1, 77},
+                                          {"l.R", 1},
+                                          {"l.G", 2},
+                                          {"l.B", 0, Imf::HALF, noise(5, kCount)}};
+    const auto windows = [](Imf::Header& header) {
+        header.dataWindow() = {{-7, 20}, {kWide - 8, kHigh + 19}};
+        header.displayWindow() = {{0, 0}, {kWide + 20, kHigh}};
+        header.compression() = Imf::PIZ_COMPRESSION;
+        Imf::addChromaticities(header, {});
+        header.insert("story", Imf::StringAttribute("long"));
+    };
+    const auto check_spooled = [&](const ReadImageOptions& options) {
+        spool_picture(path, copy, options);
+        check_copy(path, copy, 170, options);
+        CHECK(read_image_file(copy, options).metadata.size() ==
+              read_image_file(path, options).metadata.size());
+    };
+    write_exr_file(path, {{"", planes, windows}}, kWide, kHigh);
+    check_spooled({});
+    check_spooled({.channels = std::vector<std::string>{"R", "id"}});
+    check_spooled({.layer = "l", .channels = std::vector<std::string>()});
+    write_exr_file(
+        path, {{"depth", {{"Z", 1, Imf::FLOAT, noise(9, kCount)}}, windows}, {"beauty", planes, windows}},
+        kWide, kHigh);
+    check_spooled({});
+    check_spooled({.part = "1"});
+    check_spooled({.part = "depth", .channels = std::vector<std::string>{"Z"}});
+    // Of tiles and of chroma there is none.
+    write(path, colors(Imf::HALF), tiles(16, 16));
+    CHECK_THROWS_AS(spool_picture(path, copy), Error);
+}
+
+TEST_CASE("spool exr: broken lines are missing tiles, and wide packed lines are rewritten") {
+    const TemporaryFolder folder;
+    const std::string path = folder / "s.exr", copy = folder / "c";
+    constexpr std::size_t kHigh = 600;
+    const auto flat = [](Imf::Compression compression) {
+        return std::vector<ExrPart>{{"", exr_colors("", 0.5f, 0.25f, 0.125f), packed(compression)}};
+    };
+    write_exr_file(path, flat(Imf::ZIP_COMPRESSION), 64, kHigh);
+    std::vector<std::uint8_t> bytes = load(path);
+    const std::uint64_t block = entry_at(bytes, table_at(bytes, 38) + 8 * 20);  // lines 320 to 335
+    for (std::size_t i = 0; i < 6; ++i) bytes[block + 12 + i] ^= 0xFF;
+    save(path, bytes);
+    const std::vector<std::string> warnings = spool_picture(path, copy);
+    REQUIRE(warnings.size() == 1);
+    CHECK(warnings[0].find("not all of it can be read") == 0);
+    const RegionSource source(copy);
+    CHECK(failure(source, {0, 0, 64, 256}).empty());
+    CHECK(failure(source, {0, 512, 64, 600}).empty());
+    CHECK(!failure(source, {9, 400, 20, 420}).empty());
+
+    for (const Imf::Compression compression : {Imf::NO_COMPRESSION, Imf::ZIP_COMPRESSION})
+        for (const int width : {4096, 4097}) {
+            write_exr_file(path, flat(compression), width, 3);
+            const bool waste = width > 4096 && compression != Imf::NO_COMPRESSION;
+            const RegionSource wide(path);
+            CHECK(wide.facts().access == (waste ? RegionAccess::kSpool : RegionAccess::kDirect));
+            CHECK(!wide.facts().holds_all);
+            CHECK(wide.read({4000, 2, 4001, 3}).data == std::vector<float>{0.5f, 0.25f, 0.125f});
+        }
 }

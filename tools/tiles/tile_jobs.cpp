@@ -16,7 +16,7 @@ std::string job_name(const TileName& tile) {
 }  // namespace
 
 std::string spool_file(const std::string& key) {
-    return cat(kWorkFolder, "/source-", key.substr(0, 16), ".tif");
+    return cat(kWorkFolder, "/source-", key.substr(0, 16));
 }
 std::string sample_file(int row) {
     return cat(kWorkFolder, "/sample/", row, ".json");

@@ -28,7 +28,7 @@ struct TileJob {
 /// What the list of jobs depends on.
 struct TileJobsPlan {
     TileGrid grid;
-    std::string copy = {};    ///< spool_file() if the picture cannot be read by parts, else ""
+    std::string copy = {};    ///< spool_file() if the picture is rewritten first, else ""
     bool first_pass = false;  ///< the threshold is not known beforehand
 };
 

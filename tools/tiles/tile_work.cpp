@@ -103,7 +103,10 @@ void TileWork::spool(const Progress& progress) {
     if (std::filesystem::exists(planned_.picture)) return;
     make_folder(in_set(folder_, kWorkFolder));
     progress(0, "copy");
-    spool_picture(options_.input, planned_.picture, planned_.read);
+    for (const std::string& warning : spool_picture(options_.input, planned_.picture, planned_.read)) {
+        const std::string line = cat(options_.input, ": ", warning);
+        if (std::ranges::count(context_.warnings, line) == 0) context_.warnings.push_back(line);
+    }
 }
 
 void TileWork::sample(int row, const Progress& progress) {

@@ -24,6 +24,11 @@ class ExrPicture {
 
     int width() const { return shown_.max.x - shown_.min.x + 1; }  ///< of the display window
     int height() const { return shown_.max.y - shown_.min.y + 1; }
+    const Imf::MultiPartInputFile& file() const { return *file_; }
+    Imf::MultiPartInputFile& file() { return *file_; }
+    int part() const { return choice_.part; }
+    const Imf::Header& header() const { return file_->header(choice_.part); }
+    const std::vector<ExrChannel>& channels() const { return choice_.channels; }
     const ExrBlock& block() const { return block_; }
     std::int64_t block_count() const;
 

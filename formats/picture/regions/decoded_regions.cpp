@@ -43,6 +43,7 @@ class DecodedRegions : public RegionReader {
             check_size(path_, facts_.width, facts_.height, header_.zero_pixel.image.channels,
                        options_.limits);
         }
+        facts_.holds_all = !open_ || header_.by_rows;
         facts_.fits_colors = foreign_ && open_;
     }
 
@@ -102,7 +103,7 @@ class DecodedRegions : public RegionReader {
 
     // From the top on, a picture of rows is read without holding it.
     bool goes_back(const PixelRect& region) const {
-        if (facts_.access != RegionAccess::kSpool) return false;
+        if (!header_.by_rows) return false;
         const PixelRect stored = stored_rect(region, orientation_, header_.width, header_.height);
         const std::lock_guard lock(mutex_);
         const bool back = stored.top < next_row_;

@@ -31,7 +31,8 @@ struct PictureHeader {
     int block_width = 0, block_height = 0;
     DecodedPicture zero_pixel;  ///< a picture of one pixel of zeros: what does not depend on pixels
     RegionAccess access = RegionAccess::kDirect;
-    std::string why;                 ///< not kDirect: PictureFacts::why
+    bool by_rows = false;  ///< kSpool: a part that lies above the one before costs all rows down to it
+    std::string why;       ///< not kDirect: PictureFacts::why
     std::uint64_t decode_bytes = 0;  ///< what a decoder takes beside its result, at most
 };
 
@@ -39,7 +40,7 @@ struct PictureHeader {
 ImageLimits source_limits(const ReadImageOptions& options, std::uint64_t file_bytes);
 
 /// `open` makes a decoder for each thread that reads. Without it, and for kWhole, the whole picture is read
-/// when the first region is; for kSpool when one is above the one before, if the limits of an image allow it.
+/// when the first region is; for rows when one is above the one before, if the limits of an image allow it.
 std::unique_ptr<RegionReader> open_decoded(const std::string& path, const ReadImageOptions& options,
                                            PictureHeader header,
                                            std::function<std::unique_ptr<RegionDecoder>()> open);

@@ -4,6 +4,7 @@
 #include "formats/exr/file_input.h"
 #include "formats/picture/decode/exr_picture.h"
 #include "formats/picture/regions/decoded_regions.h"
+#include "formats/picture/regions/spool_exr.h"
 #include "libcore/base/error.h"
 
 namespace imgmesh {
@@ -37,6 +38,10 @@ class ExrDecoder : public RegionDecoder {
             out.access = RegionAccess::kWhole;
             out.why = cat("it is an EXR in blocks of ", block.width, "x", block.height, " pixels and ",
                           block.channels, " channels");
+        }
+        if (out.access == RegionAccess::kDirect && is_spooled(*picture_)) {
+            out.access = RegionAccess::kSpool;
+            out.why = "it is an EXR in packed lines";
         }
         // As packed, as unpacked, and what lies between them; a row or tile of samples; the table of places.
         const std::int64_t samples = block.width * block.height * block.channels;

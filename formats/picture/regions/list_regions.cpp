@@ -116,12 +116,13 @@ class ListRegions : public RegionReader {
         facts_ = facts;
         facts_.fits_colors = space_for(ColorSpace::kDisplayP3) != space_for(ColorSpace::kAdobeRgb);
         facts_.why.clear();
+        facts_.holds_all = false;
         space_ = facts_.fits_colors ? ColorSpace::kSrgb : reader->color_space();
         first_ = tile.path;
     }
 
     static void check_whole(const ListedTile& tile, const PictureFacts& facts) {
-        if (facts.access != RegionAccess::kDirect && std::int64_t{facts.width} * facts.height > kMostWhole)
+        if (facts.holds_all && std::int64_t{facts.width} * facts.height > kMostWhole)
             throw Error(ErrorKind::kUnsupported,
                         cat(tile.path, ": ", facts.why, " of ", facts.width, "x", facts.height,
                             " pixels, and files of a list that are read as a whole have at most ", kMostWhole,

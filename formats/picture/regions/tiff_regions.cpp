@@ -39,6 +39,7 @@ class TiffDecoder : public RegionDecoder {
                 out.block_height = 1;
             } else {
                 out.access = RegionAccess::kSpool;
+                out.by_rows = true;
                 out.why = cat("it is a TIFF in strips of ", layout.block_height, " rows");
             }
             held = layout.width * layout.samples;

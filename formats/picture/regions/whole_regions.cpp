@@ -27,6 +27,7 @@ class WholeRegions : public RegionReader {
         facts_.height = image.height;
         facts_.channel_names = image.channel_names;
         facts_.sample_type = image.sample_type;
+        facts_.holds_all = true;
         facts_.why = "it is in a format that is only read as a whole";
         facts_.warnings = picture_.warnings;
     }
