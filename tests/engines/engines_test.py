@@ -153,6 +153,50 @@ class Engines(unittest.TestCase):
         self.run_snakemake("killed", "local", config=["batch=3"])
         self.assert_same_files("killed")
 
+    def test_broken_part_of_the_picture(self):
+        """Engines make all other tiles and name those that are missing; when the part can be read again, these alone are made."""
+        need("snakemake", "parallel", "jq")
+        parts = self.folder / "parts"
+        parts.mkdir()
+        with Image.open(PICTURE) as whole:
+            for part in range(4):
+                left, top = 250 * (part % 2), 175 * (part // 2)
+                whole.crop((left, top, left + 250, top + 175)).save(parts / f"{part % 2}_{part // 2}.png")
+        broken = parts / "1_1.png"
+        sound, time_of_all = broken.read_bytes(), os.stat(broken).st_mtime_ns
+
+        def write(content):
+            broken.write_bytes(content)
+            os.utime(broken, ns=(time_of_all, time_of_all))  # so that the plan is the same
+
+        write(sound[:1000] + bytes(1000) + sound[2000:])
+        # With an error, as samples of the picture would lack that part, and the number of vertices would be another one.
+        options = ["--error", "20000"]
+        snakemake = {"config": [f"picture={parts}", "batch=3", f"options={' '.join(options)}"]}
+        done = subprocess.run(**self.snakemake("broken-local", "local", **snakemake), check=False)
+        self.assertEqual(done.returncode, 1, done.stdout)
+        self.assertRegex(done.stdout, r"tiles that could not be made: \d+, all others are done: 0/\d_\d: ")
+        command = [TOOL, str(parts), *self.command("broken-parallel")[2:], *options]
+        script = [str(EXAMPLES / "parallel.sh"), "2", *command]
+        done = subprocess.run(script, check=False, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+        self.assertEqual(done.returncode, 4, done.stderr)
+        self.assertRegex(done.stderr, r"error: .*parts: tile 0/\d_\d is missing: ")
+        self.assertTrue(files_of(self.folder / "broken-local") == files_of(self.folder / "broken-parallel"))
+        missing = [tile["tile"] for tile in json.loads((self.folder / "broken-local" / "index.json").read_text())["missing"]]
+        self.assertTrue(0 < len(missing) < 4 * 3, missing)
+        made = {path: path.stat().st_mtime_ns for path in (self.folder / "broken-parallel" / "0").iterdir()
+                if f"0/{path.stem}" not in missing}
+
+        write(sound)
+        self.run_snakemake("broken-local", "local", **snakemake)
+        subprocess.run(script, check=True, stdout=subprocess.DEVNULL)
+        self.assertEqual({path: path.stat().st_mtime_ns for path in made}, made)
+        files = files_of(self.folder / "broken-parallel")
+        self.assertTrue(files_of(self.folder / "broken-local") == files)
+        shutil.rmtree(self.folder / "broken-parallel")
+        subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
+        self.assertTrue(files_of(self.folder / "broken-parallel") == files)
+
     def test_snakemake_through_slurm(self):
         need("snakemake", *slurm_cluster.PROGRAMS)
         with slurm_cluster.slurm_cluster() as environment:
