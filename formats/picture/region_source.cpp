@@ -48,6 +48,8 @@ std::unique_ptr<RegionReader> open_picture_regions(const std::string& path, cons
     switch (probe_picture(path, start).format) {
         case PictureFormat::kExr:
             return open_exr_regions(path, options);
+        case PictureFormat::kPnm:
+            return open_pnm_regions(path, options);
         case PictureFormat::kTiff:
             return open_tiff_regions(path, options);
         case PictureFormat::kJpeg:

@@ -2,11 +2,11 @@
 // Sources: the manual pages pbm(5), pgm(5), ppm(5), pam(5) and pfm(5) of Netpbm.
 #include <algorithm>
 #include <bit>
-#include <charconv>
 #include <cmath>
 #include <string_view>
 
 #include "formats/files/byte_reader.h"
+#include "formats/picture/decode/pam_header.h"
 #include "formats/picture/decode/picture_decoders.h"
 #include "formats/picture/decode/pnm_text.h"
 #include "libcore/base/error.h"
@@ -115,39 +115,6 @@ DecodedPicture read_pfm(Pnm& in, int channels) {
     return out;
 }
 
-struct PamHeader {
-    std::int64_t width = 0, height = 0, depth = 0, largest = 0;
-    std::string type;
-};
-
-PamHeader pam_header(Pnm& in) {
-    PamHeader header;
-    for (;;) {
-        const std::string_view line = in.text.line();
-        if (line == "ENDHDR") return header;
-        if (line.empty() || line[0] == '#') continue;
-        const std::size_t gap = std::min(line.find_first_of(" \t"), line.size());
-        const std::string_view name = line.substr(0, gap);
-        const std::size_t start = std::min(line.find_first_not_of(" \t", gap), line.size());
-        const std::string_view value = line.substr(start);
-        std::int64_t* const number = name == "WIDTH"    ? &header.width
-                                     : name == "HEIGHT" ? &header.height
-                                     : name == "DEPTH"  ? &header.depth
-                                     : name == "MAXVAL" ? &header.largest
-                                                        : nullptr;
-        if (name == "TUPLTYPE") {
-            header.type += (header.type.empty() ? "" : " ") + std::string(value);
-        } else if (!number) {
-            throw in.broken(cat("the PAM's header has a line ", printable(std::string(name)),
-                                ", expected WIDTH, HEIGHT, DEPTH, MAXVAL, TUPLTYPE or ENDHDR"));
-        } else if (const auto [end, failure] =
-                       std::from_chars(value.data(), value.data() + value.size(), *number);
-                   failure != std::errc() || end != value.data() + value.size() || *number < 1) {
-            throw in.broken(cat("the PAM's ", name, " is no number above 0"));
-        }
-    }
-}
-
 // Names by the type where it is one of the manual's, else by the depth, as make_image() gives them.
 void name_channels(const Pnm& in, const PamHeader& header, Image& image) {
     struct Type {
@@ -170,7 +137,7 @@ void name_channels(const Pnm& in, const PamHeader& header, Image& image) {
 }
 
 DecodedPicture read_pam(Pnm& in) {
-    const PamHeader header = pam_header(in);
+    const PamHeader header = pam_header(in.file.path, in.text);
     Scale scale{header.largest};
     if (scale.largest < 1 || scale.largest > 65535)
         throw in.broken(cat("the largest value is ", scale.largest, ", expected 1 to 65535"));

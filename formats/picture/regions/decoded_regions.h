@@ -46,6 +46,8 @@ std::unique_ptr<RegionReader> open_decoded(const std::string& path, const ReadIm
                                            std::function<std::unique_ptr<RegionDecoder>()> open);
 
 std::unique_ptr<RegionReader> open_tiff_regions(const std::string& path, const ReadImageOptions& options);
+/// Of Netpbm; one of text is read as a whole.
+std::unique_ptr<RegionReader> open_pnm_regions(const std::string& path, const ReadImageOptions& options);
 std::unique_ptr<RegionReader> open_exr_regions(const std::string& path, const ReadImageOptions& options);
 /// With RegionAccess::kSpool. Throws Error(kUnsupported) for an interlaced PNG.
 std::unique_ptr<RegionReader> open_png_regions(const std::string& path, const ReadImageOptions& options);
