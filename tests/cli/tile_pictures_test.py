@@ -5,6 +5,7 @@ import struct
 
 import numpy as np
 import OpenImageIO as oiio
+from PIL import Image
 from support import BIN, CliCase, main
 
 
@@ -68,6 +69,18 @@ class TilePictures(CliCase):
                                    preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (limit, limit)))
             self.assertEqual((result.returncode, result.stderr), (0, ""))
             path.unlink()
+
+    def test_whole(self):
+        """A format that is only read whole is told, asks for its memory, and keeps to the limits."""
+        path = self.folder / "w.bmp"
+        Image.fromarray(np.zeros((2100, 2100, 3), np.uint8)).save(path)
+        plan = self.report("imgmesh-build", path, "-o", "w", "--tiles", 256, "--plan")["images"][0]
+        self.assertIn("every process holds all of it", " ".join(plan["warnings"]))
+        self.assertGreater(min(job["memory_mb"] for job in plan["jobs"]), 8 * 3 * 2.1 * 2.1)
+        self.assert_error("imgmesh-build", [path, "-o", "v", "--tiles", 256, "--max-pixels", 1000000], 4, "at most 1000000")
+        result = self.run_tool("imgmesh-build", path, "-o", "v", "--tiles", 256, "--max-memory", "150M")
+        self.assertEqual(result.returncode, 4, result.stderr)
+        self.assertIn("which is read as a whole", result.stderr)
 
 
 if __name__ == "__main__":

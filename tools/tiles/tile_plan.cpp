@@ -105,6 +105,11 @@ Image image_like(const PictureFacts& facts) {
     return image;
 }
 
+// The image of floats, and as much again while it is read.
+double whole_bytes(const PictureFacts& facts) {
+    return 2.0 * sizeof(float) * static_cast<double>(facts.channel_names.size()) * facts.width * facts.height;
+}
+
 // What becomes of alpha must not depend on the tile.
 AlphaUse alpha_of_all(const BuildOptions& o, bool has_alpha, Context& context) {
     if (!has_alpha) return AlphaUse::kIgnore;
@@ -174,8 +179,17 @@ PlannedTileSet plan_tile_set(const BuildOptions& o, Context& context) {
         const double side = *o.tiles.size + 1.0;
         planned.common.density = planned.vertices > 0 ? 100 * planned.vertices / pixels : 1;
         const double held = std::min<double>(side, facts.width) * std::min<double>(side, facts.height);
-        context.memory.take(cat("a tile of ", *o.tiles.size, " pixels"),
-                            tile_bytes(held, planned.common.density / 100));
+        if (facts.access == RegionAccess::kWhole) {
+            planned.whole_bytes = whole_bytes(facts);
+            constexpr double kMuch = 1 << 22;  // pixels; of less nobody minds
+            if (pixels > kMuch)
+                context.warnings.push_back(cat(o.input, ": ", facts.why,
+                                               ", so every process holds all of it; of a tiled TIFF or EXR "
+                                               "it would read parts"));
+        }
+        context.memory.take(cat("a tile of ", *o.tiles.size, " pixels",
+                                planned.whole_bytes > 0 ? " and the picture, which is read as a whole" : ""),
+                            tile_bytes(held, planned.common.density / 100) + planned.whole_bytes);
         planned.plan = {.generator = context.generator,
                         .source = source_of(o.input),
                         .width = facts.width,
@@ -230,7 +244,9 @@ Report plan_report(const PlannedTileSet& planned, const BuildOptions& o) {
              {"needs", job.needs},
              {"output", job.output},
              {"command", command},
-             {"memory_mb", static_cast<int>(tile_bytes(held, planned.common.density / 100) / 1e6) + 1},
+             {"memory_mb",
+              static_cast<int>((tile_bytes(held, planned.common.density / 100) + planned.whole_bytes) / 1e6) +
+                  1},
              {"seconds", static_cast<int>(kStartSeconds + kSecondsOfMegapixel * pixels / 1e6) + 1}});
     }
     return {{"format", "imgmesh-tile-jobs"}, {"version", 1},          {"out", o.output},

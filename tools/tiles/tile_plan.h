@@ -18,6 +18,7 @@ struct PlannedTileSet {
     double vertices = 0;      ///< the wanted number; 0 where only an error is
     MaskChoice mask = {};
     ReadImageOptions read = {};
+    double whole_bytes = 0;    ///< of a picture that is held as a whole by every process that reads it
     std::string picture = {};  ///< the file to read parts of: the picture, or its copy in the work folder
 };
 
