@@ -86,6 +86,14 @@ class TileBuild(CliCase):
                 self.assertEqual(self.files_of_set(), {**expected, **own})
                 shutil.rmtree(self.folder / "set")
 
+    def test_jobs_by_name(self):
+        self.build_set("--plan")
+        for name in ("tile/0/9_0", "tile/0/0_00", "tile/9/0_0", "sample/-1", "sample/9", "sample/x", "tiles", ""):
+            self.assert_error("imgmesh-build", ["a.png", "-o", "set/", "--tiles", 32, "--job", name], 2, "--job")
+        for name in ("spool", "sample/0", "sample/1", "sample/2", "threshold", "tile/0/3_2"):
+            self.build_set("--job", name)
+        self.assertIn("0/3_2.json", self.files_of_set())
+
     def test_small_error(self):
         """What keeps most pixels is told, and refused where there is no memory for it."""
         result = self.build_set("--error", "0.001", "--preset", "fast")

@@ -2,6 +2,7 @@
 // tells that it is done.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -34,6 +35,9 @@ struct TileJobsPlan {
 
 /// Returns all jobs, each after those that it needs.
 std::vector<TileJob> tile_jobs(const TileJobsPlan& plan);
+/// Returns the job of that name, without what it needs; nothing if there is none. Takes no time for the
+/// others, of which a plan may have 100,000.
+std::optional<TileJob> find_job(const TileJobsPlan& plan, const std::string& name);
 
 // Files below a set's folder beside those of formats/tileset/tile_files.h.
 inline constexpr const char* kThresholdFile = "threshold.json";

@@ -19,7 +19,12 @@ void add_tile_options(CLI::App& app, TileOptions& o) {
                      "Only write the plan of a tile set, and print its jobs as JSON with a command for each"),
                  group);
     CLI::Option* const job =
-        in_group(add_value(app, "--job", "NAME", [&o](const std::string& text) { o.job = text; },
+        in_group(add_value(app, "--job", "NAME",
+                           [&o](const std::string& text) {
+                               if (text.empty())
+                                   throw Error(ErrorKind::kBadArgument, "--job '': expected a name");
+                               o.job = text;
+                           },
                            {"Do one job of a planned tile set, as in tile/0/3_5"}),
                  group);
     needs(plan, tiles);

@@ -104,10 +104,8 @@ class TileSetRun {
                 ErrorKind::kBadArgument,
                 cat("--job ", name, ": ", options_.output,
                     " was planned for another picture or with other options; --plan makes a new plan"));
-        const std::vector<TileJob> jobs = tile_jobs(planned_.jobs);
-        const auto job = std::ranges::find(jobs, name, &TileJob::name);
-        if (job == jobs.end())
-            throw Error(ErrorKind::kBadArgument, cat("--job ", name, ": the tile set has no such job"));
+        const std::optional<TileJob> job = find_job(planned_.jobs, name);
+        if (!job) throw Error(ErrorKind::kBadArgument, cat("--job ", name, ": the tile set has no such job"));
         Stopwatch watch;
         TileWork work(planned_, options_, context_);
         work.run(*job, context_.progress);
