@@ -119,7 +119,8 @@ void round_tile_features(std::span<float> features, const BuildParams& params, c
 }
 
 BuildResult build_tile(Image&& image, const BuildParams& params, const TileSides& sides,
-                       const TileCommon& common, const Progress& progress, Mask mask) {
+                       const TileCommon& common, const Progress& progress, Mask mask,
+                       FeatureImage* features) {
     check_tile_params(params);
     mask = checked_mask(image, std::move(mask));
     require(image.width >= 2 && image.height >= 2, "a tile is at least two pixels wide and high");
@@ -143,6 +144,7 @@ BuildResult build_tile(Image&& image, const BuildParams& params, const TileSides
     target.vertices = std::llround(pixels * common.density / 100);
     plan.collapse = collapse_params(scaled, target, pixels);
     plan.sides = &sides;
+    plan.features = features;
     return run_build(image, &image, plan, progress, std::move(mask));
 }
 

@@ -48,10 +48,12 @@ void round_tile_features(std::span<float> features, const BuildParams& params, c
 ///         pixel, or at least the product of the two there is below 1: then no cell folds. Up to 3/4 they
 ///         keep the area that moving pixels keep (least_moving_area)
 /// mask    the pixels to mesh. Where it cuts a side, all pixels inside are vertices
+/// features  if not null: gets tile_features() of the image, which the build has anyway
 ///
 /// Throws as build_mesh_image() and check_tile_params() do, and Error(kBadArgument) for sides of other
 /// lengths.
 BuildResult build_tile(Image&& image, const BuildParams& params, const TileSides& sides,
-                       const TileCommon& common, const Progress& progress = {}, Mask mask = {});
+                       const TileCommon& common, const Progress& progress = {}, Mask mask = {},
+                       FeatureImage* features = nullptr);
 
 }  // namespace imgmesh

@@ -60,6 +60,7 @@ struct Features {
         grid = grid_mesh(std::move(feature), mask);
     }
     const FeatureImage& of_pixels() const { return apart.data.empty() ? grid.feature : apart; }
+    FeatureImage take() { return std::move(apart.data.empty() ? grid.feature : apart); }
 };
 
 }  // namespace
@@ -108,7 +109,7 @@ std::int64_t meshed_pixels(const Image& image, const Mask& mask) {
 }
 BuildResult run_build(const Image& image, Image* own, const BuildPlan& plan, const Progress& progress,
                       Mask mask) {
-    const auto& [params, space, targets, first_collapse, sides] = plan;
+    const auto& [params, space, targets, first_collapse, sides, kept_features] = plan;
     Stopwatch watch;
     BuildResult result;
     result.report.clipped_samples = count_clipped(image, space, mask);
@@ -149,6 +150,7 @@ BuildResult run_build(const Image& image, Image* own, const BuildPlan& plan, con
                                 !mask.empty(),
                                 space.gamut};
     result.mesh_image.parameters = list_params(closed_params(params, collapse, levels.front().map.precision));
+    if (kept_features) *kept_features = features.take();
     if (progress) progress(1.0, "done");
     return result;
 }

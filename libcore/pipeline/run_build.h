@@ -16,6 +16,7 @@ struct BuildPlan {
     std::vector<SimplifyTarget> targets;  ///< finest level first
     SimplifyParams collapse;              ///< for the finest
     const TileSides* sides = nullptr;     ///< that stay as they are; none: sides are free
+    FeatureImage* features = nullptr;     ///< where those of the pixels go at the end
 };
 
 /// Checks the image, and the mask, and returns an empty one if all pixels are inside. Throws as

@@ -13,14 +13,12 @@
 #include "formats/tileset/tileset_json.h"
 #include "libcore/pipeline/params.h"
 #include "libcore/tiles/density.h"
-#include "libcore/tiles/join_tiles.h"
-#include "libcore/tiles/sample_tile.h"
 #include "libcore/tiles/sides_of_tile.h"
 #include "libcore/tiles/tile_errors.h"
-#include "libcore/tiles/tile_units.h"
 #include "tools/common/in_file.h"
 #include "tools/common/output.h"
 #include "tools/common/text.h"
+#include "tools/tiles/coarse_tile.h"
 #include "tools/tiles/threshold_files.h"
 #include "tools/tiles/tile_memory.h"
 #include "tools/tiles/tile_pixels.h"
@@ -46,19 +44,6 @@ auto reading(const Read& read) {
     } catch (const Error& error) {
         throw Error(error.kind() == ErrorKind::kIo ? ErrorKind::kBadFile : error.kind(), error.what());
     }
-}
-
-// Returns the tile, or nothing where the outline of its mask, of which no vertex goes, is too fine for it:
-// for its grid of positions, or with more faces than a face a pixel.
-template <class Make>
-std::optional<MeshImage> of_outline(const Make& make_tile) {
-    try {
-        MeshImage image = make_tile();
-        if (image.levels.front().mesh.faces.size() <= image.source.pixel_count()) return image;
-    } catch (const Error& error) {
-        if (error.kind() != ErrorKind::kInternal) throw;
-    }
-    return {};
 }
 
 bool has_none(const PixelPart& part) {
@@ -217,9 +202,9 @@ void TileWork::build(TileRecord& record, const Progress& progress) {
     check_density(part.image, planned_, context_.max_memory);
     const TileCommon shared = common();
     const TileSides sides = sides_of_tile(part.image, planned_.params, shared, part.mask);
-    const FeatureImage feature = tile_features(part.image, shared, part.mask.mask);
+    FeatureImage feature;
     BuildResult built = build_tile(std::move(part.image), planned_.params, sides, shared, progress,
-                                   std::move(part.mask.mask));
+                                   std::move(part.mask.mask), &feature);
     const Level& level = built.mesh_image.levels.front();
     const TileErrors errors = tile_errors(
         level, feature, part.mask.own,
@@ -253,30 +238,9 @@ void TileWork::write(TileRecord& record, MeshImage mesh_image, LayerLayout layer
 }
 
 void TileWork::coarsen(TileRecord& record) {
-    const TileGrid& grid = planned_.jobs.grid;
-    const PixelRect rect = grid.rect(record.tile);
-    std::vector<ChildTile> children;
-    SourceInfo source;
-    bool masked = false;
-    for (const TileName& child : grid.children(record.tile)) {
-        if (read_record(folder_, child).files.empty()) continue;  // missing, or outside the mask
-        MeshImage part = read_meshes(in_set(folder_, tile_container(child)));
-        source = part.source;
-        masked = masked || part.source.has_mask;
-        const PixelRect own = grid.rect(child);
-        children.push_back({in_pixels(std::move(part.levels.front().mesh), child.level), own.left - rect.left,
-                            own.top - rect.top, own.width(), own.height()});
-    }
-    if (children.empty()) return;
-    const SimplifyParams params = tile_collapse(planned_.params, planned_.common);
-    const auto image_of = [&](const auto& make_tile) {
-        return coarse_image(make_tile(children, record.tile.level, rect.width(), rect.height(), params),
-                            source, grid, record.tile);
-    };
-    std::optional<MeshImage> image =
-        masked ? of_outline([&] { return image_of(coarser_tile); }) : image_of(coarser_tile);
-    if (!image) image = image_of(sampled_tile);
-    if (!image->levels.front().mesh.faces.empty()) write(record, *std::move(image), LayerLayout::kCompact);
+    std::optional<MeshImage> image = read_coarse_tile(folder_, planned_.jobs.grid, record.tile,
+                                                      tile_collapse(planned_.params, planned_.common));
+    if (image) write(record, *std::move(image), LayerLayout::kCompact);
 }
 
 std::vector<std::string> TileWork::folders_of_set() const {
