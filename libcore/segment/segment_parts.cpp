@@ -14,8 +14,8 @@
 namespace imgmesh {
 
 double part_memory(const PartGrid& grid, const SegmentParams& params) {
-    constexpr double kRegionBytes = 500;              // of its sums, borders and candidates for merges
-    constexpr double kRunBytes = 24;                  // of both stages' labels
+    constexpr double kRegionBytes = 700;              // of its sums, borders and candidates for merges
+    constexpr double kRunBytes = 30;                  // of both stages' labels
     constexpr double kMarginBytes = 3 * 4 * 17 * 13;  // of three rows of parts, for each column of pixels
     constexpr double kSmallBytes = 60;                // of a pixel at which contours are measured
     const GridSize size = grid.size();

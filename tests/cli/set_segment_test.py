@@ -56,8 +56,8 @@ class SetSegment(CliCase):
         return report, labels
 
     def test_agreement(self):
-        """A mesh of 1 % more vertices moves regions about as much: .89 for six photographs (decision 55)."""
-        for args, least in (((), 0.8), (("--quality", "fast"), 0.6), (("--distance", "paper"), 0.6)):
+        """Regions depend on the mesh: other meshes of the whole picture agree by .64 to .98 (decision 55)."""
+        for args, least in (((), 0.7), (("--quality", "fast"), 0.6), (("--distance", "paper"), 0.6)):
             whole = self.labels("whole.glb", *args)
             for step in TILES if not args else TILES[:1]:
                 with self.subTest(args=args, step=step):
