@@ -46,6 +46,8 @@ class TileBuild(CliCase):
                 self.run_ok("imgmesh-reconstruct", "set", "-o", "b.png")
                 drawn = picture_files.read(self.folder / "b.png")[..., 3] > 0
                 self.assertTrue((drawn == mask).all(), np.argwhere(drawn != mask)[:5])
+                for output in ("b.glb", "b.svg", "b.ply"):
+                    self.run_ok("imgmesh-convert", "set", "-o", output)
 
     def test_soft_alpha(self):
         """Kept alpha masks only what nobody sees; that of a cut is at least one half."""

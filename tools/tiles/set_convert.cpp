@@ -86,7 +86,8 @@ Report convert_set(const ConvertOptions& o, Context& context) {
     MeshImage whole;
     whole.source = set.source(index);
     static_cast<GridSize&>(whole.source) = level_size(grid, index);
-    whole.source.has_mask = set.has_gaps();
+    // A drawing would look at the pixel map for the outline of a mask, and there is none.
+    whole.source.has_mask = is_container(o.output) && set.has_gaps();
     whole.generator = context.generator;
     if (split_names(whole.source.channel_names).color.empty() && !is_container(o.output))
         throw Error(ErrorKind::kUnsupported, cat(o.input, ": the tile set has no colour to export"));
