@@ -117,6 +117,16 @@ class SetSegment(CliCase):
         self.assertTrue(np.array_equal(labels != NONE, inside))
         self.assertGreater((labels == np.where(x < 100, labels[100, 50], labels[100, 150]))[inside].mean(), 0.98)
 
+    def test_mask_of_noise(self):
+        """Each pixel of a mask has a label, also one that only the tile on the other side of a line has a face for."""
+        inside = np.random.default_rng(1).random((120, 140)) > 0.4
+        picture_files.png(self.folder / "a.png", picture_files.ramp(140, 120))
+        picture_files.png(self.folder / "mask.png", np.where(inside, 1.0, 0.0)[..., None])
+        self.run_ok("imgmesh-build", "a.png", "-o", "noise/", "--tiles", 20, "--mask", "mask.png", "-q")
+        for args in ((), ("--quality", "fast")):
+            _, labels = self.labels(self.folder / "noise", *args)
+            self.assertTrue(np.array_equal(labels != NONE, inside))
+
     def test_missing_tile(self):
         """Its pixels have no label, and the regions around it are joined as before."""
         parts = self.folder / "parts"

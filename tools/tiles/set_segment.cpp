@@ -55,21 +55,53 @@ PartGrid parts_of(const TileGrid& grid, int level) {
     return parts;
 }
 
+// Fills pixels of a part from a tile before it, where the part has none: as a mask or a missing tile leaves
+// them. `line` is what both have of the part; from (left, top) on the tile has the same pixels.
+void fill_line(PicturePart& part, const PixelRect& line, const Level& level, int left, int top, Id& faces) {
+    const FeatureImage luv = reconstruct_luv(level);
+    for (int y = line.top; y < line.bottom; ++y)
+        for (int x = line.left; x < line.right; ++x) {
+            PixelCoord& pixel = part.map.at(x, y);
+            const std::size_t there = level.map.index(left + x - line.left, top + y - line.top);
+            if (pixel.face != kNone || level.map[there].face == kNone) continue;
+            pixel = level.map[there];
+            pixel.face += faces;
+            std::copy_n(luv.pixel(there), 3, part.luv.pixel(x, y));
+        }
+    faces += as_id(level.mesh.faces.size());
+}
+
+bool has_gap(const PixelMap& map, const PixelRect& rect) {
+    for (int y = rect.top; y < rect.bottom; ++y)
+        for (int x = rect.left; x < rect.right; ++x)
+            if (map.at(x, y).face == kNone) return true;
+    return false;
+}
+
+// The pixels that a tile owns. Those of the lines that it shares with tiles before it belong to the last tile
+// that has a face for them (docs/tile-sets.md).
 PicturePart part_of(const SetInput& set, const TileName& tile) {
-    const MeshImage image = set.read(tile);
-    if (image.levels.empty()) return {};
-    const FeatureImage luv = reconstruct_luv(image.levels[0]);
-    const PixelMap& map = image.levels[0].map;
     const PixelRect own = own_level_rect(set.grid(), tile);
     const GridSize size{own.width(), own.height()};
-    PicturePart part{{size.width, size.height, {}, map.precision}, {size.width, size.height, 3, {}}};
-    for (int y = 0; y < size.height; ++y) {
-        const std::span<const PixelCoord> row = map.row(y).first(as_index(size.width));
-        part.map.values.insert(part.map.values.end(), row.begin(), row.end());
-        const std::span<const float> colors = luv.row(y).first(3 * as_index(size.width));
-        part.luv.data.insert(part.luv.data.end(), colors.begin(), colors.end());
+    PicturePart part{{size.width, size.height, std::vector<PixelCoord>(size.pixel_count())},
+                     {size.width, size.height, 3, std::vector<float>(3 * size.pixel_count())}};
+    Id faces = 0;
+    if (const MeshImage image = set.read(tile); !image.levels.empty())
+        fill_line(part, {0, 0, size.width, size.height}, image.levels[0], 0, 0, faces);
+    const std::pair<TileName, PixelRect> before[] = {
+        {{tile.level, tile.column - 1, tile.row}, {0, 0, 1, size.height}},
+        {{tile.level, tile.column, tile.row - 1}, {0, 0, size.width, 1}},
+        {{tile.level, tile.column - 1, tile.row - 1}, {0, 0, 1, 1}}};
+    for (const auto& [other, line] : before) {
+        if (other.column < 0 || other.row < 0 || !has_gap(part.map, line)) continue;
+        const MeshImage image = set.read(other);
+        if (image.levels.empty()) continue;
+        const PixelMap& map = image.levels[0].map;
+        fill_line(part, line, image.levels[0], other.column < tile.column ? map.width - 1 : 0,
+                  other.row < tile.row ? map.height - 1 : 0, faces);
     }
-    return part;
+    const bool is_empty = std::ranges::all_of(part.map, [](const PixelCoord& c) { return c.face == kNone; });
+    return is_empty ? PicturePart{} : part;
 }
 
 }  // namespace
