@@ -140,7 +140,7 @@ class FirstPass {
 std::size_t fine_regions(double part, double picture, const SegmentParams& params) {
     const double all = std::max(kFineRegions, kFineForEach * double(params.segments.value_or(0)));
     const double share = all * part / picture, least = std::min(kMostFine, part / kPixelsOfFine);
-    return std::max<std::size_t>(1, static_cast<std::size_t>(std::max(share, least)));
+    return std::max<std::size_t>(1, static_cast<std::size_t>(std::min(part, std::max(share, least))));
 }
 
 FirstRegions first_regions(const PictureParts& picture, const SegmentParams& params, SmallImageSums* small,

@@ -43,6 +43,7 @@ std::vector<PartWindows::Piece> PartWindows::margins_of(int column, int row) con
 
 void PartWindows::begin_row(int row) {
     row_ = row;
+    if (margin_ == 0) return;
     const PixelRect rows = picture_.grid.parts_at(picture_.grid.window(0, row, margin_));
     std::erase_if(margins_, [&](const auto& item) { return item.first.first < rows.top; });
     if (picture_.grid.columns() == 1 && picture_.grid.rows() == 1) return;

@@ -69,8 +69,7 @@ PartSegmentation segment_parts(const PictureParts& picture, const SegmentParams&
         result.hierarchy = merge_regions(std::move(first.graph), distance, params.min_size);
     }
     if (contour) scale_heights(result.hierarchy);
-    result.merges = wanted_merges(result.hierarchy, params,
-                                  cat(result.hierarchy.cells, " regions of the parts"), result.missed);
+    result.merges = wanted_merges(result.hierarchy, params, "the regions of its parts", result.missed);
     result.count = result.hierarchy.cells - result.merges;
     result.labels.renumber(regions_after(result.hierarchy, result.merges));
     if (progress) progress(1, "done");

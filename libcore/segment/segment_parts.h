@@ -46,8 +46,8 @@ double part_memory(const PartGrid& grid, const SegmentParams& params);
 /// 3. The second stage (contour_hierarchy.h), of the whole picture at the size at which contours are
 ///    measured, which is small for any picture.
 ///
-/// Reads each part three times, twice for kFast and kPaper. Holds one part and part_memory(). The result is
-/// the same for any number of threads.
+/// Reads each part three times, twice for kFast, once for kPaper. Holds one part and part_memory(). The
+/// result is the same for any number of threads.
 ///
 /// Throws Error(kBadArgument) as segment() does, Error(kUnsupported) for superpixels and for a picture
 /// without a pixel inside.

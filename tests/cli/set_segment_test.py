@@ -74,8 +74,8 @@ class SetSegment(CliCase):
             self.assertEqual(self.labels("set128", "--segments", wanted)[0]["regions"], wanted)
         self.assertGreaterEqual(self.labels("set128", "--min-size", 4000)[0]["min_pixels"], 4000)
         self.labels("set128", "--segments", "auto")
-        args = [self.inputs / "set128", "-o", "a.npy", "--segments", 10**6, "--strict"]
-        self.assert_error("imgmesh-segment", args, 5, "--segments", "1000000 regions were wanted")
+        args = [self.inputs / "set128", "-o", "a.npy", "--segments", 2**63 - 1, "--strict"]
+        self.assert_error("imgmesh-segment", args, 5, "--segments", "regions were wanted, at most")
         for option in (("--superpixels", 9), ("--outlines", "a.png"), ("--ucm", "a.npy")):
             args = [self.inputs / "set128", "-o", "b.npy", *option]
             self.assert_error("imgmesh-segment", args, 2, option[0], "tile set")

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "libcore/base/error.h"
@@ -233,6 +234,8 @@ TEST_CASE("parts are merged to a number of regions that is bounded") {
     SegmentParams params;
     params.segments = 1'000'000;
     CHECK(fine_regions(1e6, 1e9, params) == 4000);
+    params.segments = std::numeric_limits<std::int64_t>::max();
+    CHECK(fine_regions(1e6, 1e9, params) == 1'000'000);  // its pixels
 }
 
 TEST_CASE("parts have the same regions with any number of threads") {
