@@ -64,6 +64,7 @@ inline void check_copy(const std::string& path, const std::string& copy, int ste
     CHECK(of_path.facts().channel_names == whole.image.channel_names);
     CHECK(of_path.facts().sample_type == whole.image.sample_type);
     CHECK(source.color_space() == whole.image.color_space);
+    CHECK(of_path.color_space() == whole.image.color_space);
     for (int y = 0; y < whole.image.height; y += step)
         for (int x = 0; x < whole.image.width; x += step) {
             const PixelRect region{x, y, std::min(x + step, whole.image.width),

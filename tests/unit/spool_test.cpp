@@ -18,7 +18,15 @@ namespace {
 void check_spooled(const std::string& path, const std::string& spooled, int step,
                    const ReadImageOptions& options = {}) {
     spool_picture(path, spooled, options);
-    CHECK(RegionSource(path, options).facts().access == RegionAccess::kSpool);
+    const ReadImage whole = read_image_file(path, options);
+    const RegionSource source(path, options);
+    CHECK(source.facts().access == RegionAccess::kSpool);
+    // Also without a copy, from the top on.
+    for (int y = 0; y < whole.image.height; y += step) {
+        const PixelRect band{std::min(5, whole.image.width - 1), y, whole.image.width,
+                             std::min(y + step, whole.image.height)};
+        check_part(source.read_region(band), whole, band);
+    }
     check_copy(path, spooled, step, options);
 }
 
@@ -126,4 +134,29 @@ TEST_CASE("spool: the coefficients of progressive JPEG are counted before memory
     std::string text;
     CHECK(failure(folder / "p.jpg", folder / "out.tif", &text, options) == ErrorKind::kBadFile);
     CHECK_MESSAGE((text.find("554496 bytes") != std::string::npos), text);  // 3 x 38 x 38 blocks of 64 x 2
+}
+
+TEST_CASE("spool: a sweep of rows ends where they are broken") {
+    const TemporaryFolder folder;
+    write_image(folder / "a.png", busy(300, 300, 3));
+    std::vector<std::uint8_t> bytes = load(folder / "a.png");
+    bytes.resize(bytes.size() / 2);
+    save(folder / "a.png", bytes);
+    ReadImageOptions options;
+    options.limits.max_pixels = 3000;  // of a part: three rows
+    const RegionSource source(folder / "a.png", options);
+    int rows = 0, broken = 0;
+    source.sweep([&](const PixelRect& part) {
+        try {
+            (void)source.read(part);
+        } catch (const Error&) {
+            ++broken;
+            throw;
+        }
+        rows += part.height();
+        return true;
+    });
+    CHECK(rows > 100);
+    CHECK(rows < 160);
+    CHECK(broken == 1);
 }

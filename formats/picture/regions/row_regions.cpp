@@ -1,4 +1,6 @@
-// Regions of pictures that can only be read from the top: they have to be spooled first.
+// Regions of pictures that can only be read from the top: they had better be spooled first.
+#include <cstring>
+
 #include "formats/picture/regions/decoded_regions.h"
 #include "formats/picture/regions/row_source.h"
 #include "libcore/base/error.h"
@@ -6,8 +8,60 @@
 namespace imgmesh {
 namespace {
 
+using OpenRows = std::function<std::unique_ptr<RowSource>()>;
+
+// Goes through the rows, and begins again where a part lies above the one before.
+class RowDecoder : public RegionDecoder {
+  public:
+    explicit RowDecoder(OpenRows open) : open_(std::move(open)) {}
+
+    DecodedPicture decode(const PixelRect& stored) override {
+        if (!rows_ || stored.top < next_) {
+            rows_ = open_();
+            next_ = 0;
+        }
+        const RowLayout& layout = rows_->layout();
+        row_.resize(layout.row_bytes());
+        DecodedPicture out = zero_pixel(layout);
+        out.image.width = stored.width();
+        out.image.height = stored.height();
+        out.image.data.resize(out.image.pixel_count() * static_cast<std::size_t>(layout.channels));
+        for (; next_ < stored.bottom; ++next_) {
+            rows_->read(row_);
+            if (next_ >= stored.top) unpack(layout, stored, out.image);
+        }
+        if (next_ == layout.height) {
+            rows_->finish();
+            rows_.reset();
+        }
+        return out;
+    }
+
+  private:
+    // As the decoders of the whole do it.
+    void unpack(const RowLayout& layout, const PixelRect& stored, Image& image) const {
+        const auto channels = static_cast<std::size_t>(layout.channels),
+                   first = static_cast<std::size_t>(stored.left) * channels,
+                   count = static_cast<std::size_t>(stored.width()) * channels;
+        float* const out = image.pixel(0, next_ - stored.top);
+        for (std::size_t i = 0; i < count; ++i) {
+            std::uint16_t code = row_[layout.bits == 8 ? first + i : 0];
+            if (layout.bits == 16) std::memcpy(&code, &row_[2 * (first + i)], sizeof code);
+            out[i] = static_cast<float>(code) / (layout.bits == 8 ? 255.0f : 65535.0f);
+            if (layout.inks_upside_down) out[i] = 1 - out[i];
+        }
+    }
+
+    OpenRows open_;
+    std::unique_ptr<RowSource> rows_;
+    std::vector<std::uint8_t> row_;
+    int next_ = 0;
+};
+
 std::unique_ptr<RegionReader> spoolable(const std::string& path, const ReadImageOptions& options,
-                                        const RowLayout& layout, const char* format) {
+                                        const OpenRows& open, const char* format) {
+    const std::unique_ptr<RowSource> rows = open();
+    const RowLayout& layout = rows->layout();
     PictureHeader header;
     header.width = layout.width;
     header.height = layout.height;
@@ -15,21 +69,25 @@ std::unique_ptr<RegionReader> spoolable(const std::string& path, const ReadImage
     header.block_height = layout.height;
     header.zero_pixel = zero_pixel(layout);
     header.access = RegionAccess::kSpool;
+    header.by_rows = true;
     header.why = cat("it is a ", format);
     header.decode_bytes = static_cast<std::uint64_t>(layout.width) *
                           static_cast<std::uint64_t>(layout.height) *
                           static_cast<std::uint64_t>(layout.channels) * sizeof(float);
-    return open_decoded(path, options, std::move(header), {});
+    return open_decoded(path, options, std::move(header),
+                        [open] { return std::make_unique<RowDecoder>(open); });
 }
 
 }  // namespace
 
 std::unique_ptr<RegionReader> open_png_regions(const std::string& path, const ReadImageOptions& options) {
-    return spoolable(path, options, open_png_rows(path, options)->layout(), "PNG");
+    return spoolable(
+        path, options, [path, options] { return open_png_rows(path, options); }, "PNG");
 }
 
 std::unique_ptr<RegionReader> open_jpeg_regions(const std::string& path, const ReadImageOptions& options) {
-    return spoolable(path, options, open_jpeg_rows(path, options)->layout(), "JPEG");
+    return spoolable(
+        path, options, [path, options] { return open_jpeg_rows(path, options); }, "JPEG");
 }
 
 }  // namespace imgmesh
