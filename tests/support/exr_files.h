@@ -48,8 +48,8 @@ inline void write_exr_file(const std::string& path, const std::vector<ExrPart>& 
     Imf::MultiPartOutputFile file(path.c_str(), headers.data(), static_cast<int>(headers.size()));
     for (std::size_t k = 0; k < parts.size(); ++k) {
         const Imath::Box2i window = headers[k].dataWindow();
-        const auto w = static_cast<std::size_t>(window.max.x - window.min.x + 1),
-                   h = static_cast<std::size_t>(window.max.y - window.min.y + 1);
+        const auto w = static_cast<std::size_t>(window.size().x) + 1,
+                   h = static_cast<std::size_t>(window.size().y) + 1;
         std::deque<std::vector<float>> floats;
         std::deque<std::vector<Imath::half>> halves;
         std::deque<std::vector<std::uint32_t>> integers;

@@ -333,7 +333,7 @@ TEST_CASE("regions: a sweep covers each pixel once, and passes broken blocks ove
                 (void)source.read(part);
                 for (int y = part.top; y < part.bottom; ++y)
                     for (int x = part.left; x < part.right; ++x)
-                        ++seen[static_cast<std::size_t>(y * kWidth + x)];
+                        ++seen[static_cast<std::size_t>(y) * kWidth + static_cast<std::size_t>(x)];
                 return true;
             });
             CHECK(std::ranges::max(seen) == 1);
