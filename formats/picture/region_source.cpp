@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <mutex>
+#include <optional>
 #include <span>
 
 #include "formats/files/random_file.h"
@@ -22,17 +23,23 @@ bool is_interlaced_png(std::span<const std::uint8_t> start) {
     return start.size() > kInterlaced && start[kInterlaced] == 1;
 }
 
+// Returns the list of a picture of many files; nothing for a picture file.
+std::optional<TileList> list_of(const std::string& path, const ReadImageOptions& options) {
+    std::error_code ignored;
+    if (std::filesystem::is_directory(path, ignored)) return list_folder(path, options);
+    if (is_vrt(path)) return read_vrt(path);
+    if (is_json_list(path)) return read_json_list(path);
+    return {};
+}
+
 std::unique_ptr<RegionReader> open_regions(const std::string& path, const ReadImageOptions& options) {
     if (options.non_finite == NonFinite::kNearest)
         throw Error(ErrorKind::kBadArgument,
                     cat(path,
                         ": samples that are not finite cannot get the value of the nearest pixel where "
                         "a picture is read by parts, expected that they are refused or become 0"));
-    std::error_code ignored;
-    if (std::filesystem::is_directory(path, ignored))
-        return open_list(path, list_folder(path, options), options);
-    if (is_vrt(path)) return open_list(path, read_vrt(path), options);
-    if (is_json_list(path)) return open_list(path, read_json_list(path), options);
+    if (std::optional<TileList> list = list_of(path, options))
+        return open_list(path, *std::move(list), options);
     return open_picture_regions(path, options);
 }
 
@@ -41,6 +48,15 @@ std::string span_text(const PixelRect& r) {
 }
 
 }  // namespace
+
+std::vector<std::string> picture_files(const std::string& path, const ReadImageOptions& options) {
+    std::error_code ignored;
+    std::vector<std::string> files;
+    if (!std::filesystem::is_directory(path, ignored)) files.push_back(path);
+    if (const std::optional<TileList> list = list_of(path, options))
+        for (const ListedTile& tile : list->tiles) files.push_back(tile.path);
+    return files;
+}
 
 std::unique_ptr<RegionReader> open_picture_regions(const std::string& path, const ReadImageOptions& options) {
     constexpr std::size_t kStart = std::size_t{1} << 16;  // far more than signatures need

@@ -78,4 +78,8 @@ class RegionSource {
     std::unique_ptr<State> state_;
 };
 
+/// Returns the files of which a picture consists: itself, unless it is a folder, and those that it lists, in
+/// their order, whether they are there or not. Throws as the constructor of RegionSource does for lists.
+std::vector<std::string> picture_files(const std::string& path, const ReadImageOptions& options = {});
+
 }  // namespace imgmesh

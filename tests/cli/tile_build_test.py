@@ -1,5 +1,6 @@
 """Tile sets as imgmesh-build makes them: broken pictures, outputs that are no folder."""
 import json
+import os
 import resource
 import shutil
 import signal
@@ -87,6 +88,28 @@ class TileBuild(CliCase):
                 self.build_set(*options)
                 self.assertEqual(self.files_of_set(), {**expected, **own})
                 shutil.rmtree(self.folder / "set")
+
+    def test_changed_part_of_a_picture(self):
+        """A listed file with other bytes or of another time makes another picture; what is beside the listed ones does not."""
+        parts = self.folder / "parts"
+        parts.mkdir()
+        whole = picture_files.ramp(100, 50)
+        for column in range(2):
+            picture_files.png(parts / f"{column}_0.png", whole[:, 50 * column:50 * column + 50])
+        (self.folder / "list.json").write_text(json.dumps({
+            "format": "imgmesh-tile-list", "version": 1,
+            "tiles": [{"file": f"parts/{column}_0.png", "x": 50 * column, "y": 0} for column in range(2)]}))
+        for picture in ("list.json", "parts"):
+            def kept(picture=picture):
+                return self.report("imgmesh-build", picture, "-o", "parts/set/", "--tiles", 32)["images"][0]["kept"]
+            with self.subTest(picture=picture):
+                self.assertEqual(kept(), 0)
+                (parts / "notes.txt").write_text("not of the picture")
+                self.assertGreater(kept(), 0)
+                earlier = (parts / "1_0.png").stat().st_mtime_ns - 10 ** 9
+                os.utime(parts / "1_0.png", ns=(earlier, earlier))
+                self.assertEqual(kept(), 0)
+                shutil.rmtree(parts / "set")
 
     def test_jobs_by_name(self):
         self.build_set("--plan")

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <span>
 
+#include "formats/files/sha256.h"
 #include "formats/picture/region_source.h"
 #include "formats/tileset/tile_set_files.h"
 #include "libcore/pipeline/param_table.h"
@@ -19,23 +21,24 @@ std::string option_text(std::string_view name, std::string_view value) {
     return cat("--", name, value.empty() ? "" : " ", value);
 }
 
-// Returns what tells whether a file or a folder is still the same, without reading all of it.
-TileSource source_of(const std::string& path) {
+// Returns what tells whether a picture is still the same, without reading all of it. One that another program
+// moves to another folder is.
+TileSource source_of(const std::string& path, const ReadImageOptions& read) {
     TileSource source{path, 0, ""};
-    const auto ticks = [](const fs::path& file) {
-        return fs::last_write_time(file).time_since_epoch().count();
-    };
-    fs::file_time_type::rep latest = ticks(path);
-    if (fs::is_directory(path)) {
-        for (const fs::directory_entry& entry : fs::recursive_directory_iterator(path)) {
-            if (!entry.is_regular_file()) continue;
-            source.bytes += entry.file_size();
-            latest = std::max(latest, ticks(entry.path()));
-        }
-    } else {
-        source.bytes = fs::file_size(path);
+    const std::vector<std::string> files = picture_files(path, read);
+    std::string stamps;
+    for (const std::string& file : files) {
+        std::error_code is_not_there;
+        const std::uintmax_t bytes = fs::file_size(file, is_not_there);
+        const fs::file_time_type time = fs::last_write_time(file, is_not_there);
+        if (!is_not_there) source.bytes += bytes;
+        stamps += is_not_there ? "none\n" : cat(bytes, ' ', time.time_since_epoch().count(), '\n');
     }
-    source.stamp = cat(latest);
+    if (files.size() == 1)
+        source.stamp = cat(fs::last_write_time(files.front()).time_since_epoch().count());
+    else
+        source.stamp =
+            sha256_hex(std::span(reinterpret_cast<const std::uint8_t*>(stamps.data()), stamps.size()));
     return source;
 }
 
@@ -57,7 +60,7 @@ std::vector<std::pair<std::string, std::string>> parameters_of(const BuildOption
     all.emplace_back("alpha", name_of(alpha_choices(), planned.mask.alpha));
     all.emplace_back("alpha-threshold", cat(planned.mask.threshold));
     if (!o.mask.empty()) {
-        const TileSource mask = source_of(o.mask);
+        const TileSource mask = source_of(o.mask, {});
         all.emplace_back("mask", cat(mask.bytes, ' ', mask.stamp));
     }
     if (o.read.color_space) all.emplace_back("color-space", color_space_name(*o.read.color_space));
@@ -191,7 +194,7 @@ PlannedTileSet plan_tile_set(const BuildOptions& o, Context& context) {
                                 planned.whole_bytes > 0 ? " and the picture, which is read as a whole" : ""),
                             tile_bytes(held, planned.common.density / 100) + planned.whole_bytes);
         planned.plan = {.generator = context.generator,
-                        .source = source_of(o.input),
+                        .source = source_of(o.input, read),
                         .width = facts.width,
                         .height = facts.height,
                         .tile = *o.tiles.size,
