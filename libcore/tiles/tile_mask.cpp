@@ -29,10 +29,7 @@ class MaskAround {
     }
 
   private:
-    bool inside(int x, int y) const {
-        return picture_.empty() ? x >= reach_.left && x < reach_.right && y >= reach_.top && y < reach_.bottom
-                                : picture_.at(x - reach_.left, y - reach_.top);
-    }
+    bool inside(int x, int y) const { return picture_.at(x - reach_.left, y - reach_.top); }
 
     bool left_of(int x) const { return tile_.column > 0 && x == rect_.left; }
     bool right_of(int x) const { return tile_.column + 1 < grid_.columns(0) && x == rect_.right - 1; }
@@ -98,6 +95,15 @@ PixelRect reach_of(const TileGrid& grid, const TileName& tile) {
 }
 
 TileMask tile_mask(const Mask& picture, const TileGrid& grid, const TileName& tile) {
+    if (picture.empty()) {
+        const PixelRect rect = grid.rect(tile), own = grid.own_rect(tile);
+        TileMask all;
+        all.own = Mask(GridSize{rect.width(), rect.height()}, 1);
+        for (int y = 0; y < rect.height(); ++y)
+            for (int x = y < own.height() ? own.width() : 0; x < rect.width(); ++x)
+                all.own.Grid::at(x, y) = 0;
+        return all;
+    }
     return MaskAround(picture, grid, tile).run();
 }
 
