@@ -171,7 +171,7 @@ test("no background is seen where levels meet: one tile is late, so its parent s
     await view.waitForFunction(() => location.hash.endsWith("show=tiles"));
     const frames = await shot(view, "#f0f");
     assert.ok(differing(drawing, frames, covered(drawing, at)) > 1000, "borders are drawn");
-    assert.match(await view.locator("#status").textContent(), /^Level 0 and 1 · \d+ tiles of \d+ loaded · [\d,]+ triangles$/);
+    assert.match(await view.locator("#status").textContent(), /^Level 0 and 1 · \d+ tiles on the screen, \d+ in memory · [\d,]+ triangles$/);
     if (at.zoom > 200) {
       arrive();
       await settled(view, 0);
@@ -237,6 +237,7 @@ test("a set opens from a folder of this computer, and by its address; where ther
   await view.getByRole("button", { name: "Open", exact: true }).click();
   await view.locator("#problem p").waitFor();
   assert.equal(await view.locator("#problem").textContent(), `There is no tile set at ${host.address}sets/none/tileset.json.`);
+  assert.equal(await view.locator("#zoom").textContent(), "", "there is nothing to zoom");
   assert.ok(errors.every((text) => /404|Failed to load|not in the folder/.test(text)), errors.join("\n"));
   await view.close();
 });

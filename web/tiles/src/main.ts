@@ -53,12 +53,12 @@ const count = (n: number, what: string): string => `${n.toLocaleString("en")} ${
 
 function drawn(): void {
   const zoom = zoomOf(view!.transform), shown = view!.scene.shown();
-  byId("zoom").textContent = `${zoom < 10 ? zoom.toPrecision(2) : Math.round(zoom)} %`;
+  byId("zoom").textContent = size ? `${zoom < 10 ? zoom.toPrecision(2) : Math.round(zoom)} %` : "";
   byId("stage").setAttribute("aria-busy", String(view!.scene.loading));
   if (!size) return;
   const levels = [...new Set(shown.map(({ level }) => level))].sort((a, b) => a - b);
   const triangles = shown.reduce((sum, tile) => sum + tile.triangles, 0);
-  say(`Level ${levels.join(" and ") || "-"} · ${count(shown.length, "tile")} of ${view!.scene.loadedTiles} loaded · ${count(triangles, "triangle")}`);
+  say(`Level ${levels.join(" and ") || "-"} · ${count(shown.length, "tile")} on the screen, ${view!.scene.loadedTiles} in memory · ${count(triangles, "triangle")}`);
   keepPlace();
 }
 
