@@ -127,8 +127,21 @@ class Engines(unittest.TestCase):
         time.sleep(self.seconds)
         os.killpg(running.pid, signal.SIGKILL)
         running.wait()
-        subprocess.run(script, check=True, stdout=subprocess.DEVNULL)
+        done = subprocess.run(script, check=True, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+        self.assertIn("jobs of tile/0: 12\n", done.stderr)
+        self.assertIn(f"{self.folder / 'parallel'}/: 17 tiles of 3 levels, 0 missing\n", done.stderr)
         self.assert_same_files("parallel")
+
+    def test_commands_that_lack_something(self):
+        need("parallel", "jq", "snakemake")
+        for arguments in [], ["imgmesh-build", "huge.tif"]:
+            done = subprocess.run([str(EXAMPLES / "parallel.sh"), *arguments], check=False, stderr=subprocess.PIPE, text=True)
+            self.assertEqual(done.returncode, 2)
+            self.assertTrue(done.stderr.startswith("usage: parallel.sh PROCESSES imgmesh-build "), done.stderr)
+        done = subprocess.run(["snakemake", "-s", str(EXAMPLES / "Snakefile"), "-j", "1", "--config", "picture=huge.tif"], check=False,
+                              cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("expected --config picture=huge.tif out=set", done.stdout)
 
     def test_snakemake(self):
         need("snakemake")
