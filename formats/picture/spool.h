@@ -14,8 +14,7 @@ namespace imgmesh {
 /// reads from the picture, to the bit; other programs may miss what TIFF has no words for. Holds a row of
 /// tiles (32 MiB, or 16 rows if they are longer), of a TIFF in other codecs than deflate a strip as packed,
 /// and of progressive JPEG all coefficients, two bytes each. Returns what read_image_file() would warn of.
-/// Where a strip of a TIFF is broken, the tiles of the copy from there to its end are left out, and of an EXR
-/// those of broken lines.
+/// Where a strip of a TIFF or a chunk of lines is broken, the tiles of the copy are left out.
 ///
 /// Throws Error: kUnsupported for other formats, for interlaced PNG, and for a TIFF or EXR in tiles, in
 /// groups of YCbCr or in codecs of whole strips; as read_image_file() for broken PNG and JPEG and, by

@@ -21,11 +21,14 @@ void check_spooled(const std::string& path, const std::string& spooled, int step
     const ReadImage whole = read_image_file(path, options);
     const RegionSource source(path, options);
     CHECK(source.facts().access == RegionAccess::kSpool);
-    // Also without a copy, from the top on.
+    // Also without a copy, from the top on, where it cannot be held.
+    ReadImageOptions narrow = options;
+    narrow.limits.max_pixels = static_cast<std::int64_t>(whole.image.pixel_count()) - 1;
+    const RegionSource rows(path, narrow);
     for (int y = 0; y < whole.image.height; y += step) {
         const PixelRect band{std::min(5, whole.image.width - 1), y, whole.image.width,
                              std::min(y + step, whole.image.height)};
-        check_part(source.read_region(band), whole, band);
+        check_part(rows.read_region(band), whole, band);
     }
     check_copy(path, spooled, step, options);
 }
@@ -156,7 +159,6 @@ TEST_CASE("spool: a sweep of rows ends where they are broken") {
         rows += part.height();
         return true;
     });
-    CHECK(rows > 100);
-    CHECK(rows < 160);
+    CHECK(rows == 0);  // what is above may be wrong already
     CHECK(broken == 1);
 }

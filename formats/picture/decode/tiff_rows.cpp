@@ -45,9 +45,25 @@ TiffRows::TiffRows(TiffFile& file, const TiffLayout& layout)
     if (const std::uint64_t theirs = TIFFScanlineSize64(file.get()); theirs != row_bytes_)
         throw file.broken(cat("the TIFF's rows have ", theirs, " bytes, expected ", row_bytes_));
     if (has_streams(file, layout)) streams_.emplace(file, layout, row_bytes_);
+    checked_.resize(strip_count(layout));
 }
 
 void TiffRows::read(std::int64_t y, int plane, std::span<std::uint8_t> row) {
+    const std::int64_t index = plane * layout_.blocks_down() + strip(y);
+    if (!has_plain_rows(file_) && !checked_[static_cast<std::size_t>(index)]) check(index, plane, row);
+    read_unchecked(y, plane, row);
+}
+
+void TiffRows::check(std::int64_t index, int plane, std::span<std::uint8_t> row) {
+    const std::int64_t first = index % layout_.blocks_down() * layout_.block_height,
+                       end = std::min(first + layout_.block_height, layout_.height);
+    for (std::int64_t y = first; y < end; ++y) read_unchecked(y, plane, row);
+    if (streams_ && !streams_->ends_well())
+        throw file_.broken(cat("the TIFF is broken or truncated at the end of strip ", index));
+    checked_[static_cast<std::size_t>(index)] = 1;
+}
+
+void TiffRows::read_unchecked(std::int64_t y, int plane, std::span<std::uint8_t> row) {
     if (streams_)
         streams_->read(y, plane, row);
     else

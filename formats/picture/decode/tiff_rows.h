@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "formats/picture/decode/tiff_layout.h"
 #include "formats/picture/decode/tiff_streams.h"
@@ -26,17 +27,21 @@ class TiffRows {
 
     std::size_t row_bytes() const { return row_bytes_; }  ///< of one plane
     std::int64_t strip(std::int64_t y) const { return y / layout_.block_height; }
-    /// Reads row y of a plane, as stored in the machine's order. Throws Error(kBadFile) for a strip that is
-    /// broken or truncated in or above the row.
+    /// Reads row y of a plane, as stored in the machine's order. Goes through all of a packed strip before
+    /// the first row of it, as what is above a broken row may be wrong already. Throws Error(kBadFile) for a
+    /// strip that is broken or truncated anywhere.
     void read(std::int64_t y, int plane, std::span<std::uint8_t> row);
 
   private:
+    void check(std::int64_t index, int plane, std::span<std::uint8_t> row);
+    void read_unchecked(std::int64_t y, int plane, std::span<std::uint8_t> row);
     void read_by_libtiff(std::int64_t y, int plane, std::span<std::uint8_t> row);
 
     TiffFile& file_;
     const TiffLayout& layout_;
     std::size_t row_bytes_;
     std::optional<TiffStreams> streams_;
+    std::vector<char> checked_;  ///< strips
 };
 
 }  // namespace imgmesh

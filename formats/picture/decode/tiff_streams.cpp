@@ -90,6 +90,7 @@ void TiffStreams::begin(std::int64_t strip) {
     left_ = TIFFGetStrileByteCount(file_.get(), index);
     if (!inflater_) return;
     inflateReset(&inflater_->z);
+    ended_ = false;
     inflater_->z.avail_in = 0;
 }
 
@@ -116,27 +117,52 @@ void TiffStreams::read(std::int64_t y, int plane, std::span<std::uint8_t> row) {
 }
 
 bool TiffStreams::inflate_row(std::span<std::uint8_t> row) {
-    constexpr std::uint64_t kPacked = std::uint64_t{1} << 16;
     z_stream& z = inflater_->z;
     std::size_t done = 0;
     while (done < row.size()) {
-        if (z.avail_in == 0) {
-            packed_ = file_.bytes_at(at_, static_cast<std::size_t>(std::min(kPacked, left_)));
-            if (packed_.empty()) return false;
-            at_ += packed_.size();
-            left_ -= packed_.size();
-            z.next_in = packed_.data();
-            z.avail_in = static_cast<uInt>(packed_.size());
-        }
+        if (z.avail_in == 0 && !next_bytes()) return false;
         const std::size_t now = std::min<std::size_t>(row.size() - done, std::size_t{1} << 30);
         z.next_out = row.data() + done;
         z.avail_out = static_cast<uInt>(now);
         const int result = inflate(&z, Z_NO_FLUSH);
         done += now - z.avail_out;
         if (result == Z_MEM_ERROR) throw std::bad_alloc();
-        if (result == Z_STREAM_END) return done == row.size();
+        ended_ = result == Z_STREAM_END;
+        if (ended_) return done == row.size();
         if (result != Z_OK && result != Z_BUF_ERROR) return false;
     }
+    return true;
+}
+
+bool TiffStreams::ends_well() {
+    if (!inflater_ || ended_) return true;
+    // Damage may have made the rows longer, which the checksum tells. Some files hold rows for a full strip
+    // where the picture ends.
+    constexpr std::size_t kPiece = std::size_t{1} << 16;
+    const std::uint64_t most = static_cast<std::uint64_t>(layout_.block_height) * row_bytes_;
+    z_stream& z = inflater_->z;
+    planes_.resize(kPiece);
+    for (std::uint64_t more = 0; more <= most;) {
+        if (z.avail_in == 0 && !next_bytes()) return false;
+        z.next_out = planes_.data();
+        z.avail_out = static_cast<uInt>(kPiece);
+        const int result = inflate(&z, Z_NO_FLUSH);
+        more += kPiece - z.avail_out;
+        if (result == Z_STREAM_END) return true;
+        if (result != Z_OK && result != Z_BUF_ERROR) return false;
+    }
+    return false;
+}
+
+// Returns false at the end of the strip.
+bool TiffStreams::next_bytes() {
+    constexpr std::uint64_t kPacked = std::uint64_t{1} << 16;
+    packed_ = file_.bytes_at(at_, static_cast<std::size_t>(std::min(kPacked, left_)));
+    if (packed_.empty()) return false;
+    at_ += packed_.size();
+    left_ -= packed_.size();
+    inflater_->z.next_in = packed_.data();
+    inflater_->z.avail_in = static_cast<uInt>(packed_.size());
     return true;
 }
 

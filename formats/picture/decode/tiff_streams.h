@@ -28,11 +28,15 @@ class TiffStreams {
 
     /// As TiffRows::read().
     void read(std::int64_t y, int plane, std::span<std::uint8_t> row);
+    /// After the last row of a strip: whether the stream ends with the right checksum, there or after as many
+    /// rows again.
+    bool ends_well();
 
   private:
     struct Inflater;
 
     void begin(std::int64_t strip);
+    bool next_bytes();
     bool inflate_row(std::span<std::uint8_t> row);
     void undo_predictor(std::span<std::uint8_t> row);
     void swap_bytes(std::span<std::uint8_t> row) const;
@@ -44,6 +48,7 @@ class TiffStreams {
     std::unique_ptr<Inflater> inflater_;  ///< none: without compression
     std::vector<std::uint8_t> packed_, planes_;
     std::int64_t strip_ = -1, next_ = 0;  ///< the row that the stream is at
+    bool ended_ = false;                  ///< the stream has
     std::uint64_t at_ = 0, left_ = 0;     ///< of the strip's bytes in the file
 };
 

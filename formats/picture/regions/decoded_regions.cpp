@@ -101,9 +101,11 @@ class DecodedRegions : public RegionReader {
         return out;
     }
 
-    // From the top on, a picture of rows is read without holding it.
+    // From the top on, a large picture of rows is read without holding it.
     bool goes_back(const PixelRect& region) const {
+        constexpr std::int64_t kLarge = std::int64_t{1} << 24;  // pixels
         if (!header_.by_rows) return false;
+        if (std::int64_t{facts_.width} * facts_.height <= kLarge && can_hold()) return true;
         const PixelRect stored = stored_rect(region, orientation_, header_.width, header_.height);
         const std::lock_guard lock(mutex_);
         const bool back = stored.top < next_row_;

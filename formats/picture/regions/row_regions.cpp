@@ -1,5 +1,7 @@
 // Regions of pictures that can only be read from the top: they had better be spooled first.
+#include <atomic>
 #include <cstring>
+#include <memory>
 
 #include "formats/picture/regions/decoded_regions.h"
 #include "formats/picture/regions/row_source.h"
@@ -10,12 +12,15 @@ namespace {
 
 using OpenRows = std::function<std::unique_ptr<RowSource>()>;
 
-// Goes through the rows, and begins again where a part lies above the one before.
+// Goes through the rows, and begins again where a part lies above the one before. First once through all, as
+// what is above a broken row may be wrong already; `checked` tells the other decoders of the picture.
 class RowDecoder : public RegionDecoder {
   public:
-    explicit RowDecoder(OpenRows open) : open_(std::move(open)) {}
+    RowDecoder(OpenRows open, std::shared_ptr<std::atomic<bool>> checked)
+        : open_(std::move(open)), checked_(std::move(checked)) {}
 
     DecodedPicture decode(const PixelRect& stored) override {
+        if (!*checked_) check();
         if (!rows_ || stored.top < next_) {
             rows_ = open_();
             next_ = 0;
@@ -30,14 +35,19 @@ class RowDecoder : public RegionDecoder {
             rows_->read(row_);
             if (next_ >= stored.top) unpack(layout, stored, out.image);
         }
-        if (next_ == layout.height) {
-            rows_->finish();
-            rows_.reset();
-        }
+        if (next_ == layout.height) rows_.reset();
         return out;
     }
 
   private:
+    void check() {
+        const std::unique_ptr<RowSource> rows = open_();
+        row_.resize(rows->layout().row_bytes());
+        for (int y = 0; y < rows->layout().height; ++y) rows->read(row_);
+        rows->finish();
+        *checked_ = true;
+    }
+
     // As the decoders of the whole do it.
     void unpack(const RowLayout& layout, const PixelRect& stored, Image& image) const {
         const auto channels = static_cast<std::size_t>(layout.channels),
@@ -53,6 +63,7 @@ class RowDecoder : public RegionDecoder {
     }
 
     OpenRows open_;
+    std::shared_ptr<std::atomic<bool>> checked_;
     std::unique_ptr<RowSource> rows_;
     std::vector<std::uint8_t> row_;
     int next_ = 0;
@@ -75,7 +86,9 @@ std::unique_ptr<RegionReader> spoolable(const std::string& path, const ReadImage
                           static_cast<std::uint64_t>(layout.height) *
                           static_cast<std::uint64_t>(layout.channels) * sizeof(float);
     return open_decoded(path, options, std::move(header),
-                        [open] { return std::make_unique<RowDecoder>(open); });
+                        [open, checked = std::make_shared<std::atomic<bool>>(false)] {
+                            return std::make_unique<RowDecoder>(open, checked);
+                        });
 }
 
 }  // namespace

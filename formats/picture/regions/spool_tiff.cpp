@@ -82,7 +82,7 @@ std::vector<std::string> spool_tiff(const std::string& path, const std::string& 
     std::optional<std::string> broken;
     TiffRows rows(tiff, layout);
     for (int plane = 0; plane < (layout.planar ? layout.samples : 1); ++plane) {
-        std::int64_t lost = -1;  // the strip that is broken: what follows in it is not sound
+        std::int64_t lost = -1;  // the strip that is broken
         out.write_plane([&](int y, std::span<std::uint8_t> row) {
             if (rows.strip(y) == lost) return false;
             try {
@@ -96,6 +96,7 @@ std::vector<std::string> spool_tiff(const std::string& path, const std::string& 
             return true;
         });
     }
+    if (broken && out.empty()) throw Error(ErrorKind::kBadFile, *broken);
     out.finish();
     std::vector<std::string> warnings = picture.zero_pixel().warnings;
     if (broken) warnings.push_back(cat("not all of it can be read: ", *broken));

@@ -86,6 +86,7 @@ void TiledRows::write_tiles(int rows, bool sound) {
             ++index_;  // left out
             continue;
         }
+        empty_ = false;
         const std::size_t count = std::min(tile_bytes, row_bytes - from);
         std::ranges::fill(tile, std::uint8_t{0});
         for (std::size_t y = 0; y < static_cast<std::size_t>(rows); ++y)

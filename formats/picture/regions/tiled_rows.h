@@ -38,6 +38,7 @@ class TiledRows {
     /// Writes the next plane: read(y, row) gives its rows from the top, and returns false for one that the
     /// original has broken. Then the row's tiles are left out. Throws Error(kIo).
     void write_plane(const std::function<bool(int, std::span<std::uint8_t>)>& read);
+    bool empty() const { return empty_; }  ///< all tiles are left out
     /// Gives the file its name. Throws Error(kIo).
     void finish();
 
@@ -56,6 +57,7 @@ class TiledRows {
     std::string error_;
     std::unique_ptr<TIFF, Close> tiff_;
     int tile_height_ = 0;
+    bool empty_ = true;
     std::uint32_t index_ = 0;
     std::vector<std::uint8_t> rows_;
 };
