@@ -89,6 +89,22 @@ class TileBuild(CliCase):
                 self.assertEqual(self.files_of_set(), {**expected, **own})
                 shutil.rmtree(self.folder / "set")
 
+    def test_set_of_something_else(self):
+        """A set of another plan is replaced with a warning, and with --no-overwrite not at all."""
+        self.build_set("--no-overwrite")
+        expected = self.files_of_set()
+        self.assertEqual(self.build_set("--no-overwrite").stderr, "")
+        picture_files.png(self.folder / "b.png", picture_files.ramp(101, 78))
+        for picture, option in (("a.png", "--preset=fast"), ("b.png", "--quiet"), ("b.png", "--plan")):
+            result = self.build_set("--no-overwrite", option, picture=picture, code=3)
+            self.assertIn("set/: exists with a tile set of a.png", result.stderr)
+            self.assertIn("is not overwritten", result.stderr)
+            self.assertEqual(self.files_of_set(), expected)
+        self.assertIn("set/: held a tile set of a.png by other options", self.build_set("--preset=fast").stderr)
+        self.assertIn("set/: held a tile set of a.png, which", self.build_set(picture="b.png").stderr)
+        picture_files.png(self.folder / "b.png", picture_files.ramp(101, 79))
+        self.assertIn("set/: held a tile set of b.png as it was before", self.build_set(picture="b.png").stderr)
+
     def test_changed_part_of_a_picture(self):
         """A listed file with other bytes or of another time makes another picture; what is beside the listed ones does not."""
         parts = self.folder / "parts"

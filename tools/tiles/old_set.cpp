@@ -2,10 +2,10 @@
 
 #include <filesystem>
 #include <optional>
-#include <vector>
 
 #include "formats/tileset/tile_set_files.h"
 #include "libcore/base/error.h"
+#include "tools/common/text.h"
 #include "tools/tiles/tile_jobs.h"
 
 namespace fs = std::filesystem;
@@ -73,11 +73,26 @@ std::int64_t remove_tiles(const fs::path& folder, const Keeps& keeps) {
     return removed;
 }
 
+// Says which set was there, in a few words.
+std::string described(const TileSetPlan& before, const TileSetPlan& plan) {
+    const TileSource &old = before.source, &own = plan.source;
+    const std::string name = printable_line(old.path);
+    if (old.bytes != own.bytes || old.stamp != own.stamp)
+        return cat("a tile set of ", name, old.path == own.path ? " as it was before" : "");
+    return cat("a tile set of ", name, " by ",
+               before.generator == plan.generator ? "other options" : "another version");
+}
+
 }  // namespace
 
-std::int64_t make_way(const std::string& folder, const TileSetPlan& plan) {
+std::int64_t make_way(const std::string& folder, const TileSetPlan& plan, bool overwrite,
+                      std::vector<std::string>& warnings) {
     const std::optional<TileSetPlan> before = old_plan(folder);
     if (!before || plan_key(*before) == plan_key(plan)) return 0;
+    const std::string old = described(*before, plan);
+    if (!overwrite)
+        throw Error(ErrorKind::kIo, cat(folder, ": exists with ", old, ", and is not overwritten"));
+    warnings.push_back(cat(folder, ": held ", old, ", which is replaced"));
     for (const char* const name : {kIndexFile, kTilesetFile, kThresholdFile})
         remove_file(in_set(folder, name));
     const TileGrid grid = plan.grid();

@@ -26,7 +26,7 @@ class TileSetRun {
         Stopwatch watch;
         if (!options_.tiles.job.empty()) return do_one(options_.tiles.job);
         make_folder(options_.output);
-        removed_ = make_way(options_.output, planned_.plan);
+        removed_ = make_way(options_.output, planned_.plan, context_.overwrite, context_.warnings);
         write_plan(options_.output, planned_.plan);
         if (options_.tiles.plan) return plan_report(planned_, options_);
         TileWork work(planned_, options_, context_);
