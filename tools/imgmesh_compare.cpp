@@ -330,7 +330,8 @@ int main(int argc, char** argv) {
          .input_help =
              "One container (.glb, .gltf), or files to compare: an image or container, and those that "
              "are compared with it",
-         .compares = true},
+         .compares = true,
+         .instead_of_sets = "imgmesh-reconstruct draws it as a picture first"},
         {add_options,
          check_options,
          compare_one,

@@ -238,6 +238,7 @@ int main(int argc, char** argv) {
              "Image to write (.png, .jpg, .webp, .tif, ...), or its mesh (.glb, .gltf, .obj, .ply, .svg), or "
              "a folder, ended by /, for NAME.png of each file",
          .output_required = false,
-         .type = [] { return "png"; }},
+         .type = [] { return "png"; },
+         .instead_of_sets = "imgmesh-reconstruct draws it"},
         {add_options, check_options, decode_one, print, line}, options, argc, argv);
 }

@@ -198,6 +198,7 @@ int main(int argc, char** argv) {
          .input_help = "Images to read, or containers (.glb, .gltf), whose reconstruction is encoded",
          .output_help =
              "Coded picture to write (.imgm), or a folder, ended by /, for NAME.imgm of each image",
-         .type = [] { return "imgm"; }},
+         .type = [] { return "imgm"; },
+         .instead_of_sets = "imgmesh-reconstruct draws it as a picture first"},
         {add_options, check_options, encode_one, print, line}, options, argc, argv);
 }

@@ -296,9 +296,9 @@ void write_index(const std::string& folder, const TileSetIndex& index) {
 TileSetIndex read_index(const std::string& folder) {
     const std::string path = in_set(folder, kIndexFile);
     if (!fs::exists(fs::symlink_status(path)) && fs::exists(in_set(folder, kPlanFile)))
-        throw Error(ErrorKind::kBadFile, cat(path,
-                                             ": is not there, as the tile set is not complete; the command "
-                                             "that began it goes on"));
+        throw Error(
+            ErrorKind::kBadFile,
+            cat(folder, ": is a tile set that is not complete; the same imgmesh-build command goes on"));
     const nlohmann::json document = load(path, kSetFormat);
     const JsonNode root(document, path + ": ");
     root.check_members(

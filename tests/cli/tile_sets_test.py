@@ -182,7 +182,8 @@ class TileSets(CliCase):
             self.assert_error("imgmesh-convert", ["set", "-o", "a.ply", *option], 2, option[0], "a.ply")
         for tool, *args in (("imgmesh-encode", "-o", "a.imgm"), ("imgmesh-decode", "-o", "a.png"), ("imgmesh-compare", "set"),
                             ("imgmesh-warp", "--image", "set/0/0_0.glb", "-o", "a.png")):
-            self.assert_error(tool, ["set", *args], 3, "folder")
+            self.assert_error(tool, ["set", *args], 5, "set: is a tile set", tool, "imgmesh-reconstruct" if tool != "imgmesh-warp" else ".glb")
+        self.assert_error("imgmesh-warp", ["set", "-o", "a.png"], 5, "tile set")
 
     def test_names_of_outputs(self):
         """Of a set in a folder: that of its own folder, however it is named."""

@@ -7,6 +7,7 @@
 
 #include "formats/container/container.h"
 #include "formats/files/extension.h"
+#include "formats/tileset/tile_set_files.h"
 #include "libcore/base/error.h"
 #include "tools/common/output.h"
 
@@ -47,7 +48,9 @@ std::string output_of(const Tool& tool, const FileOptions& files, const std::str
     if (files.output.empty()) return "";
     if (tool.fills_output && tool.fills_output()) {
         if (count > 1)
-            throw Error(ErrorKind::kBadArgument, cat("-o ", files.output, ": is the folder of one input"));
+            throw Error(ErrorKind::kBadArgument,
+                        cat("-o ", files.output, ": becomes one tile set, of a single input; ", count,
+                            " were given"));
         return files.output;
     }
     if (is_folder(files.output))
@@ -69,6 +72,15 @@ std::vector<std::string> outputs_of(const Job& job) {
     for (const std::string& side : job.sides)
         if (!side.empty()) outputs.push_back(side);
     return outputs;
+}
+
+// Throws where an input is a tile set and the tool takes none.
+void check_sets(const Tool& tool, const std::vector<std::string>& inputs) {
+    if (tool.instead_of_sets.empty()) return;
+    for (const std::string& input : inputs)
+        if (is_tile_set(input))
+            throw Error(ErrorKind::kUnsupported, cat(input, ": is a tile set, which ", tool.name,
+                                                     " does not take; ", tool.instead_of_sets));
 }
 
 // Throws where two jobs write the same file.
@@ -106,6 +118,7 @@ std::string file_type(const std::string& name, const std::string& text) {
 }
 
 std::vector<Job> plan_jobs(const Tool& tool, const FileOptions& files) {
+    check_sets(tool, files.inputs);
     std::vector<std::string> inputs = files.inputs;
     std::string reference;
     if (tool.compares && inputs.size() > 1) {

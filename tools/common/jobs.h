@@ -18,7 +18,7 @@ struct FileOptions {
 
 /// Returns the work on each input, in their order. Throws Error(kBadArgument) for mistakes that can be found
 /// before any work: several inputs for one file, two inputs for one output, an output that would replace an
-/// input, and what the tool itself finds.
+/// input, and what the tool itself finds; Error(kUnsupported) for a tile set where the tool takes none.
 std::vector<Job> plan_jobs(const Tool& tool, const FileOptions& files);
 
 /// Returns the type of --format: letters and digits, in lower case and without a dot. Throws

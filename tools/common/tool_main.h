@@ -76,6 +76,9 @@ struct Tool {
     std::vector<std::string> sources = {};  ///< options that name files to read, which count by their content
     /// Whether -o is a folder that the work on one input fills, and not one for a file of each; may be empty.
     std::function<bool()> fills_output = {};
+    /// What to do with a tile set, for the message of a tool that takes none; empty: it takes them, or any
+    /// folder.
+    std::string instead_of_sets = {};
     std::string list = "files";  ///< the report's member for several files
     bool always_list = false;    ///< the report is a list for one file, too
     std::function<void(CLI::App&)> add_options = {};
