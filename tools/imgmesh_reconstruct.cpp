@@ -103,6 +103,10 @@ void add_options(CLI::App& app, Options& o) {
 
 // Throws Error(kBadArgument) for mistakes that can be found before the container is read.
 void check_options(const Options& o) {
+    if (o.scale != 1 && is_tile_set(o.input))
+        throw Error(ErrorKind::kBadArgument,
+                    cat("--scale ", o.scale, ": ", o.input,
+                        " is a tile set, drawn pixel by pixel; --level K draws it at 1/2^K of its size"));
     const bool svg = lower_extension(o.output) == ".svg";
     const bool plane = o.mode != DrawMode::kGouraud && o.mode != DrawMode::kWire && o.mode != DrawMode::kFlat;
     const std::string mode = name_of(mode_choices(), o.mode);
@@ -195,14 +199,9 @@ bool writes_channels(const Options& o, const SourceInfo& source) {
 }
 
 Report draw_one(const Options& o, Context& context) {
-    if (is_tile_set(o.input)) {
-        if (o.scale != 1)
-            throw Error(ErrorKind::kBadArgument,
-                        cat("--scale ", o.scale, ": ", o.input,
-                            " is a tile set, drawn pixel by pixel; --level K draws it at 1/2^K of its size"));
+    if (is_tile_set(o.input))
         return draw_set({o.input, o.output, o.mode, o.level, o.depth, o.crop, o.limits},
                         name_of(mode_choices(), o.mode), context);
-    }
     if (o.crop)
         throw Error(ErrorKind::kBadArgument,
                     cat("--crop: ", o.input, " is no tile set; containers are drawn whole"));

@@ -62,6 +62,10 @@ class TileBuild(CliCase):
         for name in ("-", "out.glb", "out.gltf"):
             self.assert_error("imgmesh-build", ["a.png", "-o", name, "--tiles", 32], 2, "folder")
 
+    def test_what_is_no_picture_of_a_set(self):
+        self.assert_error("imgmesh-build", ["-", "-o", "set/", "--tiles", 32], 2, "-: a tile set is made from a file")
+        self.assert_error("imgmesh-build", ["a.png", "a.png", "-o", "set/", "--tiles", 32], 2, "set/: becomes one tile set")
+
     def files_of_set(self):
         return {str(path.relative_to(self.folder / "set")): path.read_bytes()
                 for path in (self.folder / "set").rglob("*") if path.is_file()}

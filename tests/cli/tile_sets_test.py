@@ -70,7 +70,9 @@ class TileSets(CliCase):
                 result = self.run_tool("imgmesh-info", "set", "--validate", "--quiet")
                 self.assert_error_lines("imgmesh-info", result, 4, 1)
                 for tool, output in (("imgmesh-reconstruct", "a.png"), ("imgmesh-convert", "a.ply"), ("imgmesh-segment", "a.tif")):
-                    self.assert_error_lines(tool, self.run_tool(tool, "set", "-o", output), 4, 1)
+                    result = self.run_tool(tool, "set", "-o", output)
+                    self.assert_error_lines(tool, result, 4, 1)
+                    self.assertIn("imgmesh-build", result.stderr)
                 shutil.rmtree(self.folder / "set")
                 (self.folder / "kept").rename(self.folder / "set")
 
@@ -169,11 +171,14 @@ class TileSets(CliCase):
             self.assert_error("imgmesh-reconstruct", ["set", "-o", "a.png", "--mode", mode], 2, mode, "map or gouraud")
         for tool, output in (("imgmesh-reconstruct", "a.png"), ("imgmesh-convert", "a.ply")):
             self.assert_error(tool, ["set", "-o", output, "--level", "3"], 2, "--level 3", "0 to 2")
-        self.assert_error("imgmesh-reconstruct", ["set", "-o", "a.png", "--crop", "90,0,20,20"], 2, "--crop", "100x60")
+        self.assert_error("imgmesh-reconstruct", ["set", "-o", "a.png", "--crop", "90,0,20,20"], 2, "--crop", "110,20", "100x60")
         self.assert_error("imgmesh-reconstruct", ["set", "-o", "a.png", "--crop", "1,2,3"], 2, "--crop")
         self.assert_error("imgmesh-reconstruct", ["set/0/0_0.glb", "-o", "a.png", "--crop", "0,0,2,2"], 2, "--crop")
         self.assert_error("imgmesh-convert", ["set", "-o", "a.npz"], 5, "a.npz")
-        self.assert_error("imgmesh-reconstruct", ["set", "-o", "a.png", "--mode", "gouraud", "--scale", "2"], 2, "--scale")
+        for mode in ("map", "gouraud"):
+            self.assert_error("imgmesh-reconstruct", ["set", "-o", "a.png", "--mode", mode, "--scale", "2"], 2, "--scale", "--level K")
+        for name in ("set", "set/", "set/index.json"):
+            self.assert_error("imgmesh-convert", [name, "-o", "a.npz"], 5, "; set/LEVEL/COLUMN_ROW.glb are ordinary")
         for option in (["--texture"], ["--levels", "0"], ["--layers", "exr"], ["--mesh-precision", "compact"],
                        ["--image", "a.png"], ["--outline-tolerance", "1"]):
             self.assert_error("imgmesh-convert", ["set", "-o", "a.glb", *option], 2, option[0], "tile set")

@@ -23,6 +23,8 @@ constexpr std::array<std::string_view, 5> kText = {"svg", "obj", "json", "ply", 
 void read_input(const Tool& tool, FileOptions& files, StreamFile& stream, std::uint64_t most) {
     if (std::ranges::count(files.inputs, kDash) > 1) refuse("-: standard input is named twice");
     const std::string unnamed = "standard input has no name for a file in a folder";
+    if (tool.fills_output && tool.fills_output())
+        refuse("-: a tile set is made from a file, which can be read by parts");
     if (is_folder(files.output)) refuse(cat("-o ", files.output, ": ", unnamed));
     for (const SideFile& side : tool.sides)
         if (is_folder(*side.value)) refuse(cat(side.option, ' ', *side.value, ": ", unnamed));

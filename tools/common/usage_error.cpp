@@ -34,6 +34,16 @@ std::string output_meant(const CLI::App& app) {
     return "";
 }
 
+// "--tiles: 1 required N missing", as CLI11 says it, in words. Other texts are left as they are.
+std::string in_words(const std::string& what) {
+    const std::string before = ": 1 required ", after = " missing";
+    const std::size_t at = what.find(before);
+    if (at == std::string::npos || !what.ends_with(after)) return what;
+    const std::size_t begin = at + before.size();
+    return cat(what.substr(0, at), ": expected a value, ",
+               what.substr(begin, what.size() - after.size() - begin));
+}
+
 }  // namespace
 
 std::string usage_error(const CLI::App& app, const std::string& what) {
@@ -48,7 +58,7 @@ std::string usage_error(const CLI::App& app, const std::string& what) {
     }
     if (what == "--output is required")
         return cat("-o FILE (--output) is required", output_meant(app), " (see --help)");
-    return cat(what, " (see --help)");
+    return cat(in_words(what), " (see --help)");
 }
 
 }  // namespace imgmesh

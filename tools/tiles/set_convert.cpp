@@ -27,8 +27,8 @@ void check_kind(const ConvertOptions& o) {
     for (const char* known : {".ply", ".obj", ".svg"})
         if (extension == known) return;
     throw Error(ErrorKind::kUnsupported,
-                cat("-o ", o.output, ": a tile set becomes a .glb, .gltf, .ply, .obj or .svg; ", o.input,
-                    "/LEVEL/COLUMN_ROW.glb are ordinary containers"));
+                cat("-o ", o.output, ": a tile set becomes a .glb, .gltf, .ply, .obj or .svg; ",
+                    single_tiles(o.input)));
 }
 
 std::string text_of(const ConvertOptions& o, const MeshImage& whole) {
@@ -47,7 +47,7 @@ void check_set_options(const ConvertOptions& o) {
         if (given)
             throw Error(ErrorKind::kBadArgument,
                         cat(option, ": ", o.input, " is a tile set, which becomes one mesh without a map; ",
-                            o.input, "/LEVEL/COLUMN_ROW.glb are ordinary containers"));
+                            single_tiles(o.input)));
     };
     refuse(!o.levels.empty(), "--levels");
     refuse(o.compression.layers.has_value(), "--layers");

@@ -49,16 +49,17 @@ Image cut(const Image& image, const PixelRect& rect, int channels) {
 PixelRect checked_part(const SetDrawOptions& o, const GridSize& size) {
     const PixelRect part = o.crop.value_or(PixelRect{0, 0, size.width, size.height});
     if (part.right > size.width || part.bottom > size.height)
-        throw Error(ErrorKind::kBadArgument, cat("--crop: level ", o.level, " of ", o.input, " has ",
-                                                 size.width, "x", size.height, " pixels"));
+        throw Error(ErrorKind::kBadArgument,
+                    cat("--crop: ends at ", part.right, ',', part.bottom, ", but level ", o.level, " of ",
+                        o.input, " has ", size.width, "x", size.height, " pixels"));
     return part;
 }
 
 void check_mode(const SetDrawOptions& o, const std::string& mode_name) {
     if (o.mode != DrawMode::kMap && o.mode != DrawMode::kGouraud)
-        throw Error(ErrorKind::kBadArgument,
-                    cat("--mode ", mode_name, ": a tile set is drawn as map or gouraud; ", o.input,
-                        "/LEVEL/COLUMN_ROW.glb are ordinary containers"));
+        throw Error(
+            ErrorKind::kBadArgument,
+            cat("--mode ", mode_name, ": a tile set is drawn as map or gouraud; ", single_tiles(o.input)));
 }
 
 // Returns the parts of a tile that it draws over those before it, in its own coordinates: on lines that it

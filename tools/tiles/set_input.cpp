@@ -9,6 +9,10 @@
 
 namespace imgmesh {
 
+std::string single_tiles(const std::string& path) {
+    return in_set(tile_set_folder(path), "LEVEL/COLUMN_ROW.glb") + " are ordinary containers";
+}
+
 MeshImage SetInput::read(const TileName& tile) const {
     const TileRecord* const record = find_tile(index, tile);
     if (!record || record->files.empty()) return {};
@@ -16,7 +20,9 @@ MeshImage SetInput::read(const TileName& tile) const {
     // A tile of another place or of an earlier set would do, too.
     if (!has_content(folder, record->files[0]))
         throw Error(ErrorKind::kBadFile,
-                    cat(file, ": is not there, or has other bytes than the index tells"));
+                    cat(file,
+                        ": is not there, or has other bytes than the index tells; the same imgmesh-build "
+                        "command makes it again"));
     MeshImage image = read_container(file, limits).mesh_image;
     const GridSize size = level_size(grid(), tile);
     if (static_cast<const GridSize&>(image.source) != size)

@@ -10,6 +10,9 @@
 
 namespace imgmesh {
 
+/// Returns what to say of the tiles of the set at `path` where a tool cannot take all of it.
+std::string single_tiles(const std::string& path);
+
 /// A set that a tool reads tile by tile.
 struct SetInput {
     std::string path;  ///< as given

@@ -13,11 +13,12 @@ void add_tile_options(CLI::App& app, TileOptions& o) {
                   {"Make -o a folder with a tile set: tiles of so many pixels a side whose meshes meet, of a "
                    "picture of any size, with coarser levels and 3D Tiles. A run that was stopped goes on"}),
         group);
-    CLI::Option* const plan =
-        in_group(add_flag(
-                     app, "--plan", [&o] { o.plan = true; },
-                     "Only write the plan of a tile set, and print its jobs as JSON with a command for each"),
-                 group);
+    CLI::Option* const plan = in_group(add_flag(
+                                           app, "--plan", [&o] { o.plan = true; },
+                                           "Only write the plan of a tile set, and print the names of its "
+                                           "jobs; --json prints also what each "
+                                           "needs, its command, its memory and its time"),
+                                       group);
     CLI::Option* const job =
         in_group(add_value(app, "--job", "NAME",
                            [&o](const std::string& text) {
