@@ -138,6 +138,13 @@ class TileBuild(CliCase):
         for name in ("spool", "sample/0", "sample/1", "sample/2", "threshold", "tile/0/3_2"):
             self.build_set("--job", name)
         self.assertIn("0/3_2.json", self.files_of_set())
+        for name, again in (("sample/0", False), ("threshold", False), ("tile/0/3_2", False), ("tile/0/2_2", True)):
+            self.assertEqual(self.report("imgmesh-build", "a.png", "-o", "set/", "--tiles", 32, "--job", name)["images"][0]["made"], again)
+
+    def test_counts_of_tiles(self):
+        self.assertIn("tiles   12 of 32 pixels, 17 with those of all 3 levels\n", self.build_set().stdout)
+        (self.folder / "set/0/0_0.glb").unlink()
+        self.assertIn("kept    14 of these 17, made by an earlier run\n", self.build_set().stdout)
 
     def test_small_error(self):
         """What keeps most pixels is told, and refused where there is no memory for it."""

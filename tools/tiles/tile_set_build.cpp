@@ -1,11 +1,11 @@
 #include "tools/tiles/tile_set_build.h"
 
-#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <ostream>
 
 #include "formats/tileset/tile_set_files.h"
 #include "libcore/base/stopwatch.h"
+#include "libcore/tiles/density.h"
 #include "tools/common/output.h"
 #include "tools/common/text.h"
 #include "tools/tiles/old_set.h"
@@ -30,17 +30,18 @@ class TileSetRun {
         write_plan(options_.output, planned_.plan);
         if (options_.tiles.plan) return plan_report(planned_, options_);
         TileWork work(planned_, options_, context_);
-        const double pixels = static_cast<double>(planned_.jobs.grid.width()) * planned_.jobs.grid.height();
-        double done = 0;
-        for (const TileJob& job : tile_jobs(planned_.jobs)) {
+        const std::vector<TileJob> jobs = tile_jobs(planned_.jobs);
+        double all = 0, done = 0;
+        for (const TileJob& job : jobs) all += job_pixels(job);
+        for (const TileJob& job : jobs) {
             // The first job that reads pixels makes the copy. Where all is done, none does.
             if (job.kind == TileJob::Kind::kSpool) continue;
-            const double share = job_pixels(job) / pixels;
-            const Progress whole = context_.progress;
-            work.run(job, [&, done](double fraction, std::string_view stage) {
-                whole(std::min(1.0, done + share * fraction), cat(job.name, ' ', stage));
+            const double own = job_pixels(job);
+            const bool made = work.run(job, [&, done, all](double fraction, std::string_view stage) {
+                context_.progress(all > 0 ? (done + own * fraction) / all : 0, cat(job.name, ' ', stage));
             });
-            done += share;
+            // What an earlier run did tells nothing of the speed of this one.
+            made ? done += own : all -= own;
         }
         const TileSetIndex index = read_index(options_.output);
         tell_missing(index);
@@ -48,11 +49,22 @@ class TileSetRun {
     }
 
   private:
-    // Of tiles of level 0 the pixels that they own; coarser ones and the rest take no time in comparison.
+    // Returns the work of a job, in pixels of level 0 whose tile takes as long.
     double job_pixels(const TileJob& job) const {
-        if (job.kind != TileJob::Kind::kTile || job.tile.level > 0) return 0;
-        const PixelRect own = planned_.jobs.grid.own_rect(job.tile);
-        return static_cast<double>(own.width()) * own.height();
+        // Measured: a picture of 1536 x 1024 pixels in tiles of 512.
+        constexpr double kSampled = 0.7, kCoarse = 0.4;
+        const TileGrid& grid = planned_.jobs.grid;
+        const auto area = [](const PixelRect& rect) {
+            return static_cast<double>(rect.width()) * rect.height();
+        };
+        if (job.kind == TileJob::Kind::kSample) {
+            double sampled = 0;
+            for (const SampledPart& part : sampled_parts(grid, job.tile.row, planned_.common.density))
+                sampled += kSampled * area(part.pixels);
+            return sampled;
+        }
+        if (job.kind != TileJob::Kind::kTile) return 0;
+        return job.tile.level == 0 ? area(grid.rect(job.tile)) : kCoarse * grid.step() * grid.step();
     }
 
     Report with_files(Report report) const {
@@ -108,9 +120,9 @@ class TileSetRun {
         if (!job) throw Error(ErrorKind::kBadArgument, cat("--job ", name, ": the tile set has no such job"));
         Stopwatch watch;
         TileWork work(planned_, options_, context_);
-        work.run(*job, context_.progress);
+        const bool made = work.run(*job, context_.progress);
         if (job->kind == TileJob::Kind::kIndex) tell_missing(read_index(options_.output));
-        return with_files({{"job", name}, {"made", work.made() > 0}, {"seconds", watch.lap()}});
+        return with_files({{"job", name}, {"made", made}, {"seconds", watch.lap()}});
     }
 
     const BuildOptions& options_;
@@ -136,17 +148,21 @@ void print_tile_set(const Report& report, std::ostream& out) {
         return;
     }
     const Report& finest = report["levels"].front();
+    std::uint64_t bytes = 0, tiles = 0;
+    for (const Report& level : report["levels"]) {
+        bytes += level["bytes"].get<std::uint64_t>();
+        tiles += level["tiles"].get<std::uint64_t>();
+    }
     table.add("size", cat(report["width"], " x ", report["height"], " pixels"));
-    table.add("tiles",
-              cat(finest["tiles"], " of ", report["tile"], " pixels, ", report["levels"].size(), " levels"));
+    table.add("tiles", cat(finest["tiles"], " of ", report["tile"], " pixels, ", tiles, " with those of all ",
+                           report["levels"].size(), " levels"));
     table.add("meshes", cat(finest["own_vertices"], " vertices, ", finest["faces"], " faces, ",
                             number("density"), " % of the pixels"));
     table.add("error", cat("map ", number("map_rms"), ", at seams ", number("seam_rms"), ", Gouraud ",
                            number("gouraud_rms"), " L*u*v* RMS"));
-    std::uint64_t bytes = 0;
-    for (const Report& level : report["levels"]) bytes += level["bytes"].get<std::uint64_t>();
     table.add("files", format_bytes(bytes));
-    if (report["kept"] != 0) table.add("kept", cat(report["kept"], " tiles of an earlier run"));
+    if (report["kept"] != 0)
+        table.add("kept", cat(report["kept"], " of these ", tiles, ", made by an earlier run"));
     if (report.contains("removed"))
         table.add("removed", cat(report["removed"], " files of tiles of the set that was there before"));
     if (report["missing"] != 0) table.add("missing", cat(report["missing"], " tiles"));

@@ -68,7 +68,7 @@ TilePixels& TileWork::pixels() {
     return *pixels_;
 }
 
-void TileWork::run(const TileJob& job, const Progress& progress) {
+bool TileWork::run(const TileJob& job, const Progress& progress) {
     switch (job.kind) {
         case TileJob::Kind::kSpool:
             return spool(progress);
@@ -79,23 +79,26 @@ void TileWork::run(const TileJob& job, const Progress& progress) {
         case TileJob::Kind::kTile:
             return make(job.tile, progress);
         case TileJob::Kind::kIndex:
-            return index();
+            index();
+            return true;
     }
+    return false;
 }
 
-void TileWork::spool(const Progress& progress) {
+bool TileWork::spool(const Progress& progress) {
     // It appears as a whole, so what is there is complete.
-    if (std::filesystem::exists(planned_.picture)) return;
+    if (std::filesystem::exists(planned_.picture)) return false;
     make_folder(in_set(folder_, kWorkFolder));
     progress(0, "copy");
     for (const std::string& warning : spool_picture(options_.input, planned_.picture, planned_.read)) {
         const std::string line = cat(options_.input, ": ", warning);
         if (std::ranges::count(context_.warnings, line) == 0) context_.warnings.push_back(line);
     }
+    return true;
 }
 
-void TileWork::sample(int row, const Progress& progress) {
-    if (has_threshold(folder_, key_) || has_sample(folder_, row, key_)) return;
+bool TileWork::sample(int row, const Progress& progress) {
+    if (has_threshold(folder_, key_) || has_sample(folder_, row, key_)) return false;
     const TileGrid& grid = planned_.jobs.grid;
     const SimplifyParams params = tile_collapse(planned_.params, planned_.common);
     const std::vector<SampledPart> parts = sampled_parts(grid, row, planned_.common.density);
@@ -117,10 +120,11 @@ void TileWork::sample(int row, const Progress& progress) {
         }
     }
     write_sample(folder_, row, key_, sum);
+    return true;
 }
 
-void TileWork::find_threshold() {
-    if (has_threshold(folder_, key_)) return;
+bool TileWork::find_threshold() {
+    if (has_threshold(folder_, key_)) return false;
     const TileGrid& grid = planned_.jobs.grid;
     DensitySample sum;
     std::string unread;
@@ -132,6 +136,7 @@ void TileWork::find_threshold() {
     if (sum.pixels == 0 && !unread.empty()) throw Error(ErrorKind::kBadFile, unread);
     write_threshold(folder_, key_,
                     in_file(options_.input, [&] { return threshold_for(sum, grid, planned_.vertices); }));
+    return true;
 }
 
 TileCommon TileWork::common() const {
@@ -156,10 +161,11 @@ void TileWork::remove(const std::string& path) const {
     std::filesystem::remove(in_set(folder_, path), is_not_there);
 }
 
-void TileWork::make(const TileName& tile, const Progress& progress) {
+bool TileWork::make(const TileName& tile, const Progress& progress) {
+    progress(0, "check");
     if (is_finished(folder_, tile, key_)) {
         ++kept_;
-        return;
+        return false;
     }
     forget_coarser(tile);
     make_level_folders(folder_, tile.level);
@@ -191,6 +197,7 @@ void TileWork::make(const TileName& tile, const Progress& progress) {
         told_dense_ = true;  // most others are like it
     }
     ++made_;
+    return true;
 }
 
 void TileWork::build(TileRecord& record, const Progress& progress) {

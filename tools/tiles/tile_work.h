@@ -21,20 +21,20 @@ class TileWork {
     ~TileWork();
 
     /// Throws Error where the job cannot be done at all. A tile whose pixels cannot be read gets a record
-    /// that says so instead.
-    void run(const TileJob& job, const Progress& progress);
+    /// that says so instead. Returns whether there was something to do.
+    bool run(const TileJob& job, const Progress& progress);
 
     std::int64_t made() const { return made_; }  ///< tiles that were made by this object
     std::int64_t kept() const { return kept_; }  ///< and those that were there
 
   private:
     TilePixels& pixels();
-    void spool(const Progress& progress);
-    void sample(int row, const Progress& progress);
-    void find_threshold();
+    bool spool(const Progress& progress);
+    bool sample(int row, const Progress& progress);
+    bool find_threshold();
     void forget_coarser(TileName tile) const;
     void remove(const std::string& path) const;
-    void make(const TileName& tile, const Progress& progress);
+    bool make(const TileName& tile, const Progress& progress);
     void build(TileRecord& record, const Progress& progress);
     void coarsen(TileRecord& record);
     std::vector<std::string> folders_of_set() const;
