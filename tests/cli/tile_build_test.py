@@ -4,10 +4,12 @@ import os
 import resource
 import shutil
 import signal
+import subprocess
+import time
 
 import numpy as np
 import picture_files
-from support import CliCase, main
+from support import BIN, CliCase, main
 
 
 class TileBuild(CliCase):
@@ -183,6 +185,19 @@ class TileBuild(CliCase):
                 self.build_set(picture=picture)
                 self.assertEqual(self.files_of_set(), expected)
                 shutil.rmtree(self.folder / "set")
+
+    def test_interruption(self):
+        """One line, no file that is half written, and the next run goes on."""
+        picture_files.png(self.folder / "a.png", picture_files.ramp(400, 300))
+        with subprocess.Popen([BIN / "imgmesh-build", "a.png", "-o", "set/", "--tiles", "32"], cwd=self.folder,
+                              stderr=subprocess.PIPE, text=True) as run:
+            while run.poll() is None and not (self.folder / "set/0/0_0.json").exists():
+                time.sleep(0.01)
+            run.send_signal(signal.SIGINT)
+            self.assertEqual(run.stderr.read(), "imgmesh-build: error: interrupted: set/ is not complete; the same command goes on\n")
+        self.assertEqual(run.returncode, -signal.SIGINT)
+        self.assertNotIn("index.json", self.files_of_set())
+        self.assertIn("kept", self.build_set().stdout)
 
     def test_no_folder_can_be_made(self):
         (self.folder / "file").write_text("not a folder")

@@ -52,6 +52,7 @@ class Batch {
     void announce(const FileResult& file);
     void write(const std::string& text);
     void end_by_signal();
+    void end_folder_by_signal();
     void conclude();
     std::string report_text() const;
     std::string summary_line() const;
@@ -267,10 +268,20 @@ void Batch::end_by_signal() {
     conclude();
 }
 
+void Batch::end_folder_by_signal() {
+    bar_.above([&] {
+        print_error(tool_.name,
+                    cat("interrupted: ", jobs_[0].output, " is not complete; the same command goes on"));
+    });
+}
+
 ExitCode Batch::run() {
     {
         std::optional<Interruption> interruption;
-        if (many_) interruption.emplace([this](int) { end_by_signal(); });
+        if (many_)
+            interruption.emplace([this](int) { end_by_signal(); });
+        else if (tool_.fills_output && tool_.fills_output())
+            interruption.emplace([this](int) { end_folder_by_signal(); });
         // Blocks begin in any order, files in that of the command line.
         parallel_blocks(0, static_cast<int>(jobs_.size()), 1, [&](int, int) { work(next_++); });
     }

@@ -30,7 +30,8 @@ struct BatchOptions {
 
 /// Does the work of `tool` on all jobs, several at a time, prints, and writes the journal. A job that fails
 /// does not stop the others. Returns the exit code: that of all failures, or kBadFile if they differ. SIGINT,
-/// SIGTERM and SIGHUP end a batch of several jobs with its report a second later, the second one at once.
+/// SIGTERM and SIGHUP end a batch of several jobs with its report a second later, the second one at once, and
+/// a job that fills a folder with a line that says so.
 /// Throws Error(kIo) if the report cannot be written.
 ExitCode run_batch(const Tool& tool, const std::vector<Job>& jobs, const BatchOptions& options);
 
