@@ -59,8 +59,8 @@ const std::vector<Preset>& presets() {
     static const std::vector<Preset> all = {
         {"fast", "the shortest time, without refinement", fast()},
         {"default", "a low error through the pixel map, with triangles of good shape", {}},
-        {"best", "a low error, with triangles as thin as a hundredth of their length, slowly", best()},
-        {"max", "the lowest error, with triangles as thin, four times as slowly as best", max()},
+        {"best", "a low error, with triangles as thin as a hundredth of their length (slow)", best()},
+        {"max", "the lowest error, with triangles as thin (four times as slow as best)", max()},
         {"small", "the fewest bytes, for a few percent more error through the pixel map", small()},
         {"fem", "no triangle of bad shape, for numerical simulation", fem()},
     };
