@@ -41,7 +41,10 @@ class TileSetRun {
                 context_.progress(all > 0 ? (done + own * fraction) / all : 0, cat(job.name, ' ', stage));
             });
             // What an earlier run did tells nothing of the speed of this one.
-            made ? done += own : all -= own;
+            if (made)
+                done += own;
+            else
+                all -= own;
         }
         const TileSetIndex index = read_index(options_.output);
         tell_missing(index);
