@@ -94,8 +94,8 @@ BaseMesh coarser_tile(std::span<const ChildTile> children, int level, int width,
         const Side half = whole.vertices.size() < 3 ? whole : coarser_side(whole, joined.channels);
         for (const Id v : vertices) {
             const float place = joined.position[v][along];
-            if (!is_pixel(place) ||
-                std::ranges::binary_search(half.vertices, static_cast<int>(std::lround(place))))
+            if (!is_pixel(place) || std::binary_search(half.vertices.begin(), half.vertices.end(),
+                                                       static_cast<int>(std::lround(place))))
                 kept.push_back(v);
         }
     }
