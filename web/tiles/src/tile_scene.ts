@@ -103,9 +103,10 @@ export class TileScene {
     [camera.bottom, camera.top] = [-height / 2 / scale, height / 2 / scale];
     camera.updateProjectionMatrix();
     camera.updateMatrixWorld();
-    // A level is fine enough as long as its triangles are not larger than those of level 0 at 100 %.
+    // A level is fine enough as long as its triangles are not larger than those of level 0 at 50 %: at its full
+    // size a mesh looks soft, and who opens a set sees a coarser level first.
     if (tiles) {
-      tiles.errorTarget = this.levels.spacing * (1 + kRounding);
+      tiles.errorTarget = 0.5 * this.levels.spacing * (1 + kRounding);
       tiles.setResolution(camera, width * ratio, height * ratio);
       tiles.update();
     }
