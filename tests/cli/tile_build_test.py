@@ -134,6 +134,7 @@ class TileBuild(CliCase):
                 shutil.rmtree(parts / "set")
 
     def test_jobs_by_name(self):
+        self.assert_error("imgmesh-build", ["a.png", "-o", ".", "--tiles", 32, "--job", "index"], 3, ".: has no plan for --job index")
         self.build_set("--plan")
         for name in ("tile/0/9_0", "tile/0/0_00", "tile/9/0_0", "sample/-1", "sample/9", "sample/x", "tiles", ""):
             self.assert_error("imgmesh-build", ["a.png", "-o", "set/", "--tiles", 32, "--job", name], 2, "--job")

@@ -79,7 +79,7 @@ std::vector<std::pair<std::string, std::string>> parameters_of(const BuildOption
 
 std::optional<std::string> planned_before(const BuildOptions& o, std::string_view name) {
     if (o.tiles.job.empty()) return {};
-    for (const auto& [key, value] : read_plan(o.output).parameters)
+    for (const auto& [key, value] : plan_of_jobs(o).parameters)
         if (key == name) return value;
     return {};
 }
@@ -138,6 +138,13 @@ auto in_input(const BuildOptions& o, const Work& work) {
 }
 
 }  // namespace
+
+TileSetPlan plan_of_jobs(const BuildOptions& o) {
+    if (!fs::exists(in_set(o.output, kPlanFile)))
+        throw Error(ErrorKind::kIo, cat(o.output, ": has no plan for --job ", o.tiles.job,
+                                        "; --plan in its place makes one"));
+    return read_plan(o.output);
+}
 
 LayerLayout tile_layers(const BuildOptions& o) {
     return o.compression.layers.value_or(LayerLayout::kCompact);

@@ -26,6 +26,9 @@ struct PlannedTileSet {
 /// become a tile set.
 PlannedTileSet plan_tile_set(const BuildOptions& options, Context& context);
 
+/// Returns the plan that --job goes by. Throws Error as read_plan(), in words if there is none.
+TileSetPlan plan_of_jobs(const BuildOptions& options);
+
 /// Returns how the pixel maps of tiles are stored.
 LayerLayout tile_layers(const BuildOptions& options);
 

@@ -114,13 +114,15 @@ class TileSetRun {
     }
 
     Report do_one(const std::string& name) {
-        if (plan_key(read_plan(options_.output)) != plan_key(planned_.plan))
+        if (plan_key(plan_of_jobs(options_)) != plan_key(planned_.plan))
             throw Error(
                 ErrorKind::kBadArgument,
                 cat("--job ", name, ": ", options_.output,
                     " was planned for another picture or with other options; --plan makes a new plan"));
         const std::optional<TileJob> job = find_job(planned_.jobs, name);
-        if (!job) throw Error(ErrorKind::kBadArgument, cat("--job ", name, ": the tile set has no such job"));
+        if (!job)
+            throw Error(ErrorKind::kBadArgument,
+                        cat("--job ", name, ": the tile set has no such job; --plan prints their names"));
         Stopwatch watch;
         TileWork work(planned_, options_, context_);
         const bool made = work.run(*job, context_.progress);
