@@ -17,8 +17,8 @@ import bench_peers  # noqa: E402
 
 DENSITIES = (0.5, 1, 2, 4)
 METHODS = {"fast": ("--preset", "fast"), "default": (), "best, luv": ("--preset", "best"),
-           "best, rgb": ("--preset", "best", "--objective", "rgb"), "fem": ("--preset", "fem"),
-           "Hoppe's metric": ("--metric", "hoppe")}
+           "best, rgb": ("--preset", "best", "--objective", "rgb"), "max, luv": ("--preset", "max"),
+           "fem": ("--preset", "fem"), "Hoppe's metric": ("--metric", "hoppe")}
 # Columns: title, key of measure(), format
 COLUMNS = (("map RMS", "map", ".2f"), ("mesh RMS", "mesh", ".2f"), ("mesh PSNR [dB]", "psnr", ".2f"),
            ("edge ratio", "edge_ratio", ".2f"), ("mean q", "mean_q", ".3f"), ("least q", "least_q", ".3f"),

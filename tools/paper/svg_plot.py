@@ -2,7 +2,7 @@
 import html
 import math
 
-COLORS = ("#3465c9", "#cc3d3d", "#2d9a4b", "#8d55b8", "#d98a1c", "#555555", "#20a5a5", "#b0b030", "#e07bb0", "#7a4a20",
+COLORS = ("#3465c9", "#cc3d3d", "#2d9a4b", "#8d55b8", "#d98a1c", "#555555", "#20a5a5", "#b0b030", "#e07bb0", "#7a4a20", "#9fc131",
           "#999999")
 WIDTH, HEIGHT = 460, 300
 LEFT, RIGHT, TOP, BOTTOM = 52, 12, 28, 44
