@@ -10,8 +10,20 @@
 #include <utility>
 
 #include "formats/picture/region_source.h"
+#include "libcore/base/error.h"
 
 namespace imgmesh {
+
+/// Returns the error of reading a region, which must be that of a bad file, or "".
+inline std::string failure(const RegionSource& source, const PixelRect& region) {
+    try {
+        (void)source.read(region);
+    } catch (const Error& error) {
+        CHECK(error.kind() == ErrorKind::kBadFile);
+        return error.what();
+    }
+    return "";
+}
 
 /// Checks that `part` is what `whole` has in `region`, to the bit.
 inline void check_part(const ReadImage& part, const ReadImage& whole, const PixelRect& region) {

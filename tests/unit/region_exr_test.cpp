@@ -14,7 +14,6 @@
 #include "formats/picture/spool.h"
 #include "libcore/base/error.h"
 #include "tests/support/exr_files.h"
-
 #include "tests/support/region_checks.h"
 #include "tests/support/temporary_folder.h"
 
@@ -59,17 +58,6 @@ void check(const std::string& path, const ReadImageOptions& options = {}) {
     CHECK(RegionSource(path, options).facts().access == RegionAccess::kDirect);
     check_regions(path, 29, options);
     check_random_regions(path, 12, options);
-}
-
-// The error of reading a region, or "".
-std::string failure(const RegionSource& source, const PixelRect& region) {
-    try {
-        (void)source.read(region);
-    } catch (const Error& error) {
-        CHECK(error.kind() == ErrorKind::kBadFile);
-        return error.what();
-    }
-    return "";
 }
 
 // Where the table of chunks is: its first entry leads to what follows it.

@@ -22,16 +22,6 @@ std::function<std::uint64_t(int, int, int)> noise_of(int bits) {
     return [bits](int x, int y, int s) { return noise(x, y, s, bits); };
 }
 
-// The error of reading a region, or "".
-std::string failure(const RegionSource& source, const PixelRect& region) {
-    try {
-        (void)source.read(region);
-    } catch (const Error& error) {
-        CHECK(error.kind() == ErrorKind::kBadFile);
-        return error.what();
-    }
-    return "";
-}
 bool names(const std::string& text, const std::string& part) {
     return text.find(part) != std::string::npos;
 }
