@@ -1,11 +1,8 @@
 #include "formats/picture/decode/tiff_streams.h"
 
-#include <zlib.h>
-
 #include <algorithm>
 #include <bit>
 #include <cstring>
-#include <new>
 
 #include "libcore/base/error.h"
 
@@ -64,20 +61,9 @@ bool has_streams(const TiffFile& file, const TiffLayout& layout) {
     }
 }
 
-struct TiffStreams::Inflater {
-    Inflater() {
-        if (inflateInit(&z) != Z_OK) throw std::bad_alloc();
-    }
-    ~Inflater() { inflateEnd(&z); }
-    Inflater(const Inflater&) = delete;
-    Inflater& operator=(const Inflater&) = delete;
-
-    z_stream z{};
-};
-
 TiffStreams::TiffStreams(const TiffFile& file, const TiffLayout& layout, std::size_t row_bytes)
     : file_(file), layout_(layout), row_bytes_(row_bytes), predictor_(predictor_of(file)) {
-    if (is_deflate(file)) inflater_ = std::make_unique<Inflater>();
+    if (is_deflate(file)) inflater_ = std::make_unique<Inflater>(Inflater::Frame::kZlib);
 }
 
 TiffStreams::~TiffStreams() = default;
@@ -89,9 +75,8 @@ void TiffStreams::begin(std::int64_t strip) {
     at_ = TIFFGetStrileOffset(file_.get(), index);
     left_ = TIFFGetStrileByteCount(file_.get(), index);
     if (!inflater_) return;
-    inflateReset(&inflater_->z);
+    inflater_->restart();
     ended_ = false;
-    inflater_->z.avail_in = 0;
 }
 
 void TiffStreams::read(std::int64_t y, int plane, std::span<std::uint8_t> row) {
@@ -117,19 +102,13 @@ void TiffStreams::read(std::int64_t y, int plane, std::span<std::uint8_t> row) {
 }
 
 bool TiffStreams::inflate_row(std::span<std::uint8_t> row) {
-    z_stream& z = inflater_->z;
-    std::size_t done = 0;
-    while (done < row.size()) {
-        if (z.avail_in == 0 && !next_bytes()) return false;
-        const std::size_t now = std::min<std::size_t>(row.size() - done, std::size_t{1} << 30);
-        z.next_out = row.data() + done;
-        z.avail_out = static_cast<uInt>(now);
-        const int result = inflate(&z, Z_NO_FLUSH);
-        done += now - z.avail_out;
-        if (result == Z_MEM_ERROR) throw std::bad_alloc();
-        ended_ = result == Z_STREAM_END;
-        if (ended_) return done == row.size();
-        if (result != Z_OK && result != Z_BUF_ERROR) return false;
+    while (!row.empty()) {
+        if (inflater_->is_used_up() && !next_bytes()) return false;
+        const auto [count, state] = inflater_->unpack(row);
+        row = row.subspan(count);
+        ended_ = state == Inflater::State::kEnded;
+        if (ended_) return row.empty();
+        if (state == Inflater::State::kBroken) return false;
     }
     return true;
 }
@@ -140,16 +119,12 @@ bool TiffStreams::ends_well() {
     // where the picture ends.
     constexpr std::size_t kPiece = std::size_t{1} << 16;
     const std::uint64_t most = static_cast<std::uint64_t>(layout_.block_height) * row_bytes_;
-    z_stream& z = inflater_->z;
     planes_.resize(kPiece);
     for (std::uint64_t more = 0; more <= most;) {
-        if (z.avail_in == 0 && !next_bytes()) return false;
-        z.next_out = planes_.data();
-        z.avail_out = static_cast<uInt>(kPiece);
-        const int result = inflate(&z, Z_NO_FLUSH);
-        more += kPiece - z.avail_out;
-        if (result == Z_STREAM_END) return true;
-        if (result != Z_OK && result != Z_BUF_ERROR) return false;
+        if (inflater_->is_used_up() && !next_bytes()) return false;
+        const auto [count, state] = inflater_->unpack(planes_);
+        more += count;
+        if (state != Inflater::State::kGoesOn) return state == Inflater::State::kEnded;
     }
     return false;
 }
@@ -161,8 +136,7 @@ bool TiffStreams::next_bytes() {
     if (packed_.empty()) return false;
     at_ += packed_.size();
     left_ -= packed_.size();
-    inflater_->z.next_in = packed_.data();
-    inflater_->z.avail_in = static_cast<uInt>(packed_.size());
+    inflater_->give(packed_);
     return true;
 }
 

@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "formats/picture/decode/inflater.h"
 #include "formats/picture/decode/tiff_layout.h"
 
 namespace imgmesh {
@@ -33,8 +34,6 @@ class TiffStreams {
     bool ends_well();
 
   private:
-    struct Inflater;
-
     void begin(std::int64_t strip);
     bool next_bytes();
     bool inflate_row(std::span<std::uint8_t> row);

@@ -2,10 +2,8 @@
 #include "formats/picture/regions/png_stream.h"
 
 #include <libdeflate.h>
-#include <zlib.h>
 
 #include <algorithm>
-#include <new>
 
 #include "formats/files/byte_reader.h"
 #include "libcore/base/error.h"
@@ -52,32 +50,17 @@ PngHead::PngHead(const RandomFile& file) {
     parts_ = png_parts(file.path(), bytes_);
 }
 
-struct PngStream::Inflater {
-    z_stream z = {};
-
-    Inflater() {
-        constexpr int kRawWindow = -15;  // deflate without zlib's own checks, of which one may fail
-        if (inflateInit2(&z, kRawWindow) != Z_OK) throw std::bad_alloc();
-    }
-    ~Inflater() { inflateEnd(&z); }
-    Inflater(const Inflater&) = delete;
-    Inflater& operator=(const Inflater&) = delete;
-};
-
 PngStream::PngStream(const RandomFile& file, const PngHead& head)
-    : file_(file), head_(head), inflater_(std::make_unique<Inflater>()), crc_(crc_of_name()) {
+    : file_(file), head_(head), crc_(crc_of_name()) {
     constexpr int kDeflate = 8, kDictionary = 32;
     std::array<std::uint8_t, 2> start{};  // of zlib; it may lie in two pieces
     for (std::uint8_t& byte : start) {
-        if (inflater_->z.avail_in == 0 && !next_bytes()) throw broken("broken: its pixels are missing");
-        byte = *inflater_->z.next_in++;
-        --inflater_->z.avail_in;
+        if (inflater_.is_used_up() && !next_bytes()) throw broken("broken: its pixels are missing");
+        byte = inflater_.take();
     }
     if ((start[0] & 15) != kDeflate || (start[1] & kDictionary))
         throw broken("broken: its pixels are packed in an unknown way");
 }
-
-PngStream::~PngStream() = default;
 
 Error PngStream::broken(const std::string& what) const {
     return {ErrorKind::kBadFile, cat(file_.path(), ": the PNG is ", what)};
@@ -103,26 +86,19 @@ bool PngStream::next_bytes() {
     if (packed_.empty()) return false;  // the file has become shorter
     crc_ = libdeflate_crc32(crc_, packed_.data(), packed_.size());
     in_piece_ += packed_.size();
-    inflater_->z.next_in = packed_.data();
-    inflater_->z.avail_in = static_cast<uInt>(packed_.size());
+    inflater_.give(packed_);
     return true;
 }
 
 // Returns how many bytes there were.
 std::size_t PngStream::unpack(std::span<std::uint8_t> out) {
-    z_stream& z = inflater_->z;
     std::size_t done = 0;
     while (done < out.size() && !ended_) {
-        if (z.avail_in == 0 && !next_bytes()) break;
-        const std::size_t now = std::min<std::size_t>(out.size() - done, std::size_t{1} << 30);
-        z.next_out = out.data() + done;
-        z.avail_out = static_cast<uInt>(now);
-        const int result = inflate(&z, Z_NO_FLUSH);
-        done += now - z.avail_out;
-        if (result == Z_MEM_ERROR) throw std::bad_alloc();
-        if (result == Z_STREAM_END)
-            ended_ = true;
-        else if (result != Z_OK && result != Z_BUF_ERROR)
+        if (inflater_.is_used_up() && !next_bytes()) break;
+        const auto [count, state] = inflater_.unpack(out.subspan(done));
+        done += count;
+        ended_ = state == Inflater::State::kEnded;
+        if (state == Inflater::State::kBroken)
             throw broken(head_.parts().complete ? "broken: its pixels do not unpack"
                                                 : "truncated or broken: its pixels do not unpack");
     }
@@ -143,9 +119,8 @@ std::vector<std::string> PngStream::finish() {
     std::array<std::uint8_t, 4> stored{};
     std::size_t count = 0;
     while (ended_ && count < stored.size()) {
-        if (inflater_->z.avail_in == 0 && !next_bytes()) break;
-        stored[count++] = *inflater_->z.next_in++;
-        --inflater_->z.avail_in;
+        if (inflater_.is_used_up() && !next_bytes()) break;
+        stored[count++] = inflater_.take();
     }
     while (next_bytes()) continue;  // to the last checksum
     const bool summed = count == stored.size();

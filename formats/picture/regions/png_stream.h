@@ -2,11 +2,12 @@
 #pragma once
 
 #include <array>
-#include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "formats/files/random_file.h"
+#include "formats/picture/decode/inflater.h"
 #include "formats/picture/decode/png_chunks.h"
 #include "libcore/base/error.h"
 
@@ -38,7 +39,6 @@ class PngStream {
   public:
     /// Both must outlive it.
     PngStream(const RandomFile& file, const PngHead& head);
-    ~PngStream();
     PngStream(const PngStream&) = delete;
     PngStream& operator=(const PngStream&) = delete;
 
@@ -49,15 +49,13 @@ class PngStream {
     std::vector<std::string> finish();
 
   private:
-    struct Inflater;
-
     Error broken(const std::string& what) const;
     bool next_bytes();
     std::size_t unpack(std::span<std::uint8_t> out);
 
     const RandomFile& file_;
     const PngHead& head_;
-    std::unique_ptr<Inflater> inflater_;
+    Inflater inflater_{Inflater::Frame::kRaw};  ///< without zlib's checks, of which one may fail
     std::vector<std::uint8_t> packed_;
     std::size_t piece_ = 0;       ///< the one that is read
     std::uint64_t in_piece_ = 0;  ///< bytes of it that have been
